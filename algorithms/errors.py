@@ -1,0 +1,28 @@
+"""What can be wrong with a user's input. Anything else that is raised is a bug of ours."""
+
+from __future__ import annotations
+
+
+class MapMergeError(Exception):
+    """A mistake the user can mend. The message names the place, the finding and the remedy."""
+
+
+class InputFileError(MapMergeError):
+    """A file that cannot be used as it is.
+
+    source : name of the file as the user knows it (a path, or the name of an upload)
+    found  : what is wrong with it
+    remedy : what to do about it
+    """
+
+    def __init__(self, source: object, found: str, remedy: str) -> None:
+        self.source, self.found, self.remedy = str(source), found, remedy
+        super().__init__(f"{source}: {found}; {remedy}")
+
+
+class SettingError(MapMergeError):
+    """A setting outside what it may be."""
+
+
+class TooLargeError(MapMergeError):
+    """A map that would take more memory than the stated bound."""

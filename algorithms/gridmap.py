@@ -1,0 +1,113 @@
+"""The occupancy grid and its dual form. Row 0 is the bottom; everything metric is in metres."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.errors import SettingError, TooLargeError
+from algorithms.pose import FloatArray, Pose2
+
+BoolArray = NDArray[np.bool_]
+CellArray = NDArray[np.int8]
+
+UNKNOWN = -1
+FREE = 0
+OCCUPIED = 100
+
+# A cell of a scale or raw map is a wall from 65 % and free up to 25 %, the thresholds Nav2's saver
+# writes; what lies between is neither, and counts as unknown.
+OCCUPIED_FROM = 65
+FREE_UP_TO = 25
+
+MAX_CELLS = 100_000_000  # 10,000 x 10,000: 100 MB of cells, the stated bound of one map
+
+
+def check_size(width: int, height: int, what: str) -> None:
+    """Raise TooLargeError for a grid of more than MAX_CELLS cells."""
+    if width * height > MAX_CELLS:
+        raise TooLargeError(
+            f"{what} would be {width} x {height} cells; the limit is {MAX_CELLS:,} cells. "
+            "Use a coarser resolution, or crop the map to what was seen"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class GridMap:
+    """An occupancy grid in the frame of the robot that made it.
+
+    cells      : (H, W) int8, row 0 at the bottom; −1 unknown, 0 free … 100 occupied, as in a ROS
+                 OccupancyGrid; not writeable
+    resolution : metres per cell
+    origin     : T_map_grid, pose of the lower-left corner of cell (0, 0) in the map's frame
+    name       : what to call it before a person
+    """
+
+    cells: CellArray
+    resolution: float
+    origin: Pose2 = Pose2()
+    name: str = "map"
+
+    def __post_init__(self) -> None:
+        if self.cells.ndim != 2 or self.cells.dtype != np.int8 or self.cells.size == 0:
+            raise SettingError(
+                f"{self.name}: cells must be a non-empty (H, W) int8 array, "
+                f"not {self.cells.dtype} of shape {self.cells.shape}"
+            )
+        if not (np.isfinite(self.resolution) and self.resolution > 0):
+            raise SettingError(f"{self.name}: resolution is {self.resolution} m; it must be > 0")
+        self.cells.flags.writeable = False
+
+    @property
+    def height(self) -> int:
+        """Number of rows."""
+        return int(self.cells.shape[0])
+
+    @property
+    def width(self) -> int:
+        """Number of columns."""
+        return int(self.cells.shape[1])
+
+    @cached_property
+    def occupied(self) -> BoolArray:
+        """(H, W) bool: walls."""
+        return np.asarray(self.cells >= OCCUPIED_FROM)
+
+    @cached_property
+    def free(self) -> BoolArray:
+        """(H, W) bool: known to be free."""
+        return np.asarray((self.cells >= FREE) & (self.cells <= FREE_UP_TO))
+
+    @cached_property
+    def points(self) -> FloatArray:
+        """The dual map M^d (section II-A): (N, 2) centres of occupied cells; metres, map frame."""
+        rows, cols = np.nonzero(self.occupied)
+        return self.centres(rows, cols)
+
+    def centres(self, rows: NDArray[np.integer], cols: NDArray[np.integer]) -> FloatArray:
+        """(N, 2) centres of the given cells; metres, map frame."""
+        grid = np.stack([cols + 0.5, rows + 0.5], axis=-1) * self.resolution
+        return self.origin.apply(grid)
+
+    def grid_coordinates(self, points: FloatArray) -> FloatArray:
+        """(N, 2) column and row as real numbers: the centre of cell (r, c) is (c + ½, r + ½)."""
+        return np.asarray(self.origin.inverse().apply(points) / self.resolution, dtype=np.float64)
+
+    def value_at(self, point: FloatArray) -> int:
+        """The cell value under a (2,) point in metres, map frame; UNKNOWN outside the grid."""
+        col, row = np.floor(self.grid_coordinates(point)).astype(int)
+        inside = 0 <= row < self.height and 0 <= col < self.width
+        return int(self.cells[row, col]) if inside else UNKNOWN
+
+    def contains(self, point: FloatArray) -> bool:
+        """Whether a (2,) point in metres, map frame, lies on the grid."""
+        col, row = self.grid_coordinates(point)
+        return bool(0 <= row < self.height and 0 <= col < self.width)
+
+    def corners(self) -> FloatArray:
+        """(4, 2) corners of the grid, counter-clockwise from its origin; metres, map frame."""
+        unit = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
+        return self.origin.apply(unit * (self.width, self.height) * self.resolution)
