@@ -1,0 +1,119 @@
+"""What a merge tells while it runs: one Step after another, the last of them a MergeResult."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from algorithms.augment import AugmentedMap
+from algorithms.fuse import Fusion
+from algorithms.objective import Objective
+from algorithms.observation import Encounter
+from algorithms.pose import FloatArray, Pose2
+from algorithms.smm import Candidate
+from algorithms.spectra import HoughMatch
+from algorithms.swarm import SearchState
+from algorithms.verdict import Verdict
+from algorithms.window import Box, Window
+
+
+@dataclass(frozen=True, eq=False)
+class ObservationDetail:
+    """Stage "observe": the encounter and the paper's window for the shift, eqs. (6)–(10)."""
+
+    encounter: Encounter
+    window: Window
+
+
+@dataclass(frozen=True, eq=False)
+class AugmentDetail:
+    """Stage "augment": both maps with their levels, eqs. (4), (5)."""
+
+    ref: AugmentedMap
+    mov: AugmentedMap
+
+
+@dataclass(frozen=True, eq=False)
+class HoughDetail:
+    """Stage "spectra": Hough spectra, their correlation and the ranked turns, eqs. (11), (12)."""
+
+    match: HoughMatch
+
+
+@dataclass(frozen=True, eq=False)
+class ShiftDetail:
+    """Stage "search": one turn tried, with its X and Y spectra, eqs. (13)–(16)."""
+
+    index: int  # which of the ranked turns, from 0
+    total: int
+    candidate: Candidate
+
+
+@dataclass(frozen=True, eq=False)
+class CandidatesDetail:
+    """End of stage "search": all candidates, best Γ first."""
+
+    candidates: tuple[Candidate, ...]
+    objective: Objective
+
+
+@dataclass(frozen=True, eq=False)
+class RefineDetail:
+    """Stage "refine": one snapshot of the optimiser at work on one candidate, eqs. (17)–(22)."""
+
+    candidate: int  # which of the candidates, from 0
+    total: int
+    box: Box
+    state: SearchState
+
+
+@dataclass(frozen=True, eq=False)
+class MergeResult:
+    """The answer, and all that is needed to report it; detail of the last step, stage "verdict".
+
+    T_ref_mov     : best transform found, also where the merge is refused
+    covariance    : (3, 3) of x, y, theta; metres and radians
+    value         : Γ(T_ref_mov), eq. (17)
+    rivals        : best transform of every candidate that was refined, best first, with its Γ
+    stopped       : why the optimiser ended on the winner
+    timings_s     : seconds per stage
+    """
+
+    T_ref_mov: Pose2
+    covariance: FloatArray
+    value: float
+    verdict: Verdict
+    fusion: Fusion
+    encounter: Encounter
+    rivals: tuple[tuple[Pose2, float], ...]
+    stopped: str
+    method: str
+    seed: int
+    proven_optimal: bool = False
+    timings_s: Mapping[str, float] = field(default_factory=dict)
+
+
+Detail = (
+    ObservationDetail
+    | AugmentDetail
+    | HoughDetail
+    | ShiftDetail
+    | CandidatesDetail
+    | RefineDetail
+    | Fusion
+    | MergeResult
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One thing a method has done.
+
+    stage   : "observe", "augment", "spectra", "search", "refine", "fuse" or "verdict"
+    detail  : what came out of it, for whoever draws or reports it
+    seconds : spent on it, without what the caller did between two steps
+    """
+
+    stage: str
+    detail: Detail
+    seconds: float
