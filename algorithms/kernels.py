@@ -1,0 +1,67 @@
+"""How inner loops are compiled, and how work is spread over cores: one place for both.
+
+Kernels release the GIL and never start threads of their own: numba's threading layers crash or
+deadlock when two Python threads (two browser tabs) enter them at once, a thread pool does not.
+Every item is worked on by one thread from beginning to end, so the answer does not depend on how
+many threads there are.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from typing import ParamSpec, TypeVar, cast
+
+from numba import njit
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def kernel(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile a loop in strict IEEE arithmetic; cached on disk, so that only the first use waits."""
+    return cast("Callable[P, R]", njit(nogil=True, cache=True)(function))
+
+
+def fast_kernel(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile a loop whose sums may be reordered and fused, which lets it use vector registers.
+
+    The order is fixed when it is compiled: one machine gives one answer. Without NaN in it: their
+    absence is what lets min and max become one instruction.
+    """
+    flags = {"reassoc", "contract", "nsz", "arcp", "nnan"}
+    return cast("Callable[P, R]", njit(nogil=True, cache=True, fastmath=flags)(function))
+
+
+@cache
+def cores() -> int:
+    """How many threads share the work: what this process may use."""
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # not on macOS and Windows
+        return os.cpu_count() or 1
+
+
+@cache
+def _pool() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(max_workers=cores(), thread_name_prefix="mapmeld-kernel")
+
+
+def spread(work: Callable[[int, int], None], n: int, at_least: int = 1) -> None:
+    """Call ``work(start, stop)`` so that the calls cover [0, n), on all cores.
+
+    at_least : items below which another thread does not pay
+    """
+    parts = max(1, min(cores(), n // max(1, at_least)))
+    if parts == 1:
+        work(0, n)
+        return
+    edges = [n * part // parts for part in range(parts + 1)]
+    futures = [
+        _pool().submit(work, start, stop) for start, stop in zip(edges[1:-1], edges[2:], strict=True)
+    ]
+    work(edges[0], edges[1])
+    for future in futures:
+        future.result()
