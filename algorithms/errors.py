@@ -26,3 +26,16 @@ class SettingError(MapMergeError):
 
 class TooLargeError(MapMergeError):
     """A map that would take more memory than the stated bound."""
+
+
+class OutputError(MapMergeError):
+    """A result that could not be written.
+
+    target : the file or folder as the user knows it
+    cause  : what went wrong
+    remedy : what to do about it
+    """
+
+    def __init__(self, target: object, cause: str, remedy: str) -> None:
+        self.target, self.cause, self.remedy = str(target), cause, remedy
+        super().__init__(f"{target}: {cause}; {remedy}")

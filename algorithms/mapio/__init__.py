@@ -1,0 +1,227 @@
+"""Map files of ROS map_server and Nav2: a YAML file and its image, to and from a GridMap.
+
+What Nav2's map_io loads, this loads to the same cells, and what this writes, Nav2 loads to the same
+cells. An image has its top row first and a GridMap its bottom row: the flip lives here alone.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from pathlib import Path, PurePath
+from typing import BinaryIO
+
+from algorithms.atomic import write_files
+from algorithms.errors import InputFileError, OutputError, SettingError
+from algorithms.gridmap import GridMap
+from algorithms.mapio import fields
+from algorithms.mapio.image import read_pixels
+from algorithms.mapio.shading import MODES, Shading, cells_of, greys_of
+from algorithms.pose import Pose2
+
+__all__ = [
+    "MapMeta",
+    "Shading",
+    "image_map_from_bytes",
+    "map_from_bytes",
+    "map_to_bytes",
+    "parse_meta",
+    "read_bytes",
+    "read_image",
+    "read_map",
+    "write_map",
+]
+
+YAML_SUFFIXES = (".yaml", ".yml")
+AT_ZERO = Pose2()
+USUAL = Shading()
+IMAGE_SUFFIXES = (
+    *(".pgm", ".ppm", ".pbm", ".pnm", ".png", ".bmp"),
+    *(".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".webp"),  # refused, but as images
+)
+
+
+@dataclass(frozen=True)
+class MapMeta:
+    """What a map's YAML file says.
+
+    image      : file name of the image, relative to the YAML file's folder, or absolute
+    resolution : metres per pixel
+    origin     : T_map_grid, pose of the image's lower-left corner in the map's frame
+    shading    : how grey becomes occupancy
+    """
+
+    image: str
+    resolution: float
+    origin: Pose2
+    shading: Shading
+
+
+def read_map(path: Path) -> GridMap:
+    """Read a map from disk.
+
+    path   : its YAML file; or its image, where a YAML file of the same stem lies beside it
+    raises : InputFileError, TooLargeError
+    """
+    path = Path(path)
+    if path.suffix.lower() in IMAGE_SUFFIXES:
+        yaml_path = _yaml_beside(path)
+        meta = parse_meta(str(yaml_path), read_bytes(yaml_path, "a map"))
+        return _read_image(path, meta, yaml_path.stem)
+    meta = parse_meta(str(path), read_bytes(path, "a map"))
+    image_path = path.parent / meta.image
+    if not image_path.is_file():
+        raise InputFileError(
+            path, f"its image {meta.image} is not there", "put it there, or correct the key image"
+        )
+    return _read_image(image_path, meta, path.stem)
+
+
+def read_image(
+    path: Path, resolution: float, origin: Pose2 = AT_ZERO, shading: Shading = USUAL
+) -> GridMap:
+    """Read a plain image as a map; what a YAML file would say is given by the caller.
+
+    resolution : metres per pixel
+    origin     : pose of the lower-left corner of the image in the map's frame
+    raises     : InputFileError, TooLargeError; SettingError where the resolution is not positive
+    """
+    path = Path(path)
+    return _read_image(path, MapMeta(path.name, resolution, origin, shading), path.stem)
+
+
+def map_from_bytes(
+    yaml_name: str, yaml_bytes: bytes, image_name: str, image_bytes: bytes
+) -> GridMap:
+    """A map from two uploads. The image is the one given: the key ``image`` never touches the disk.
+
+    raises : InputFileError, TooLargeError
+    """
+    meta = parse_meta(yaml_name, yaml_bytes)
+    return _to_map(image_name, io.BytesIO(image_bytes), meta, PurePath(yaml_name).stem)
+
+
+def image_map_from_bytes(
+    name: str,
+    data: bytes,
+    resolution: float,
+    origin: Pose2 = AT_ZERO,
+    shading: Shading = USUAL,
+) -> GridMap:
+    """``read_image`` for an upload."""
+    meta = MapMeta(name, resolution, origin, shading)
+    return _to_map(name, io.BytesIO(data), meta, PurePath(name).stem)
+
+
+def write_map(yaml_path: Path, grid: GridMap) -> None:
+    """Write a map: the YAML file, and a PGM of the same stem beside it, both whole or not at all.
+
+    raises : OutputError
+    """
+    yaml_path = Path(yaml_path)
+    if yaml_path.suffix.lower() not in YAML_SUFFIXES:
+        raise OutputError(yaml_path, "is no name of a YAML file", "let it end in .yaml")
+    files = map_to_bytes(grid, yaml_path.stem)
+    image, text = files.values()
+    # The image first: a YAML file that is there names an image that is there.
+    write_files({yaml_path.with_suffix(".pgm"): image, yaml_path: text})
+
+
+def map_to_bytes(grid: GridMap, stem: str) -> dict[str, bytes]:
+    """The files of a map by name: the image ``stem.pgm``, then ``stem.yaml``.
+
+    Equal maps give equal bytes. Every cell value −1 … 100, the resolution and the origin read back
+    as they are.
+    """
+    pixels, shading = greys_of(grid.cells)
+    image = f"P5\n{grid.width} {grid.height}\n255\n".encode() + pixels
+    name = f"{stem}.pgm"
+    number = fields.number_text
+    o = grid.origin
+    text = (
+        f"image: {fields.quoted(name)}\n"
+        f"mode: {shading.mode}\n"
+        f"resolution: {number(grid.resolution)}\n"
+        f"origin: [{number(o.x)}, {number(o.y)}, {number(o.theta)}]\n"
+        "negate: 0\n"
+        f"occupied_thresh: {number(shading.occupied_thresh)}\n"
+        f"free_thresh: {number(shading.free_thresh)}\n"
+    )
+    return {name: image, f"{stem}.yaml": text.encode()}
+
+
+def parse_meta(source: str, data: bytes) -> MapMeta:
+    """What a map's YAML file says; keys of others' are passed over, as Nav2 does.
+
+    source : name of the file as the user knows it
+    raises : InputFileError
+    """
+    f = fields.parse(source, data, "a map's YAML file")
+    image = f.text("image", "give the file name of the image")
+    resolution = f.number("resolution", "give metres per pixel, e.g. 0.05")
+    if resolution <= 0:
+        raise f.error("resolution", f"is {resolution:g} m", "give a positive number, e.g. 0.05")
+    x, y, yaw = f.numbers("origin", (3,), "give [x, y, yaw] of the lower-left pixel; m, m, rad")
+    negate = f.flag("negate", "give 0, or 1 where white is occupied")
+    occupied = f.number("occupied_thresh", "give a number in [0, 1], e.g. 0.65")
+    free = f.number("free_thresh", "give a number in [0, 1], e.g. 0.196")
+    mode = "trinary"
+    if "mode" in f.values:
+        mode = f.text("mode", f"give one of {', '.join(MODES)}, or leave it out").lower()
+    try:
+        shading = Shading(negate, occupied, free, mode)
+    except SettingError as error:
+        found, remedy = str(error).split("; ", 1)
+        raise InputFileError(source, found, remedy) from error
+    return MapMeta(image, resolution, Pose2(x, y, yaw), shading)
+
+
+def read_bytes(path: Path, what: str) -> bytes:
+    """The content of a small text file.
+
+    what   : what the file is about, for the remedy: "a map"
+    raises : InputFileError where it is not there, not readable or too long
+    """
+    try:
+        with path.open("rb") as stream:
+            return stream.read(fields.MAX_YAML_BYTES + 1)  # one more, so that the parser can tell
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+        raise _unreadable(path, error, f"give the YAML file of {what}") from error
+
+
+def _yaml_beside(image_path: Path) -> Path:
+    for suffix in YAML_SUFFIXES:
+        yaml_path = image_path.with_suffix(suffix)
+        if yaml_path.is_file():
+            return yaml_path
+    if not image_path.is_file():
+        raise InputFileError(image_path, "no such file", "check the path")
+    raise InputFileError(
+        image_path,
+        f"there is no {image_path.stem}.yaml beside it",
+        "give the map's YAML file, or the resolution of the image",
+    )
+
+
+def _read_image(path: Path, meta: MapMeta, name: str) -> GridMap:
+    try:
+        stream = path.open("rb")
+    except (OSError, ValueError) as error:
+        raise _unreadable(path, error, "check the path") from error
+    with stream:
+        return _to_map(str(path), stream, meta, name)
+
+
+def _to_map(source: str, stream: BinaryIO, meta: MapMeta, name: str) -> GridMap:
+    grey, alpha = read_pixels(source, stream)
+    cells = cells_of(grey, alpha, meta.shading)
+    return GridMap(cells, meta.resolution, meta.origin, name or "map")
+
+
+def _unreadable(path: Path, error: Exception, remedy: str) -> InputFileError:
+    if isinstance(error, FileNotFoundError):
+        return InputFileError(path, "no such file", remedy)
+    if isinstance(error, IsADirectoryError):
+        return InputFileError(path, "is a folder", remedy)
+    cause = getattr(error, "strerror", None) or str(error)
+    return InputFileError(path, f"cannot be read ({cause})", remedy)
