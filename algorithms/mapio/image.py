@@ -1,4 +1,4 @@
-"""Image files to grey pixels; judged by their content, and not decoded before their size is known."""
+"""Image files to grey pixels; judged by content, and not decoded before their size is known."""
 
 from __future__ import annotations
 
