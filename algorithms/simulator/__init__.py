@@ -1,0 +1,1 @@
+"""A simulator of robots that map buildings."""
