@@ -39,7 +39,7 @@ class Truth:
 
     T_ref_mov: Pose2 | None
     tolerance_m: float = 0.5
-    tolerance_rad: float = radians(3)  # noqa: RUF009  a number
+    tolerance_rad: float = radians(3)
     expected: Literal["merge", "refuse"] = "merge"
     overlap: float | None = None
     truth_rms: float | None = None
@@ -101,9 +101,7 @@ def observation_from_bytes(name: str, data: bytes) -> Observation:
         observed_y=where[1],
         observed_heading=where[2] if len(where) == 3 else None,
         range=distance,
-        bearing=m.number(
-            "bearing", "give the direction of robot 2 from robot 1's heading in radians"
-        ),
+        bearing=m.number("bearing", "give the direction of robot 2 from robot 1's heading in radians"),
         sigma_range=_positive(m, "sigma_range", "m", SIGMA_RANGE),
         sigma_bearing=_positive(m, "sigma_bearing", "rad", SIGMA_BEARING),
         bearing_back=_optional(m, "bearing_back", "give radians, or leave it out"),
@@ -131,9 +129,7 @@ def observation_to_bytes(observation: Observation) -> bytes:
         f"  sigma_bearing: {number_text(o.sigma_bearing)}  # rad",
     ]
     if o.bearing_back is not None:
-        lines.append(
-            f"  bearing_back: {number_text(o.bearing_back)}  # rad, robot 1 as robot 2 saw it"
-        )
+        lines.append(f"  bearing_back: {number_text(o.bearing_back)}  # rad, robot 1 as robot 2 saw it")
     return ("\n".join(lines) + "\n").encode()
 
 
@@ -187,9 +183,7 @@ def truth_to_bytes(truth: Truth) -> bytes:
     if truth.T_ref_mov is not None:
         T = truth.T_ref_mov
         lines.append(f"T_ref_mov: {{x: {n(T.x)}, y: {n(T.y)}, theta: {n(T.theta)}}}")
-    lines.append(
-        f"tolerance: {{distance: {n(truth.tolerance_m)}, angle: {n(truth.tolerance_rad)}}}"
-    )
+    lines.append(f"tolerance: {{distance: {n(truth.tolerance_m)}, angle: {n(truth.tolerance_rad)}}}")
     if truth.overlap is not None:
         lines.append(f"overlap: {n(truth.overlap)}")
     if truth.truth_rms is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -48,7 +48,7 @@ class GridMap:
 
     cells: CellArray
     resolution: float
-    origin: Pose2 = Pose2()
+    origin: Pose2 = field(default_factory=Pose2)
     name: str = "map"
 
     def __post_init__(self) -> None:

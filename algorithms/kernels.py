@@ -12,6 +12,7 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from itertools import pairwise
 from typing import ParamSpec, TypeVar, cast
 
 from numba import njit
@@ -59,9 +60,7 @@ def spread(work: Callable[[int, int], None], n: int, at_least: int = 1) -> None:
         work(0, n)
         return
     edges = [n * part // parts for part in range(parts + 1)]
-    futures = [
-        _pool().submit(work, start, stop) for start, stop in zip(edges[1:-1], edges[2:], strict=True)
-    ]
+    futures = [_pool().submit(work, start, stop) for start, stop in pairwise(edges[1:])]
     work(edges[0], edges[1])
     for future in futures:
         future.result()

@@ -73,15 +73,22 @@ class Objective:
         loop = _bilinear if self.lookup is Lookup.BILINEAR else _nearest
 
         def work(start: int, stop: int) -> None:
-            loop(flat, rows, cols, self._x, self._y, self._levels, motions[start:stop], values[start:stop])
+            loop(
+                flat,
+                rows,
+                cols,
+                self._x,
+                self._y,
+                self._levels,
+                motions[start:stop],
+                values[start:stop],
+            )
 
         spread(work, len(poses), at_least=1 + _LOOKUPS_WORTH_A_THREAD // (1 + len(self._x)))
         return values
 
 
-def make_objective(
-    ref: AugmentedMap, mov: AugmentedMap, lookup: Lookup = Lookup.BILINEAR
-) -> Objective:
+def make_objective(ref: AugmentedMap, mov: AugmentedMap, lookup: Lookup = Lookup.BILINEAR) -> Objective:
     """The objective of two augmented maps; they may differ in resolution, origin and size."""
     corner = np.zeros(2)
     table = np.zeros((2 * PAD + 1, 2 * PAD + 1), dtype=np.float32)

@@ -52,9 +52,7 @@ class Pose2:
     def inverse(self) -> Pose2:
         """T_mov_ref of T_ref_mov."""
         c, s = cos(self.theta), sin(self.theta)
-        return Pose2(
-            -(c * self.x + s * self.y), s * self.x - c * self.y, wrap_angle(-self.theta)
-        )
+        return Pose2(-(c * self.x + s * self.y), s * self.x - c * self.y, wrap_angle(-self.theta))
 
     def __matmul__(self, other: Pose2) -> Pose2:
         """Chain: T_a_b @ T_b_c is T_a_c."""

@@ -81,7 +81,7 @@ def match_turns(
         for twin in (0.0, pi) if candidates.twins else (0.0,):
             turns.append(wrap_angle(turn + twin))
             strengths.append(float(correlation[peak]))
-    angles = np.arange(len(correlation)) * (pi / len(correlation))
+    angles = np.arange(len(correlation), dtype=np.float64) * (pi / len(correlation))
     return HoughMatch(angles, first, second, correlation, tuple(turns), tuple(strengths))
 
 

@@ -89,7 +89,15 @@ def hough_transform(augmented: AugmentedMap, directions: int, rho_step: float) -
     cosines, sines = np.cos(theta), np.sin(theta)
 
     def work(start: int, stop: int) -> None:
-        _vote(x, y, augmented.levels, cosines[start:stop], sines[start:stop], middle, votes[start:stop])
+        _vote(
+            x,
+            y,
+            augmented.levels,
+            cosines[start:stop],
+            sines[start:stop],
+            middle,
+            votes[start:stop],
+        )
 
     spread(work, directions, at_least=1 + 200_000 // (1 + len(x)))
     return votes
@@ -123,7 +131,7 @@ def hough_spectrum(augmented: AugmentedMap, directions: int, rho_step: float) ->
     votes = hough_transform(augmented, directions, rho_step)
     energy = np.einsum("kr,kr->k", votes, votes)  # eq. (11)
     total = float(energy.sum())
-    return energy / total if total > 0 else energy
+    return np.asarray(energy / total if total > 0 else energy, dtype=np.float64)
 
 
 def correlate_turns(ref: FloatArray, mov: FloatArray) -> FloatArray:
@@ -158,9 +166,10 @@ def project(points: FloatArray, levels: FloatArray, step: float) -> tuple[FloatA
     first = int(below.min())
     share = at - below
     size = int(below.max()) - first + 2
-    sums = np.bincount(below - first, levels * (1 - share), size)
+    sums = np.zeros(size)
+    sums += np.bincount(below - first, levels * (1 - share), size)
     sums += np.bincount(below - first + 1, levels * share, size)
-    return sums, (first + np.arange(size)) * step
+    return sums, np.arange(first, first + size, dtype=np.float64) * step
 
 
 def match_shift(
@@ -194,11 +203,9 @@ def match_shift(
         if 0 < k < size - 1:
             shift += step * parabolic_offset(*correlation[k - 1 : k + 2].tolist())
         shift = min(high, max(low, shift))
-    return ShiftMatch(
-        ref_sums, mov_sums, ref_at, mov_at, shifts, correlation, low, high, shift
-    )
+    return ShiftMatch(ref_sums, mov_sums, ref_at, mov_at, shifts, correlation, low, high, shift)
 
 
 def turned(augmented: AugmentedMap, turn: float) -> FloatArray:
     """(N, 2) cells of T(0, 0, turn) M2, the turned map of section III-C; metres."""
-    return augmented.points @ rotation(turn).T
+    return np.asarray(augmented.points @ rotation(turn).T, dtype=np.float64)

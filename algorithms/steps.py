@@ -10,19 +10,18 @@ from algorithms.fuse import Fusion
 from algorithms.objective import Objective
 from algorithms.observation import Encounter
 from algorithms.pose import FloatArray, Pose2
+from algorithms.search import SearchState
 from algorithms.smm import Candidate
 from algorithms.spectra import HoughMatch
-from algorithms.swarm import SearchState
 from algorithms.verdict import Verdict
 from algorithms.window import Box, Window
 
 
 @dataclass(frozen=True, eq=False)
 class ObservationDetail:
-    """Stage "observe": the encounter and the paper's window for the shift, eqs. (6)–(10)."""
+    """Stage "observe": where the seen robot stood, in both frames."""
 
     encounter: Encounter
-    window: Window
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +40,13 @@ class HoughDetail:
 
 
 @dataclass(frozen=True, eq=False)
+class WindowDetail:
+    """Stage "search": the paper's window for the shift, eqs. (6)–(10)."""
+
+    window: Window
+
+
+@dataclass(frozen=True, eq=False)
 class ShiftDetail:
     """Stage "search": one turn tried, with its X and Y spectra, eqs. (13)–(16)."""
 
@@ -51,7 +57,7 @@ class ShiftDetail:
 
 @dataclass(frozen=True, eq=False)
 class CandidatesDetail:
-    """End of stage "search": all candidates, best Γ first."""
+    """End of stage "search": all candidates, each with the best Γ a first look found, best first."""
 
     candidates: tuple[Candidate, ...]
     objective: Objective
@@ -61,10 +67,26 @@ class CandidatesDetail:
 class RefineDetail:
     """Stage "refine": one snapshot of the optimiser at work on one candidate, eqs. (17)–(22)."""
 
-    candidate: int  # which of the candidates, from 0
-    total: int
+    index: int  # which of the ranked candidates, from 0
+    total: int  # how many of them are refined
     box: Box
     state: SearchState
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """One transform that the search ended on, with its Γ and why the search ended there."""
+
+    T_ref_mov: Pose2
+    value: float
+    stopped: str
+
+
+@dataclass(frozen=True, eq=False)
+class AnswersDetail:
+    """End of stage "refine": what became of every candidate, best Γ first."""
+
+    answers: tuple[Answer, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +96,7 @@ class MergeResult:
     T_ref_mov     : best transform found, also where the merge is refused
     covariance    : (3, 3) of x, y, theta; metres and radians
     value         : Γ(T_ref_mov), eq. (17)
-    rivals        : best transform of every candidate that was refined, best first, with its Γ
-    stopped       : why the optimiser ended on the winner
+    answers       : everything the search ended on, best first; the first is T_ref_mov
     timings_s     : seconds per stage
     """
 
@@ -85,8 +106,7 @@ class MergeResult:
     verdict: Verdict
     fusion: Fusion
     encounter: Encounter
-    rivals: tuple[tuple[Pose2, float], ...]
-    stopped: str
+    answers: tuple[Answer, ...]
     method: str
     seed: int
     proven_optimal: bool = False
@@ -97,9 +117,11 @@ Detail = (
     ObservationDetail
     | AugmentDetail
     | HoughDetail
+    | WindowDetail
     | ShiftDetail
     | CandidatesDetail
     | RefineDetail
+    | AnswersDetail
     | Fusion
     | MergeResult
 )
@@ -112,8 +134,10 @@ class Step:
     stage   : "observe", "augment", "spectra", "search", "refine", "fuse" or "verdict"
     detail  : what came out of it, for whoever draws or reports it
     seconds : spent on it, without what the caller did between two steps
+    reused  : whether it comes from an earlier run with the same settings (``seconds`` are that run's)
     """
 
     stage: str
     detail: Detail
     seconds: float
+    reused: bool = False

@@ -1,0 +1,80 @@
+"""Every way to merge two maps that mapmeld knows, in one table."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from algorithms import bilateral, pipeline
+from algorithms.chain import Memo
+from algorithms.gridmap import GridMap
+from algorithms.observation import Observation
+from algorithms.pipeline import PipelineConfig, RefineConfig
+from algorithms.smm import CandidateConfig
+from algorithms.steps import MergeResult, Step
+
+Run = Callable[..., Iterator[Step]]
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to merge: ``run(ref, mov, observation, config, seed, memo, method)`` yields its steps.
+
+    title    : what a person reads in a menu
+    defaults : its frozen config; panel and flags are made from it
+    """
+
+    run: Run
+    title: str
+    defaults: Any
+
+
+DEFAULT_METHOD = "spectra-swarm"
+
+METHODS: dict[str, Method] = {
+    "spectra-swarm": Method(pipeline.run, "Spectra, all candidates, particle swarm", PipelineConfig()),
+    "spectra-montecarlo": Method(
+        pipeline.run,
+        "Spectra, all candidates, Monte-Carlo",
+        PipelineConfig(refine=RefineConfig(optimiser="mco")),
+    ),
+    "paper-argmax": Method(
+        pipeline.run,
+        "The paper's bare argmax: one peak, no twin, particle swarm",
+        PipelineConfig(candidates=CandidateConfig(peaks=1, twins=False), refine=RefineConfig(candidates=1)),
+    ),
+    "bilateral": Method(
+        bilateral.run,
+        "Both robots saw each other: eqs. (2), (3) alone",
+        bilateral.BilateralConfig(),
+    ),
+}
+
+
+def run(
+    name: str,
+    ref: GridMap,
+    mov: GridMap,
+    observation: Observation,
+    config: Any = None,
+    seed: int = 0,
+    memo: Memo | None = None,
+) -> Iterator[Step]:
+    """Yield the steps of one method of the table, at its defaults unless ``config`` is given."""
+    method = METHODS[name]
+    return method.run(ref, mov, observation, method.defaults if config is None else config, seed, memo, name)
+
+
+def merge(
+    ref: GridMap,
+    mov: GridMap,
+    observation: Observation,
+    method: str = DEFAULT_METHOD,
+    config: Any = None,
+    seed: int = 0,
+) -> MergeResult:
+    """The end of ``run``: the transform, the merged map and the verdict on it."""
+    *_, last = run(method, ref, mov, observation, config, seed)
+    assert isinstance(last.detail, MergeResult)
+    return last.detail

@@ -1,0 +1,52 @@
+"""What every optimiser takes and yields: a value to maximise, a box, frozen snapshots."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from algorithms.pose import FloatArray, Pose2, wrap_angle
+from algorithms.window import Box
+
+Value = Callable[[FloatArray], FloatArray]  # (P, 3) poses -> (P,) values, the higher the better
+
+
+@dataclass(frozen=True, eq=False)
+class SearchState:
+    """One iteration of an optimiser; its arrays are copies.
+
+    poses, values         : (P, 3), (P,) of this iteration's particles or samples; x and y in metres,
+                            theta in radians, unwrapped inside the box
+    own_poses, own_values : (P, 3), (P,) best that each particle has met; for samples, themselves
+    best, best_value      : best met by anyone so far; never gets worse
+    stopped               : why the search ended; None while it goes on
+    """
+
+    iteration: int
+    poses: FloatArray
+    values: FloatArray
+    own_poses: FloatArray
+    own_values: FloatArray
+    best: Pose2
+    best_value: float
+    stopped: str | None = None
+
+
+Optimiser = Callable[..., Iterator[SearchState]]
+
+
+def keep_inside(poses: FloatArray, box: Box) -> FloatArray:
+    """Put poses that left the box back on its border; a box of a whole turn has none in theta."""
+    inside = np.clip(poses, box.low, box.high)
+    if box.high[2] - box.low[2] >= 2 * pi:
+        inside[:, 2] = box.low[2] + np.mod(poses[:, 2] - box.low[2], 2 * pi)
+    return inside
+
+
+def to_pose(array: FloatArray) -> Pose2:
+    """A row of ``poses`` as a Pose2, its angle wrapped."""
+    x, y, theta = array.tolist()
+    return Pose2(x, y, wrap_angle(theta))
