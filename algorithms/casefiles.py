@@ -1,4 +1,4 @@
-"""The files about a pair of maps: the observation, the truth of a test case, and a case's folder."""
+"""The files about a pair of maps: observation, truth of a test case, and the folder of a case."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ def observation_to_bytes(observation: Observation) -> bytes:
 def read_truth(path: Path) -> Truth:
     """Read a truth file; raises InputFileError.
 
-    Keys that resemble none of ours are passed over: people note more about their cases than we read.
+    Keys that resemble none of ours are passed over: people note more about a case than we read.
     """
     path = Path(path)
     f = fields.parse(str(path), read_bytes(path, "a truth"), "a truth's YAML file")

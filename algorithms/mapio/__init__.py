@@ -77,9 +77,7 @@ def read_map(path: Path) -> GridMap:
     return _read_image(image_path, meta, path.stem)
 
 
-def read_image(
-    path: Path, resolution: float, origin: Pose2 = AT_ZERO, shading: Shading = USUAL
-) -> GridMap:
+def read_image(path: Path, resolution: float, origin: Pose2 = AT_ZERO, shading: Shading = USUAL) -> GridMap:
     """Read a plain image as a map; what a YAML file would say is given by the caller.
 
     resolution : metres per pixel
@@ -90,9 +88,7 @@ def read_image(
     return _read_image(path, MapMeta(path.name, resolution, origin, shading), path.stem)
 
 
-def map_from_bytes(
-    yaml_name: str, yaml_bytes: bytes, image_name: str, image_bytes: bytes
-) -> GridMap:
+def map_from_bytes(yaml_name: str, yaml_bytes: bytes, image_name: str, image_bytes: bytes) -> GridMap:
     """A map from two uploads. The image is the one given: the key ``image`` never touches the disk.
 
     raises : InputFileError, TooLargeError

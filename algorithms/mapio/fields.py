@@ -189,5 +189,5 @@ def _cause(error: Exception) -> str:
         return "it is nested too deeply"
     if isinstance(error, yaml.MarkedYAMLError) and error.problem:
         mark = error.problem_mark
-        return error.problem + (f", line {mark.line + 1}" if mark else "")
-    return (str(error) or type(error).__name__).splitlines()[0]
+        return error.problem[:120] + (f", line {mark.line + 1}" if mark else "")
+    return (str(error) or type(error).__name__).splitlines()[0][:120]

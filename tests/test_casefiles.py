@@ -1,0 +1,266 @@
+"""Observation, truth and case folder: round trips, and every misspelling told by name."""
+
+from __future__ import annotations
+
+from math import radians
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from algorithms.casefiles import (
+    Truth,
+    case_folders,
+    observation_from_bytes,
+    observation_to_bytes,
+    read_case,
+    read_observation,
+    read_truth,
+    truth_to_bytes,
+    write_observation,
+)
+from algorithms.errors import InputFileError, SettingError
+from algorithms.gridmap import GridMap
+from algorithms.mapio import write_map
+from algorithms.observation import SIGMA_BEARING, SIGMA_RANGE, Observation
+from algorithms.pose import Pose2
+
+finite = st.floats(allow_nan=False, allow_infinity=False)
+positive = st.floats(min_value=0, exclude_min=True, allow_nan=False, allow_infinity=False)
+maybe = st.one_of(st.none(), finite)
+poses = st.builds(Pose2, finite, finite, finite)
+observations = st.builds(
+    Observation,
+    observer=poses,
+    observed_x=finite,
+    observed_y=finite,
+    range=st.floats(min_value=0, allow_infinity=False),
+    bearing=finite,
+    observed_heading=maybe,
+    sigma_range=positive,
+    sigma_bearing=positive,
+    bearing_back=maybe,
+)
+texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=30).map(str.strip)
+truths = st.builds(
+    Truth,
+    T_ref_mov=poses,
+    tolerance_m=positive,
+    tolerance_rad=positive,
+    expected=st.sampled_from(["merge", "refuse"]),
+    overlap=maybe,
+    truth_rms=maybe,
+    source=texts,
+    licence=texts,
+)
+
+OBSERVATION = """\
+observer: {pose: [1.0, 2.0, 3.0]}
+observed: {pose: [4.0, 5.0, 6.0]}
+measurement:
+  range: 2.5
+  bearing: -0.5
+  sigma_range: 0.1
+  sigma_bearing: 0.2
+  bearing_back: 1.2
+"""
+
+
+def changed(old: str, new: str) -> bytes:
+    assert old in OBSERVATION
+    return OBSERVATION.replace(old, new).encode()
+
+
+# --- observation ---
+
+
+@given(observation=observations)
+def test_an_observation_reads_back_the_same(observation):
+    assert observation_from_bytes("o.yaml", observation_to_bytes(observation)) == observation
+
+
+def test_an_observation_on_disk_reads_back_the_same(tmp_path):
+    observation = Observation(Pose2(1, 2, 3), 4, 5, range=2.5, bearing=-0.5)
+    write_observation(tmp_path / "new" / "o.yaml", observation)
+    assert read_observation(tmp_path / "new" / "o.yaml") == observation
+
+
+def test_every_key_of_an_observation_counts():
+    assert observation_from_bytes("o.yaml", OBSERVATION.encode()) == Observation(
+        observer=Pose2(1, 2, 3),
+        observed_x=4,
+        observed_y=5,
+        observed_heading=6,
+        range=2.5,
+        bearing=-0.5,
+        sigma_range=0.1,
+        sigma_bearing=0.2,
+        bearing_back=1.2,
+    )
+
+
+def test_what_may_be_left_out_has_its_default():
+    text = b"observer: {pose: [1, 2, 3]}\nobserved: {pose: [4, 5]}\n"
+    o = observation_from_bytes("o.yaml", text + b"measurement: {range: 1e0, bearing: 0}\n")
+    assert (o.sigma_range, o.sigma_bearing) == (SIGMA_RANGE, SIGMA_BEARING)
+    assert o.observed_heading is None
+    assert o.bearing_back is None
+
+
+BAD_OBSERVATION = {
+    "empty": (b"", "is empty"),
+    "not YAML": (b"observer: {pose: [1, 2", "not YAML"),
+    "a list": (b"- 1\n", "holds no keys"),
+    "no observer": (changed("observer: {pose: [1.0, 2.0, 3.0]}\n", ""), "observer is missing"),
+    "no observed": (changed("observed: {pose: [4.0, 5.0, 6.0]}\n", ""), "observed is missing"),
+    "no measurement": (OBSERVATION.split("measurement")[0].encode(), "measurement is missing"),
+    "no observer pose": (changed("{pose: [1.0, 2.0, 3.0]}", "{}"), "observer.pose is missing"),
+    "no range": (changed("  range: 2.5\n", ""), "measurement.range is missing"),
+    "no bearing": (changed("  bearing: -0.5\n", ""), "measurement.bearing is missing"),
+    "observer without yaw": (changed("[1.0, 2.0, 3.0]", "[1, 2]"), "observer.pose is [1, 2]"),
+    "observed with one": (changed("[4.0, 5.0, 6.0]", "[4]"), "observed.pose is [4], not 2 or 3"),
+    "observer a list": (changed("{pose: [1.0, 2.0, 3.0]}", "[1, 2, 3]"), "observer is"),
+    "a word in a pose": (changed("[1.0, 2.0, 3.0]", "[1, two, 3]"), "[1, two, 3]"),
+    "NaN in a pose": (changed("[1.0, 2.0, 3.0]", "[1, .nan, 3]"), "observer.pose"),
+    "range negative": (changed("2.5", "-2.5"), "measurement.range is -2.5 m"),
+    "range infinite": (changed("2.5", ".inf"), "measurement.range is '.inf'"),
+    "range a word": (changed("2.5", "near"), "measurement.range is 'near'"),
+    "range empty": (changed("2.5", ""), "measurement.range is empty"),
+    "sigma zero": (changed("0.1", "0"), "measurement.sigma_range is 0 m"),
+    "sigma negative": (changed("0.2", "-0.2"), "measurement.sigma_bearing is -0.2 rad"),
+    "bearing_back a word": (changed("1.2", "left"), "measurement.bearing_back is 'left'"),
+    "misspelt": (changed("sigma_bearing", "sigma_bearnig"), "did you mean sigma_bearing?"),
+    "capitals": (changed("observer", "Observer"), "did you mean observer?"),
+    "pose misspelt": (changed("observed: {pose", "observed: {poes"), "did you mean pose?"),
+    "a key of its own": (OBSERVATION.encode() + b"comment: hi\n", "comment is not a known key"),
+    "twice": (OBSERVATION.encode() + b"  range: 3\n", "range stands there twice"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_OBSERVATION)
+def test_a_bad_observation_is_refused_in_words(case):
+    data, words = BAD_OBSERVATION[case]
+    with pytest.raises(InputFileError) as caught:
+        observation_from_bytes("o.yaml", data)
+    message = str(caught.value)
+    assert message.startswith("o.yaml: ")
+    assert words in message
+    assert len(message.splitlines()) == 1
+    assert caught.value.remedy
+
+
+def test_an_unknown_key_is_answered_with_the_known_ones():
+    with pytest.raises(InputFileError, match="known are observer, observed, measurement"):
+        observation_from_bytes("o.yaml", OBSERVATION.encode() + b"zzz: hi\n")
+
+
+@given(data=st.binary(max_size=200))
+def test_any_bytes_for_an_observation_are_refused_and_nothing_else(data):
+    with pytest.raises(InputFileError):
+        observation_from_bytes("o.yaml", data)
+
+
+# --- truth ---
+
+
+def truth_of(folder: Path, data: bytes) -> Truth:
+    path = folder / "truth.yaml"
+    path.write_bytes(data)
+    return read_truth(path)
+
+
+@given(truth=truths)
+def test_a_truth_reads_back_the_same(truth, tmp_path_factory):
+    assert truth_of(tmp_path_factory.getbasetemp(), truth_to_bytes(truth)) == truth
+
+
+def test_a_truth_may_say_little(tmp_path):
+    truth = truth_of(tmp_path, b"T_ref_mov: {x: 1, y: 2, theta: 3}\n")
+    assert truth == Truth(Pose2(1, 2, 3), 0.5, radians(3), "merge")
+
+
+def test_maps_that_share_no_place_have_no_transform(tmp_path):
+    truth = truth_of(tmp_path, b"expected: refuse\nnoted_by: a person\n")
+    assert truth.T_ref_mov is None
+    assert truth.expected == "refuse"
+    assert truth_of(tmp_path, truth_to_bytes(truth)) == truth
+
+
+def test_a_truth_that_expects_a_merge_has_a_transform():
+    with pytest.raises(SettingError, match="T_ref_mov"):
+        Truth(None)
+
+
+BAD_TRUTH = {
+    "empty": (b"", "is empty"),
+    "no transform": (b"expected: merge\n", "T_ref_mov is missing"),
+    "no theta": (b"T_ref_mov: {x: 1, y: 2}\n", "T_ref_mov.theta is missing"),
+    "theta misspelt": (b"T_ref_mov: {x: 1, y: 2, thet: 3}\n", "did you mean theta?"),
+    "expectation unknown": (b"expected: hope\n", "expected is 'hope'"),
+    "misspelt": (b"expected: refuse\ntolerence: {distance: 1}\n", "did you mean tolerance?"),
+    "tolerance negative": (b"expected: refuse\ntolerance: {distance: -1}\n", "tolerance.distance"),
+    "tolerance a number": (b"expected: refuse\ntolerance: 1\n", "tolerance is '1'"),
+    "overlap a word": (b"expected: refuse\noverlap: much\n", "overlap is 'much'"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_TRUTH)
+def test_a_bad_truth_is_refused_in_words(tmp_path, case):
+    data, words = BAD_TRUTH[case]
+    with pytest.raises(InputFileError) as caught:
+        truth_of(tmp_path, data)
+    assert words in str(caught.value)
+
+
+# --- case ---
+
+
+def make_case(folder: Path, truth: bool = True) -> None:
+    for i, name in enumerate(("map1.yaml", "map2.yaml")):
+        write_map(folder / name, GridMap(np.full((2, 3), 100 * i, dtype=np.int8), 0.05))
+    o = Observation(Pose2(1, 2, 3), 4, 5, range=2.5, bearing=-0.5)
+    write_observation(folder / "observation.yaml", o)
+    if truth:
+        (folder / "truth.yaml").write_bytes(truth_to_bytes(Truth(Pose2(1, 2, 3))))
+
+
+def test_a_case_is_its_two_maps_the_sighting_and_the_truth(tmp_path):
+    make_case(tmp_path / "home_1")
+    case = read_case(tmp_path / "home_1")
+    assert case.name == "home_1"
+    assert case.ref.cells.tolist() == [[0] * 3] * 2
+    assert case.mov.cells.tolist() == [[100] * 3] * 2
+    assert (case.observation.range, case.observation_file) == (2.5, "observation.yaml")
+    assert case.truth == Truth(Pose2(1, 2, 3))
+
+
+def test_a_case_may_have_no_truth(tmp_path):
+    make_case(tmp_path, truth=False)
+    assert read_case(tmp_path).truth is None
+
+
+def test_the_rough_observation_is_read_where_asked_for(tmp_path):
+    make_case(tmp_path)
+    with pytest.raises(InputFileError, match=r"observation_rough\.yaml: no such file"):
+        read_case(tmp_path, rough=True)
+    rough = Observation(Pose2(1, 2, 3), 4, 5, range=2.9, bearing=-0.4)
+    write_observation(tmp_path / "observation_rough.yaml", rough)
+    case = read_case(tmp_path, rough=True)
+    assert (case.observation, case.observation_file) == (rough, "observation_rough.yaml")
+
+
+def test_the_cases_under_a_folder_are_found_in_order(tmp_path):
+    for name in ("b", "a", "deep/c"):
+        make_case(tmp_path / name)
+    (tmp_path / "empty").mkdir()
+    assert case_folders(tmp_path) == [tmp_path / name for name in ("a", "b", "deep/c")]
+    assert case_folders(tmp_path / "a") == [tmp_path / "a"]
+
+
+def test_a_folder_without_cases_is_refused(tmp_path):
+    with pytest.raises(InputFileError, match=r"map1\.yaml"):
+        case_folders(tmp_path)
+    with pytest.raises(InputFileError, match="not a folder"):
+        case_folders(tmp_path / "none")
