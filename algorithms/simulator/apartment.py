@@ -38,13 +38,13 @@ def _door_in(canvas: Canvas, rng: np.random.Generator, wall: Wall) -> None:
         a = uniform(rng, low + 0.3, high - 0.3 - DOOR)
         before, after = level - INNER, level + INNER
         if upright:
-            free = canvas.is_empty(
-                before - 0.8, a - 0.15, before, a + DOOR + 0.15
-            ) and canvas.is_empty(after, a - 0.15, after + 0.8, a + DOOR + 0.15)
+            free = canvas.is_empty(before - 0.8, a - 0.15, before, a + DOOR + 0.15) and canvas.is_empty(
+                after, a - 0.15, after + 0.8, a + DOOR + 0.15
+            )
         else:
-            free = canvas.is_empty(
-                a - 0.15, before - 0.8, a + DOOR + 0.15, before
-            ) and canvas.is_empty(a - 0.15, after, a + DOOR + 0.15, after + 0.8)
+            free = canvas.is_empty(a - 0.15, before - 0.8, a + DOOR + 0.15, before) and canvas.is_empty(
+                a - 0.15, after, a + DOOR + 0.15, after + 0.8
+            )
         if free:
             side = pick(rng, (-1, 1))
             x, y = (level, a) if upright else (a, level)
@@ -65,11 +65,7 @@ def apartment(rng: np.random.Generator, resolution: float = 0.025) -> Building:
     for upright, level, low, high in walls:
         half = INNER / 2
         canvas.box(
-            *(
-                (level - half, low, level + half, high)
-                if upright
-                else (low, level - half, high, level + half)
-            )
+            *((level - half, low, level + half, high) if upright else (low, level - half, high, level + half))
         )
     for wall in walls:
         _door_in(canvas, rng, wall)

@@ -47,9 +47,7 @@ class Canvas:
 
     def __init__(self, width: float, height: float, resolution: float) -> None:
         self.resolution = resolution
-        self.cells: Surface = np.zeros(
-            (ceil(height / resolution), ceil(width / resolution)), np.uint8
-        )
+        self.cells: Surface = np.zeros((ceil(height / resolution), ceil(width / resolution)), np.uint8)
         self.stops: list[tuple[float, float]] = []
         self._kept: list[Box] = []
 
@@ -81,9 +79,7 @@ class Canvas:
         self.box(x0 - t, y0 - t, x0 + t, y1 + t)
         self.box(x1 - t, y0 - t, x1 + t, y1 + t)
 
-    def line(
-        self, x0: float, y0: float, x1: float, y1: float, thick: float, what: int = WALL
-    ) -> None:
+    def line(self, x0: float, y0: float, x1: float, y1: float, thick: float, what: int = WALL) -> None:
         """A straight wall in any direction, with round ends."""
         t = max(thick, 2 * self.resolution) / 2
         window = self._window(min(x0, x1) - t, min(y0, y1) - t, max(x0, x1) + t, max(y0, y1) + t)

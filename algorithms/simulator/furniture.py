@@ -76,9 +76,7 @@ def _along_a_wall(
         x = uniform(rng, x0 + gap, x1 - gap - wide)
         y = uniform(rng, y0 + gap, y1 - gap - deep)
         x, y = (
-            (x, (y0 + gap, y1 - gap - deep)[side])
-            if side < 2
-            else ((x0 + gap, x1 - gap - wide)[side - 2], y)
+            (x, (y0 + gap, y1 - gap - deep)[side]) if side < 2 else ((x0 + gap, x1 - gap - wide)[side - 2], y)
         )
         if canvas.is_clear(x + 0.02, y + 0.02, x + wide - 0.02, y + deep - 0.02):
             return x, y, x + wide, y + deep
@@ -97,9 +95,7 @@ def _in_the_room(
             uniform(rng, x0 + aisle, x1 - aisle - wide),
             uniform(rng, y0 + aisle, y1 - aisle - deep),
         )
-        if canvas.is_clear(
-            x - aisle / 2, y - aisle / 2, x + wide + aisle / 2, y + deep + aisle / 2
-        ):
+        if canvas.is_clear(x - aisle / 2, y - aisle / 2, x + wide + aisle / 2, y + deep + aisle / 2):
             return x, y, x + wide, y + deep
     return None
 

@@ -13,9 +13,7 @@ BAY = 2.7  # metres between the posts of a rack
 POST = 0.1
 
 
-def _rack(
-    canvas: Canvas, rng: np.random.Generator, x: float, y: float, bays: int, depth: float
-) -> None:
+def _rack(canvas: Canvas, rng: np.random.Generator, x: float, y: float, bays: int, depth: float) -> None:
     """A pallet rack standing upright from (x, y): posts at every bay, pallets between them."""
     for bay in range(bays + 1):
         for side in (x, x + depth - POST):
@@ -123,15 +121,9 @@ def corridor(rng: np.random.Generator, resolution: float = 0.025) -> Building:
     canvas.box(left + OUTER, low, right - OUTER, high, AIR)
     for x in (left, right - lobby):
         canvas.outline(x, middle - lobby / 2 - 0.8, x + lobby, middle + lobby / 2 + 0.8, OUTER)
-        canvas.box(
-            x + 0.2, middle - lobby / 2 - 0.6, x + lobby - 0.2, middle + lobby / 2 + 0.6, AIR
-        )
-        canvas.box(
-            x - 0.3 if x > left else x + 1, low, x + lobby + 0.3 if x == left else x + 1, high, AIR
-        )
-        canvas.ring(
-            x + lobby / 2, middle + 1.6, 0.0, 0.3
-        )  # one pillar each, not turned with the rest
+        canvas.box(x + 0.2, middle - lobby / 2 - 0.6, x + lobby - 0.2, middle + lobby / 2 + 0.6, AIR)
+        canvas.box(x - 0.3 if x > left else x + 1, low, x + lobby + 0.3 if x == left else x + 1, high, AIR)
+        canvas.ring(x + lobby / 2, middle + 1.6, 0.0, 0.3)  # one pillar each, not turned with the rest
         canvas.stops.append((x + lobby / 2, middle - 1.0))
         furnish(
             canvas,

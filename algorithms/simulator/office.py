@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from algorithms.simulator.canvas import AIR, DARK, Box, Building, Canvas
@@ -12,9 +14,7 @@ MARGIN = 0.6  # metres of open ground around a building
 INNER, OUTER = 0.12, 0.35  # metres; thickness of walls
 
 
-def split(
-    rng: np.random.Generator, low: float, high: float, least: float, most: float
-) -> list[float]:
+def split(rng: np.random.Generator, low: float, high: float, least: float, most: float) -> list[float]:
     """Cut an interval into pieces of random lengths; returns the cuts with both ends; metres."""
     cuts = [low]
     while high - cuts[-1] > most:
@@ -27,9 +27,7 @@ def split(
     return [*cuts, high]
 
 
-def windows(
-    canvas: Canvas, rng: np.random.Generator, x0: float, y0: float, x1: float, y1: float
-) -> None:
+def windows(canvas: Canvas, rng: np.random.Generator, x0: float, y0: float, x1: float, y1: float) -> None:
     """Glaze stretches of the four outer walls of a box: beams are stopped, few come back."""
     half = OUTER / 2
     for low, high, level in ((x0, x1, y0), (x0, x1, y1)):
@@ -98,9 +96,7 @@ def _corridor(canvas: Canvas, rng: np.random.Generator, room: Box) -> None:
             boxes(canvas, rng, room)
 
 
-def floor(
-    rng: np.random.Generator, width: float, height: float, resolution: float, name: str
-) -> Building:
+def floor(rng: np.random.Generator, width: float, height: float, resolution: float, name: str) -> Building:
     """An office floor of the given size; metres.
 
     Bands of rooms, corridor, rooms are stacked upwards; corridors across join them.
@@ -108,10 +104,7 @@ def floor(
     canvas = Canvas(width + 2 * MARGIN, height + 2 * MARGIN, resolution)
     left, bottom, right, top = MARGIN, MARGIN, MARGIN + width, MARGIN + height
     units = max(1, round(height / 12.5))
-    depths = [
-        (uniform(rng, 3.6, 6.0), uniform(rng, 1.7, 2.4), uniform(rng, 3.6, 6.0))
-        for _ in range(units)
-    ]
+    depths = [(uniform(rng, 3.6, 6.0), uniform(rng, 1.7, 2.4), uniform(rng, 3.6, 6.0)) for _ in range(units)]
     spare = (height - sum(c for _, c, _ in depths)) / sum(a + b for a, _, b in depths)
     across = [left]
     for cut in split(rng, left, right, 11.0, 19.0)[1:-1]:
@@ -125,7 +118,7 @@ def floor(
         for x0, x1 in zip(across[::2], across[1::2], strict=True):
             for low, high, up in ((y, below, True), (above, end, False)):
                 cuts = split(rng, x0, x1, 2.8, 6.5)
-                for a, b in zip(cuts, cuts[1:], strict=False):
+                for a, b in itertools.pairwise(cuts):
                     _room(canvas, rng, (a, low, b, high), corridor_above=up)
         _corridor(canvas, rng, (left, below, right, above))
         y = end

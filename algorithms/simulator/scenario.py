@@ -1,0 +1,256 @@
+"""Three robots map one building and meet in turn: two pairs of maps with their ground truth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from algorithms.gridmap import GridMap
+from algorithms.observation import Observation
+from algorithms.pose import FloatArray, Pose2
+from algorithms.simulator.buildings import build
+from algorithms.simulator.canvas import Building
+from algorithms.simulator.dice import chance, stream, uniform
+from algorithms.simulator.driving import Planner
+from algorithms.simulator.meeting import (
+    ROUGH_BEARING,
+    ROUGH_RANGE,
+    Meeting,
+    find_meeting,
+    fit,
+    in_belief,
+    measured_overlap,
+    observe,
+)
+from algorithms.simulator.robot import Robot, drive, make_body
+from algorithms.simulator.tours import Surveyor
+
+LEAST, MOST = 0.05, 0.6  # overlaps that are drawn where none is asked for
+TOLERANCE = 0.02  # an overlap this near to the one asked for is good enough
+ROUNDS = 6  # of choosing tours anew where the measured overlap is off
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """Two maps, one sighting, and the truth: all that a case folder holds.
+
+    ref, mov    : maps of observer and observed robot, each in its own frame
+    observation : the sighting; ``rough`` is the same one measured badly (0.3 m, 6°)
+    T_ref_mov   : truth, a least-squares fit over the walls both saw; None where the two maps are
+                  not of one place and the merge is to be refused
+    overlap     : share of the smaller map's occupied cells that the other has too, 0 … 1
+    truth_rms   : what the fit leaves, because each map is bent in its own way; metres
+    source      : which building of which seed
+    """
+
+    name: str
+    ref: GridMap
+    mov: GridMap
+    observation: Observation
+    rough: Observation
+    T_ref_mov: Pose2 | None
+    overlap: float
+    truth_rms: float
+    source: str
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """An observer, the robot it observed, and how their frames lie.
+
+    meeting   : the scans at which they saw one another
+    T_ref_mov, truth_rms, overlap : as in ``Case``
+    """
+
+    observer: Robot
+    observed: Robot
+    meeting: Meeting
+    T_ref_mov: Pose2
+    truth_rms: float
+    overlap: float
+
+
+@dataclass(frozen=True, eq=False)
+class Scenario:
+    """A building, the robots R1, R2, R3 in it, and what they saw of one another.
+
+    pairs, cases : R2 → R1 and R3 → R2 (observer → observed)
+    """
+
+    building: Building
+    robots: tuple[Robot, ...]
+    pairs: tuple[Pair, ...]
+    cases: tuple[Case, ...]
+
+
+def simulate(
+    kind: str,
+    seed: int,
+    overlap: float | tuple[float, float] | None = None,
+    *,
+    resolutions: tuple[float, float, float] | None = None,
+    both_ways: bool | None = None,
+    reach: float | None = None,
+    sizes: tuple[int, int] | None = None,
+) -> Scenario:
+    """Simulate three robots in a building: R2 sees R1, R3 sees R2.
+
+    Parameters
+    ----------
+    kind : a key of ``BUILDINGS``: "office", "apartment", "warehouse" or "corridor".
+    seed : any integer >= 0. One seed, one scenario, bit for bit on every machine; seeds differ in
+        building, drives, frames and noise.
+    overlap : share of the smaller map's occupied cells that the other map has within 0.1 m, 0 … 1,
+        of R2 → R1 and R3 → R2. Aimed at, not promised: ``Case.overlap`` holds what was measured.
+        Without it, drawn from 0.05 … 0.6.
+    resolutions : metres per cell of the maps of R1, R2, R3. Without it mostly 0.05, sometimes 0.04
+        or 0.06.
+    both_ways : whether the observed robots measured a bearing back (``Observation.bearing_back``).
+        Without it one scenario in four has it.
+    reach : range of the lidars in metres. Without it drawn from 6 … 9.
+    sizes : fewest and most stops of a tour. Without it, by the building.
+
+    Returns
+    -------
+    Scenario
+        ``cases`` (R2 → R1, R3 → R2) are named ``kind_r2_r1`` and ``kind_r3_r2``. Each robot's frame
+        is turned by any angle against the building and lies up to tens of metres off.
+
+    Notes
+    -----
+    The world frame is the building's: metres, x right, y up, origin at the lower-left corner of its
+    raster. No robot's frame coincides with it.
+    """
+    rng = stream(seed, kind, "scenario")
+    drawn = uniform(rng, LEAST, MOST), uniform(rng, LEAST, MOST)
+    reach = reach or uniform(rng, 6.0, 9.0)
+    back = chance(stream(seed, kind, "both ways"), 0.25) if both_ways is None else both_ways
+    asked = overlap if isinstance(overlap, tuple) else (overlap, overlap)
+    aim_1, aim_2 = (d if a is None else a for a, d in zip(asked, drawn, strict=True))
+    b1, b2, b3 = (
+        make_body(f"R{n + 1}", seed, kind, reach, resolutions[n] if resolutions else None) for n in range(3)
+    )
+    building = build(kind, seed)
+    planner = Planner(building)
+    surveyor = Surveyor(building, planner, reach)
+    stops = len(planner.stops)
+    fewest, most = sizes or (max(3, stops // 7), max(5, stops * 2 // 5))
+
+    def two_robots(aim: float, rng: np.random.Generator) -> tuple[Robot, Robot]:
+        tours = surveyor.pair(rng, aim, (fewest, most))
+        r2, r1 = (drive(building, planner, t, b) for t, b in zip(tours, (b2, b1), strict=True))
+        return r2, r1
+
+    pair_1 = _nearest_pair(building, planner, two_robots, aim_1, stream(seed, kind, "R2 and R1"))
+    r2 = pair_1.observer
+
+    def third_robot(aim: float, rng: np.random.Generator) -> tuple[Robot, Robot]:
+        tour = surveyor.partner(rng, r2.tour, aim, (fewest, most))
+        return drive(building, planner, tour, b3), r2
+
+    pair_2 = _nearest_pair(building, planner, third_robot, aim_2, stream(seed, kind, "R3 and R2"))
+    source = f"mapmeld simulator, {kind} seed {seed}"
+    pairs = (pair_1, pair_2)
+    cases = tuple(
+        _case(pair, kind, source, stream(seed, kind, f"case {n}"), back) for n, pair in enumerate(pairs)
+    )
+    return Scenario(building, (pair_1.observed, r2, pair_2.observer), pairs, cases)
+
+
+def _nearest_pair(
+    building: Building,
+    planner: Planner,
+    propose: Callable[[float, np.random.Generator], tuple[Robot, Robot]],
+    target: float,
+    rng: np.random.Generator,
+) -> Pair:
+    """Let robots drive until their maps overlap as asked; the nearest of a few rounds.
+
+    The overlap of tours is only a forecast of the overlap of maps, so what it missed by is taken
+    off the next aim.
+    """
+    best, aim = None, target
+    for round_ in range(4 * ROUNDS):
+        if best is not None and (round_ >= ROUNDS or abs(best.overlap - target) <= TOLERANCE):
+            break
+        pair = pair_up(building, planner, *propose(aim, rng))
+        if pair is None:
+            continue
+        if best is None or abs(pair.overlap - target) < abs(best.overlap - target):
+            best = pair
+        aim = min(0.95, max(0.01, aim - 0.7 * (pair.overlap - target)))
+    if best is None:
+        raise RuntimeError(f"no two drives meet in this {building.name}")
+    return best
+
+
+def pair_up(building: Building, planner: Planner, observer: Robot, observed: Robot) -> Pair | None:
+    """Let two robots meet and find how their frames truly lie; None where they never do."""
+    walls = _walls(planner, observer, observed)
+    if len(walls) < 10:
+        return None
+    meeting = find_meeting(building, observer.true, observed.true, walls)
+    if meeting is None:
+        return None
+    T_ref_mov, rms = fit(
+        in_belief(observer.true, observer.believed, walls),
+        in_belief(observed.true, observed.believed, walls),
+    )
+    overlap = measured_overlap(observer.grid, observed.grid, T_ref_mov)
+    return Pair(observer, observed, meeting, T_ref_mov, round(rms, 4), round(overlap, 3))
+
+
+def _walls(planner: Planner, a: Robot, b: Robot) -> FloatArray:
+    """(M, 2) wall nodes both robots had in view; metres, world frame."""
+    return (np.argwhere(a.tour.seen & b.tour.seen)[:, ::-1] + 0.5) * planner.node
+
+
+def _case(pair: Pair, kind: str, source: str, rng: np.random.Generator, both_ways: bool) -> Case:
+    a, b = pair.observer, pair.observed
+    true, believed = (a.true, b.true), (a.believed, b.believed)
+    rough = (ROUGH_RANGE, ROUGH_BEARING)
+    return Case(
+        name=f"{kind}_{a.body.name}_{b.body.name}".lower(),
+        ref=a.grid,
+        mov=b.grid,
+        observation=observe(true, believed, pair.meeting, rng, both_ways=both_ways),
+        rough=observe(true, believed, pair.meeting, rng, rough, both_ways),
+        T_ref_mov=pair.T_ref_mov,
+        overlap=pair.overlap,
+        truth_rms=pair.truth_rms,
+        source=source,
+    )
+
+
+def mismatch(a: Case, b: Case) -> Case:
+    """A wrong pairing: the observer of one case and the observed robot of another building's.
+
+    The sighting is forged from both halves; the only right answer is to refuse.
+    """
+    return Case(
+        name=f"wrong_{a.name}_{b.name}",
+        ref=a.ref,
+        mov=b.mov,
+        observation=_forged(a.observation, b.observation),
+        rough=_forged(a.rough, b.rough),
+        T_ref_mov=None,
+        overlap=0.0,
+        truth_rms=0.0,
+        source=f"{a.source}; {b.source}",
+    )
+
+
+def _forged(a: Observation, b: Observation) -> Observation:
+    return Observation(
+        observer=a.observer,
+        observed_x=b.observed_x,
+        observed_y=b.observed_y,
+        observed_heading=b.observed_heading,
+        range=a.range,
+        bearing=a.bearing,
+        sigma_range=a.sigma_range,
+        sigma_bearing=a.sigma_bearing,
+        bearing_back=b.bearing_back,
+    )
