@@ -236,6 +236,9 @@ THRESHOLD_RULE = [
     (0, 0.0, 1.0, 254, -1),
     (0, 0.0, 1.0, 1, -1),
     (0, 0.0, 1.0, 0, 100),
+    # 153/255 = 0.6 lies just above 0.6 in float32, so 1 − it lies below 0.4; not so in float64.
+    (0, 0.196, 0.4, 153, -1),
+    (0, 0.196, 0.4, 152, 100),
 ]
 
 
@@ -260,6 +263,16 @@ def test_a_palette_image_counts_by_its_colours_and_its_transparency():
     assert cells(encoded(image, "PNG")) == [[100, 0, 100]]
     assert cells(encoded(image, "PNG", transparency=bytes([255, 255, 0]))) == [[100, 0, -1]]
     assert cells(encoded(image, "BMP")) == [[100, 0, 100]]
+
+
+@given(colours=st.lists(st.tuples(*[st.integers(0, 110)] * 3), min_size=1, max_size=9))
+def test_a_colour_counts_the_same_in_a_palette(colours):
+    direct, by_palette = Image.new("RGB", (len(colours), 1)), Image.new("P", (len(colours), 1))
+    direct.putdata(colours)
+    by_palette.putpalette([level for colour in colours for level in colour])
+    by_palette.putdata(range(len(colours)))
+    wanted = cells(encoded(direct, "PNG"), mode="raw")
+    assert cells(encoded(by_palette, "PNG"), mode="raw") == wanted
 
 
 def test_a_transparent_grey_of_a_png_is_unknown():
