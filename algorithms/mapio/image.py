@@ -105,8 +105,6 @@ def _decode(source: str, stream: BinaryIO, head: bytes) -> tuple[GreyArray, Grey
     flat: Image.Image = image
     if "transparency" in image.info or image.mode == "PA":
         flat = image.convert("RGBA")
-    elif image.mode == "P":
-        flat = image.convert("RGB")
     alpha = np.asarray(flat.getchannel("A")) if flat.mode in ("LA", "RGBA") else None
     return np.asarray(flat.convert("L")), alpha
 
