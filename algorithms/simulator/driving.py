@@ -157,8 +157,7 @@ def _smooth(xy: FloatArray, clearance: Costs, node: float, body: int, rounds: in
             y = (here[n - 1, 1] + 2.0 * here[n, 1] + here[n + 1, 1]) / 4.0
             if clearance[int(y / node), int(x / node)] >= body:
                 there[n, 0], there[n, 1] = x, y
-        here, there = there, here
-        there[:] = here
+        here[:] = there
     return here
 
 
@@ -182,7 +181,7 @@ def _resample(xy: FloatArray, step: float) -> FloatArray:
             count += 1
             due += step
         passed += piece
-    return out[:count]
+    return np.asarray(out[:count])
 
 
 class Planner:
@@ -202,7 +201,7 @@ class Planner:
         padded = np.ones((h * k, w * k), dtype=bool)
         padded[: solid.shape[0], : solid.shape[1]] = solid
         self.node = building.resolution * k
-        self.wall = padded.reshape(h, k, w, k).any(axis=(1, 3))
+        self.wall: NDArray[np.bool_] = np.asarray(padded.reshape(h, k, w, k).any(axis=(1, 3)))
         self.clearance = np.empty((h, w), dtype=np.int32)
         _clearance(self.wall, self.clearance)
         self._find_stops(building)
@@ -257,7 +256,8 @@ class Planner:
         ways = [self.way(a, b) for a, b in itertools.pairwise(tour)]
         nodes = np.concatenate([self.stops[tour[:1]], *(way[1:] for way in ways)])
         rounds = round(0.3 / self.node) * 10  # a corner is rounded over about half a metre
-        xy = snap(_resample(_smooth(nodes, self.clearance, self.node, BODY, rounds), step))
+        smooth = _smooth(nodes, self.clearance, self.node, BODY, rounds)
+        xy = snap(_resample(smooth, step))
         ahead = np.concatenate([xy[1:], xy[-1:]]) - np.concatenate([xy[:1], xy[:-1]])
         heading = np.rint(np.arctan2(ahead[:, 1], ahead[:, 0]) * (TURN / (2 * np.pi)))
         return Track(xy, heading.astype(np.int64) % TURN)
@@ -267,8 +267,8 @@ class Planner:
 class Drift:
     """How far a robot that corrects itself goes astray."""
 
-    metres: float = 0.03  # standard deviation of the slow position error
-    degrees: float = 0.3  # of the slow heading error
+    metres: float = 0.025  # standard deviation of the slow position error
+    degrees: float = 0.22  # of the slow heading error
     memory: float = 12.0  # metres driven until an error is forgotten by a factor of e
     jitter_metres: float = 0.01  # of the error of a single scan
     jitter_degrees: float = 0.12

@@ -37,7 +37,10 @@ def find_meeting(building: Building, observer: Track, observed: Track, walls: Fl
     walls   : (M, 2) walls both have seen; metres, world frame
     returns : None where the two never come into sight at a fit distance
     """
-    i, j = np.arange(0, len(observer), 2), np.arange(0, len(observed), 2)
+    # Every second scan and every wall in small buildings; large ones are thinned out.
+    i = np.arange(0, len(observer), max(2, len(observer) // 500))
+    j = np.arange(0, len(observed), max(2, len(observed) // 500))
+    walls = walls[:: max(1, len(walls) // 2000)]
     delta = observed.xy[j][None, :, :] - observer.xy[i][:, None, :]
     squared = delta[..., 0] * delta[..., 0] + delta[..., 1] * delta[..., 1]
     near = np.argwhere((squared >= NEAREST * NEAREST) & (squared <= FURTHEST * FURTHEST))
@@ -102,7 +105,7 @@ def in_belief(true: Track, believed: Track, walls: FloatArray) -> FloatArray:
     turn = believed.heading[nearest] - true.heading[nearest]
     c, s = cosine(turn), sine(turn)
     x, y = (walls - true.xy[nearest]).T
-    return np.stack([x * c - y * s, x * s + y * c], axis=-1) + believed.xy[nearest]
+    return np.asarray(np.stack([x * c - y * s, x * s + y * c], axis=-1) + believed.xy[nearest])
 
 
 def fit(points_ref: FloatArray, points_mov: FloatArray) -> tuple[Pose2, float]:

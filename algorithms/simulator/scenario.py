@@ -154,7 +154,7 @@ def simulate(
     source = f"mapmeld simulator, {kind} seed {seed}"
     pairs = (pair_1, pair_2)
     cases = tuple(
-        _case(pair, kind, source, stream(seed, kind, f"case {n}"), back) for n, pair in enumerate(pairs)
+        case_of(pair, kind, source, stream(seed, kind, f"case {n}"), back) for n, pair in enumerate(pairs)
     )
     return Scenario(building, (pair_1.observed, r2, pair_2.observer), pairs, cases)
 
@@ -204,10 +204,11 @@ def pair_up(building: Building, planner: Planner, observer: Robot, observed: Rob
 
 def _walls(planner: Planner, a: Robot, b: Robot) -> FloatArray:
     """(M, 2) wall nodes both robots had in view; metres, world frame."""
-    return (np.argwhere(a.tour.seen & b.tour.seen)[:, ::-1] + 0.5) * planner.node
+    nodes = np.argwhere(a.tour.seen & b.tour.seen)[:, ::-1].astype(np.float64)
+    return np.asarray((nodes + 0.5) * planner.node)
 
 
-def _case(pair: Pair, kind: str, source: str, rng: np.random.Generator, both_ways: bool) -> Case:
+def case_of(pair: Pair, kind: str, source: str, rng: np.random.Generator, both_ways: bool) -> Case:
     a, b = pair.observer, pair.observed
     true, believed = (a.true, b.true), (a.believed, b.believed)
     rough = (ROUGH_RANGE, ROUGH_BEARING)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from algorithms.kernels import kernel
 from algorithms.pose import FloatArray
-from algorithms.simulator.canvas import Building
+from algorithms.simulator.canvas import Building, Surface
 from algorithms.simulator.dice import COSINES, SINES, TURN, cosine, pick, sine, uniform, uniforms, whole
 from algorithms.simulator.driving import Planner
 from algorithms.simulator.lidar import first_hit, sees
@@ -59,7 +59,8 @@ def _look(
 
 def shared(a: Seen, b: Seen) -> float:
     """Overlap of two views: what both saw, as a share of what the one that saw less saw."""
-    return float(np.count_nonzero(a & b)) / max(1, min(np.count_nonzero(a), np.count_nonzero(b)))
+    fewer = min(int(np.count_nonzero(a)), int(np.count_nonzero(b)))
+    return int(np.count_nonzero(a & b)) / max(1, fewer)
 
 
 class Surveyor:
@@ -67,7 +68,7 @@ class Surveyor:
 
     def __init__(self, building: Building, planner: Planner, reach: float) -> None:
         self.planner = planner
-        self._wall = planner.wall.astype(np.uint8)
+        self._wall: Surface = planner.wall.astype(np.uint8)
         self._reach = reach
         self._views: dict[tuple[int, int], Seen] = {}
         near = planner.metres <= MEETING

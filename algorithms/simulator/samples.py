@@ -1,0 +1,144 @@
+"""The sample pairs that ship with mapmeld, and how any number of others is written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from algorithms.atomic import write_files
+from algorithms.casefiles import (
+    FIRST_MAP_FILE,
+    OBSERVATION_FILE,
+    ROUGH_OBSERVATION_FILE,
+    SECOND_MAP_FILE,
+    TRUTH_FILE,
+    Truth,
+    observation_to_bytes,
+    truth_to_bytes,
+)
+from algorithms.mapio import map_to_bytes
+from algorithms.simulator.scenario import Case, Scenario, simulate
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Three robots in one building that make two shipped cases.
+
+    overlaps : asked for, of R2 → R1 and R3 → R2
+    stories  : one sentence for a person about each of the two
+    """
+
+    kind: str
+    seed: int
+    overlaps: tuple[float, float]
+    stories: tuple[str, str]
+    resolutions: tuple[float, float, float] = (0.05, 0.05, 0.05)
+    both_ways: bool = False
+    reach: float | None = None
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Folder names of the two cases."""
+        return f"{self.kind}_r2_r1", f"{self.kind}_r3_r2"
+
+    def simulate(self) -> Scenario:
+        """Let the three robots drive."""
+        return simulate(
+            self.kind,
+            self.seed,
+            self.overlaps,
+            resolutions=self.resolutions,
+            both_ways=self.both_ways,
+            reach=self.reach,
+        )
+
+
+SAMPLES = (
+    Sample(
+        "office",
+        13,
+        (0.5, 0.2),
+        (
+            "An office floor: half of the smaller map is in the other, both robots saw one another.",
+            "The same floor: two corridors and a crossing are all that the maps share.",
+        ),
+        both_ways=True,
+    ),
+    Sample(
+        "apartment",
+        13,
+        (0.6, 0.4),
+        (
+            "A large apartment, mapped twice at different resolutions (0.05 and 0.04 m per cell).",
+            "Small rooms, all at right angles: four turns look right, one is.",
+        ),
+        resolutions=(0.04, 0.05, 0.05),
+    ),
+    Sample(
+        "warehouse",
+        12,
+        (0.3, 0.15),
+        (
+            "A warehouse: the aisles nearly repeat, so a merge one rack too far looks good.",
+            "The same racks with half the overlap: only missing pallets tell the aisles apart.",
+        ),
+    ),
+    Sample(
+        "corridor",
+        13,
+        (0.1, 0.05),
+        (
+            "A long corridor that looks alike turned by 180°: a tenth of the smaller map is shared.",
+            "The same corridor at the edge of what can be merged at all.",
+        ),
+    ),
+)
+
+DESCRIPTIONS: dict[str, str] = {
+    name: story for sample in SAMPLES for name, story in zip(sample.names, sample.stories, strict=True)
+}
+"""What each shipped case shows, by the name of its folder."""
+
+
+def case_files(case: Case) -> dict[str, bytes]:
+    """The files of a case folder by name. Equal cases give equal bytes."""
+    truth = Truth(
+        T_ref_mov=case.T_ref_mov,
+        expected="refuse" if case.T_ref_mov is None else "merge",
+        overlap=case.overlap,
+        truth_rms=case.truth_rms,
+        source=case.source,
+        licence="MIT",
+    )
+    return {
+        **map_to_bytes(case.ref, Path(FIRST_MAP_FILE).stem),
+        **map_to_bytes(case.mov, Path(SECOND_MAP_FILE).stem),
+        OBSERVATION_FILE: observation_to_bytes(case.observation),
+        ROUGH_OBSERVATION_FILE: observation_to_bytes(case.rough),
+        TRUTH_FILE: truth_to_bytes(truth),
+    }
+
+
+def write_case(folder: Path, case: Case) -> None:
+    """Write a case into a folder, which is made where it is missing; raises OutputError."""
+    write_files({Path(folder) / name: data for name, data in case_files(case).items()})
+
+
+def regenerate(folder: Path) -> list[Case]:
+    """Make all shipped samples again, one folder each; the same bytes every time."""
+    cases = [case for sample in SAMPLES for case in sample.simulate().cases]
+    for case in cases:
+        write_case(Path(folder) / case.name, case)
+    return cases
+
+
+def generate_cases(kind: str, seeds: Iterable[int], folder: Path, overlap: float | None = None) -> list[Path]:
+    """Write two cases per seed, in folders ``kind_SEED_r2_r1`` and ``kind_SEED_r3_r2``."""
+    folders = []
+    for seed in seeds:
+        for case in simulate(kind, seed, overlap).cases:
+            robots = case.name.split("_", 1)[1]
+            folders.append(Path(folder) / f"{kind}_{seed:04d}_{robots}")
+            write_case(folders[-1], case)
+    return folders
