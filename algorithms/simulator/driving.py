@@ -149,8 +149,8 @@ def _walk_back(back: NDArray[np.int8], row: int, col: int) -> NDArray[np.int32]:
 @kernel
 def _smooth(xy: FloatArray, clearance: Costs, node: float, body: int, rounds: int) -> FloatArray:
     """Pull every point towards its neighbours again and again, unless that leads it to a wall."""
-    here = xy.copy()
-    there = xy.copy()
+    here: FloatArray = xy.copy()
+    there: FloatArray = xy.copy()
     for _ in range(rounds):
         for n in range(1, len(here) - 1):
             x = (here[n - 1, 0] + 2.0 * here[n, 0] + here[n + 1, 0]) / 4.0

@@ -154,7 +154,7 @@ def table(canvas: Canvas, rng: np.random.Generator, room: Box) -> None:
         return
     _legs(canvas, place)
     x0, y0, x1, y1 = place
-    for x in np.linspace(x0 + 0.35, x1 - 0.35, max(1, int((x1 - x0) / 0.7))).tolist():
+    for x in [x0 + 0.35 + k * 0.7 for k in range(max(1, int((x1 - x0) / 0.7)))]:
         for y in (y0 - 0.1, y1 + 0.1):
             if chance(rng, 0.75):
                 _chair(canvas, rng, x + uniform(rng, -0.08, 0.08), y + uniform(rng, -0.1, 0.1))

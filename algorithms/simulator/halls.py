@@ -7,7 +7,7 @@ import numpy as np
 from algorithms.simulator.canvas import AIR, Building, Canvas
 from algorithms.simulator.dice import chance, pick, uniform, whole
 from algorithms.simulator.furniture import DOOR, boxes, door, furnish, plant
-from algorithms.simulator.office import INNER, MARGIN, OUTER, windows
+from algorithms.simulator.office import INNER, MARGIN, OUTER, evenly, windows
 
 BAY = 2.7  # metres between the posts of a rack
 POST = 0.1
@@ -133,7 +133,7 @@ def corridor(rng: np.random.Generator, resolution: float = 0.025) -> Building:
         )
     pitch = uniform(rng, 3.4, 4.2)
     first, last = left + lobby + 0.8, right - lobby - 0.8 - DOOR
-    for x in np.arange(first, last, pitch).tolist():
+    for x in evenly(first, last, pitch):
         twin_x = left + right - x - DOOR
         for at, up in ((x, 1), (twin_x, -1)):
             wall = high if up > 0 else low
@@ -141,7 +141,7 @@ def corridor(rng: np.random.Generator, resolution: float = 0.025) -> Building:
                 continue
             bottom, top = sorted((wall, wall + up * 0.15))
             canvas.box(at, bottom, at + DOOR, top, AIR)  # a closed door in its recess
-    for x in np.arange(first + 1.4, last - 4, 9.0).tolist():
+    for x in evenly(first + 1.4, last - 4, 9.0):
         if chance(rng, 0.75):
             _side_room(canvas, rng, x, high + OUTER / 2, 1)
         if chance(rng, 0.75):
@@ -151,5 +151,5 @@ def corridor(rng: np.random.Generator, resolution: float = 0.025) -> Building:
         plant(canvas, rng, inside)
         if chance(rng, 0.25):
             boxes(canvas, rng, inside)
-    canvas.stops += [(x, middle) for x in np.arange(left + lobby + 1, right - lobby, 3.2).tolist()]
+    canvas.stops += [(x, middle) for x in evenly(left + lobby + 1, right - lobby, 3.2)]
     return canvas.finish("corridor")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from math import ceil
 
 import numpy as np
 
@@ -25,6 +26,11 @@ def split(rng: np.random.Generator, low: float, high: float, least: float, most:
     if high - cuts[-1] > most + least / 2:
         cuts.append((cuts[-1] + high) / 2)
     return [*cuts, high]
+
+
+def evenly(low: float, high: float, step: float) -> list[float]:
+    """Places from ``low`` on, ``step`` apart and below ``high``; metres."""
+    return [low + k * step for k in range(max(0, ceil((high - low) / step)))]
 
 
 def windows(canvas: Canvas, rng: np.random.Generator, x0: float, y0: float, x1: float, y1: float) -> None:
@@ -87,7 +93,7 @@ def _corridor(canvas: Canvas, rng: np.random.Generator, room: Box) -> None:
     x0, y0, x1, y1 = room
     along_x = x1 - x0 > y1 - y0
     low, high = (x0, x1) if along_x else (y0, y1)
-    for a in np.arange(low + 1.2, high - 1.0, 4.6).tolist():
+    for a in evenly(low + 1.2, high - 1.0, 4.6):
         canvas.stops.append((a, (y0 + y1) / 2) if along_x else ((x0 + x1) / 2, a))
     for _ in range(int((high - low) / 7)):
         if chance(rng, 0.6):

@@ -57,7 +57,7 @@ class Sample:
 SAMPLES = (
     Sample(
         "office",
-        13,
+        14,
         (0.5, 0.2),
         (
             "An office floor: half of the smaller map is in the other, both robots saw one another.",
@@ -67,7 +67,7 @@ SAMPLES = (
     ),
     Sample(
         "apartment",
-        13,
+        21,
         (0.6, 0.4),
         (
             "A large apartment, mapped twice at different resolutions (0.05 and 0.04 m per cell).",
@@ -86,12 +86,13 @@ SAMPLES = (
     ),
     Sample(
         "corridor",
-        13,
-        (0.1, 0.05),
+        33,
+        (0.1, 0.04),
         (
             "A long corridor that looks alike turned by 180°: a tenth of the smaller map is shared.",
-            "The same corridor at the edge of what can be merged at all.",
+            "The same corridor, a twentieth shared: at the edge of what can be merged at all.",
         ),
+        reach=6.0,
     ),
 )
 

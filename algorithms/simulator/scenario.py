@@ -177,6 +177,7 @@ def _nearest_pair(
             break
         pair = pair_up(building, planner, *propose(aim, rng))
         if pair is None:
+            aim = min(0.95, aim + 0.03)  # drives that share more are likelier to meet
             continue
         if best is None or abs(pair.overlap - target) < abs(best.overlap - target):
             best = pair
