@@ -237,16 +237,22 @@ def test_overlap_is_what_was_asked_and_what_the_files_show(name):
     assert measured == pytest.approx(case.truth.overlap, abs=0.002)
 
 
-@pytest.mark.parametrize("turn", [0.03, -0.03])
 @pytest.mark.parametrize("name", DESCRIPTIONS)
-def test_no_turn_or_shift_fits_better_than_the_truth(name, turn):
+def test_walls_part_when_the_true_transform_is_turned_or_shifted(name):
     case = read_case(SHIPPED / name)
-    T, at = case.truth.T_ref_mov, encounter(case.observation).x_mov
-    pivot = T.apply(at)
-    turned = Pose2(*pivot, turn) @ Pose2(*(-pivot)) @ T
-    shifted = Pose2(np.sign(turn) * 0.15, 0.15) @ T
-    assert measured_overlap(case.ref, case.mov, turned) < case.truth.overlap
-    assert measured_overlap(case.ref, case.mov, shifted) < case.truth.overlap
+    T = case.truth.T_ref_mov
+    pivot = T.apply(encounter(case.observation).x_mov)
+
+    def overlap_after(x, y, turn):
+        moved = Pose2(*pivot, 0.0) @ Pose2(x, y, turn) @ Pose2(*(-pivot), 0.0) @ T
+        return measured_overlap(case.ref, case.mov, moved)
+
+    turned = [overlap_after(0, 0, turn) for turn in (-0.07, 0.07)]
+    around = np.arange(8) * np.pi / 4
+    shifted = [overlap_after(0.3 * np.cos(a), 0.3 * np.sin(a), 0.0) for a in around]
+    assert max(turned) < 0.8 * case.truth.overlap
+    # Along a corridor a shift changes little, so it is their mean that tells.
+    assert np.mean(shifted) < 0.6 * case.truth.overlap
 
 
 def test_bilateral_sighting_of_the_office_agrees_with_its_truth():
