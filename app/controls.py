@@ -1,0 +1,112 @@
+"""Config dataclasses as settings a panel can show: label, range, unit, hint; and back again.
+
+A new field with Bounds and a string below it shows up on the page with no change here.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, is_dataclass, replace
+from enum import Enum
+from functools import cache
+from typing import Any, Literal, get_args, get_origin, get_type_hints
+
+from algorithms.bounds import Bounds, bounds_of
+
+Path = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One field of a config, wherever it is nested.
+
+    path    : names from the outermost config to the field
+    label   : symbol, words, unit, as a person reads them
+    hint    : the string below the field
+    bounds  : range of a number; None for a choice or a switch
+    choices : what a choice may be, by the words for it; None otherwise
+    whole   : whether a number is an int
+    """
+
+    path: Path
+    label: str
+    hint: str
+    default: Any
+    bounds: Bounds | None = None
+    choices: dict[str, Any] | None = None
+    whole: bool = False
+
+
+@cache
+def field_docs(config_type: type) -> dict[str, str]:
+    """The string below each field of a class, its lines joined; {} where the source is not there."""
+    try:
+        tree = ast.parse(textwrap.dedent(inspect.getsource(config_type)))
+    except (OSError, TypeError, SyntaxError):
+        return {}
+    body = tree.body[0].body  # type: ignore[attr-defined]
+    docs = {}
+    for field, after in zip(body, body[1:], strict=False):
+        if (
+            isinstance(field, ast.AnnAssign)
+            and isinstance(field.target, ast.Name)
+            and isinstance(after, ast.Expr)
+            and isinstance(after.value, ast.Constant)
+            and isinstance(after.value.value, str)
+        ):
+            docs[field.target.id] = " ".join(after.value.value.split())
+    return docs
+
+
+def settings_of(config: Any, path: Path = ()) -> Iterator[Setting]:
+    """Yield a Setting per field of a config and of the configs in it, in the order they are written."""
+    kind = type(config)
+    hints, docs, bounds = get_type_hints(kind), field_docs(kind), dict(bounds_of(kind))
+    for field in fields(config):
+        value, here = getattr(config, field.name), (*path, field.name)
+        if is_dataclass(value):
+            yield from settings_of(value, here)
+            continue
+        words, hint = field.name.replace("_", " "), docs.get(field.name, "")
+        if field.name in bounds:
+            b = bounds[field.name]
+            parts = (b.symbol, b.label or words, f"({b.unit})" if b.unit else "")
+            label = " ".join(part for part in parts if part)
+            yield Setting(here, label, hint, value, bounds=b, whole=hints[field.name] is int)
+        elif isinstance(value, bool):
+            yield Setting(here, words, hint, value)
+        elif isinstance(value, Enum):
+            choices = {str(option.value): option for option in type(value)}
+            yield Setting(here, words, hint, value, choices=choices)
+        elif get_origin(hints[field.name]) is Literal:
+            options = get_args(hints[field.name])
+            yield Setting(here, words, hint, value, choices={str(o).upper(): o for o in options})
+
+
+def value_at(config: Any, path: Path) -> Any:
+    """The value of a field."""
+    for name in path:
+        config = getattr(config, name)
+    return config
+
+
+def with_value(config: Any, path: Path, value: Any) -> Any:
+    """A copy of the config with one field changed; raises SettingError where it is out of bounds."""
+    name, *rest = path
+    inner = with_value(getattr(config, name), tuple(rest), value) if rest else value
+    return replace(config, **{name: inner})
+
+
+def word_for(setting: Setting, value: Any) -> str:
+    """The word that a choice is shown as."""
+    assert setting.choices is not None
+    return next(word for word, option in setting.choices.items() if option == value)
+
+
+def in_cells(metres: float, *cells: float) -> str:
+    """A length in cells, for one or two resolutions (metres per cell): "60 cells" or "60 / 30 cells"."""
+    counts = dict.fromkeys(f"{metres / cell:.3g}" for cell in cells)
+    return " / ".join(counts) + " cells"

@@ -1,0 +1,104 @@
+"""Where the two maps lie in the scene: around the meeting place, or side by side before the merge."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from algorithms.gridmap import UNKNOWN, GridMap
+from algorithms.observation import Encounter
+from algorithms.pose import FloatArray, Pose2
+
+Rect = tuple[float, float, float, float]  # x low, y low, x high, y high; metres
+
+GAP = 0.10  # between two maps side by side, as a share of their size
+
+
+def known_corners(grid: GridMap) -> FloatArray:
+    """(4, 2) corners of the smallest rectangle of cells that holds all known ones; metres, map frame."""
+    known = grid.cells != UNKNOWN
+    rows, cols = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
+    if len(rows) == 0:
+        return grid.corners()
+    low, high = np.array([cols[0], rows[0]]), np.array([cols[-1] + 1, rows[-1] + 1])
+    unit = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
+    return grid.origin.apply((low + unit * (high - low)) * grid.resolution)
+
+
+def rect_of(points: FloatArray) -> Rect:
+    """Smallest upright rectangle around (N, 2) points; metres."""
+    (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    return x0, y0, x1, y1
+
+
+def union(*rects: Rect) -> Rect:
+    """Smallest rectangle around all of them."""
+    lows, highs = np.array(rects)[:, :2].min(axis=0), np.array(rects)[:, 2:].max(axis=0)
+    return (*lows.tolist(), *highs.tolist())  # type: ignore[return-value]
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """The scene's coordinates: metres, map 1's axes, the meeting place (or map 1's middle) at zero.
+
+    anchor_ref : (2,) point of the ref frame that lies at the scene's origin
+    anchor_mov : (2,) point of the mov frame that map 2 is turned about
+    ref_corners, mov_corners : (4, 2) what is known of each map, relative to its anchor; or None
+    apart      : where anchor_mov lies while the maps are side by side, and map 2's turn there (none)
+    """
+
+    anchor_ref: FloatArray
+    anchor_mov: FloatArray
+    ref_corners: FloatArray | None
+    mov_corners: FloatArray | None
+    apart: Pose2
+
+    def placed(self, T_ref_mov: Pose2) -> Pose2:
+        """Where ``anchor_mov`` lies under a transform, and map 2's turn; scene."""
+        x, y = (T_ref_mov.apply(self.anchor_mov) - self.anchor_ref).tolist()
+        return Pose2(x, y, T_ref_mov.theta)
+
+    def view(self, mov_at: Pose2 | None = None) -> Rect:
+        """Rectangle that holds map 1 and map 2 with its anchor at ``mov_at`` (apart if None)."""
+        points = []
+        if self.ref_corners is not None:
+            points.append(self.ref_corners)
+        if self.mov_corners is not None:
+            points.append((self.apart if mov_at is None else mov_at).apply(self.mov_corners))
+        if not points:
+            return -5.0, -5.0, 5.0, 5.0
+        return rect_of(np.concatenate(points))
+
+
+def lay_out(ref: GridMap | None, mov: GridMap | None, at: Encounter | None, aspect: float = 0.9) -> Layout:
+    """Choose anchors and the place of map 2 beside map 1.
+
+    aspect : width over height of the free part of the page; the maps lie side by side or one above
+             the other, whichever shows them larger
+    """
+    ref_corners = known_corners(ref) if ref else None
+    mov_corners = known_corners(mov) if mov else None
+    anchor_ref = _anchor(at.x_ref if at else None, ref_corners)
+    anchor_mov = _anchor(at.x_mov if at else None, mov_corners)
+    ref_corners = ref_corners - anchor_ref if ref_corners is not None else None
+    mov_corners = mov_corners - anchor_mov if mov_corners is not None else None
+    apart = Pose2()
+    if ref_corners is not None and mov_corners is not None:
+        r, m = rect_of(ref_corners), rect_of(mov_corners)
+        (rw, rh), (mw, mh) = (r[2] - r[0], r[3] - r[1]), (m[2] - m[0], m[3] - m[1])
+        beside = max((rw + mw) * (1 + GAP) / aspect, max(rh, mh))  # height of page needed
+        below = max(max(rw, mw) / aspect, (rh + mh) * (1 + GAP))
+        if beside <= below:
+            x = r[2] + GAP * (rw + mw) - m[0]
+            apart = Pose2(x, (r[1] + r[3]) / 2 - (m[1] + m[3]) / 2)
+        else:
+            y = r[1] - GAP * (rh + mh) - m[3]
+            apart = Pose2((r[0] + r[2]) / 2 - (m[0] + m[2]) / 2, y)
+    return Layout(anchor_ref, anchor_mov, ref_corners, mov_corners, apart)
+
+
+def _anchor(x_hat: FloatArray | None, corners: FloatArray | None) -> FloatArray:
+    if x_hat is not None:
+        return x_hat
+    return np.zeros(2) if corners is None else np.asarray(corners.mean(axis=0), dtype=np.float64)

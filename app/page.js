@@ -1,0 +1,349 @@
+// The part of the page that the browser does by itself: a camera that reads like a map, and a layer
+// of ink over it (robots, lines, particles, labels, scale bar) that keeps its size at any zoom.
+//
+// The server sends plain data with `mapmeld.apply({...})`; nothing here computes a result. All
+// positions are metres of the scene: x right, y up, z towards the eye; heights stand on the floor
+// after the turn that the server has applied. Text is drawn, never parsed as HTML.
+(() => {
+  if (window.mapmeld) { window.mapmeld.reset(); return; }
+  const viewer = () => window.__viserMutable;
+  const FOV = 4 * Math.PI / 180; // far and narrow: as good as parallel
+  const ORDER = ["floor", "window", "aug", "box", "trail", "swarm", "sight", "robots", "best", "axes"];
+  const lerp = (a, b, u) => a + (b - a) * u;
+  const smooth = (u) => u * u * (3 - 2 * u);
+  const wrap = (a) => a - 2 * Math.PI * Math.round(a / (2 * Math.PI));
+
+  const blank = () => ({
+    layers: {}, view: "map", follow: true, look: null, dark: false, hud: {}, dirty: true,
+    mov: { x: 0, y: 0, theta: 0 }, tween: null, applied: 0,
+  });
+  const S = blank();
+  let hooked = null, canvas = null, ink = null, hud = null, pointer = null, seen = "", painted = "";
+
+  // --- the camera -------------------------------------------------------------------------------
+  function lock(k) {
+    const flat = S.view === "map";
+    k.minPolarAngle = flat ? Math.PI / 2 : 0.15;
+    k.maxPolarAngle = flat ? Math.PI / 2 : Math.PI / 2 - 0.03;
+    k.minAzimuthAngle = flat ? 0 : -Infinity;
+    k.maxAzimuthAngle = flat ? 0 : Infinity;
+    k.mouseButtons.left = flat ? 2 : 1; // pan; turn
+    k.touches.one = flat ? 128 : 64;
+    k.dollyToCursor = true;
+    k.minDistance = 5; k.maxDistance = 2e5;
+  }
+  function aim(animate) {
+    const m = viewer(), k = m && m.cameraControl, look = S.look;
+    if (!k || !look || !canvas) return;
+    const box = canvas.getBoundingClientRect();
+    const top = 92, bottom = look.view === "map" ? 64 : 40, side = 18; // what the words above and below cover
+    const wide = Math.max(60, box.width - 2 * side), high = Math.max(60, box.height - top - bottom);
+    const turning = S.view !== look.view;
+    S.view = look.view;
+    k.smoothTime = 0.28;
+    if (look.view === "map") {
+      const [x0, y0, x1, y1] = look.box;
+      const metre = Math.min(wide / (x1 - x0), high / (y1 - y0)); // px per metre
+      const distance = box.height / 2 / metre / Math.tan(FOV / 2);
+      const cx = (x0 + x1) / 2, cy = (y0 + y1) / 2 + (top - bottom) / 2 / metre;
+      lock(k);
+      k.setLookAt(cx, cy, distance, cx, cy, 0, animate && !turning);
+    } else {
+      const metre = Math.min(wide, high) / 2 / look.radius;
+      const distance = box.height / 2 / metre / Math.tan(FOV / 2);
+      const [x, y, z] = look.centre, p = look.polar, a = look.azimuth;
+      lock(k);
+      k.setLookAt(x + distance * Math.sin(p) * Math.sin(a), y + distance * Math.cos(p),
+        z + distance * Math.sin(p) * Math.cos(a), x, y, z, false);
+    }
+  }
+  function clip(camera) { // near and far follow the distance, so that the layers never fight for depth
+    const k = viewer().cameraControl, near = k.distance * 0.3, far = k.distance * 3;
+    if (Math.abs(camera.near / near - 1) > 0.01 || Math.abs(camera.fov - 4) > 1e-6) {
+      camera.near = near; camera.far = far; camera.fov = 4; camera.updateProjectionMatrix();
+    }
+  }
+
+  // --- where things are -------------------------------------------------------------------------
+  function movNow(time) {
+    const t = S.tween;
+    if (!t) return S.mov;
+    const u = Math.min(1, (time - t.began) / Math.max(1, t.ms)), s = smooth(u);
+    S.mov = { x: lerp(t.from.x, t.to.x, s), y: lerp(t.from.y, t.to.y, s), theta: t.from.theta + t.turn * s };
+    if (u >= 1) S.tween = null;
+    S.dirty = true;
+    return S.mov;
+  }
+  function placeMov() {
+    const node = viewer().nodeRefFromName["/mov"];
+    if (!node) return;
+    node.position.set(S.mov.x, S.mov.y, node.position.z);
+    node.quaternion.set(0, 0, Math.sin(S.mov.theta / 2), Math.cos(S.mov.theta / 2));
+  }
+  function project(camera, frame, p) { // metres -> css px of the canvas
+    let x = p[0], y = p[1], z = p.length > 2 ? p[2] : 0;
+    if (frame === "mov") {
+      const c = Math.cos(S.mov.theta), s = Math.sin(S.mov.theta);
+      [x, y] = [c * x - s * y + S.mov.x, s * x + c * y + S.mov.y];
+    }
+    const v = new camera.position.constructor(x, y, z).project(camera);
+    return [(v.x + 1) / 2 * ink.clientWidth, (1 - v.y) / 2 * ink.clientHeight, v.z];
+  }
+  const metre = (camera) => ink.clientHeight / 2 / Math.tan(FOV / 2) / Math.max(1e-6, camera.position.z); // px
+
+  // --- ink --------------------------------------------------------------------------------------
+  function words(g, text, x, y, colour, size, align) {
+    g.font = `${size || 12}px system-ui, "Segoe UI", sans-serif`;
+    g.textAlign = align || "left"; g.textBaseline = "middle";
+    g.lineJoin = "round"; g.lineWidth = 4; g.setLineDash([]);
+    g.strokeStyle = S.dark ? "rgba(17,24,39,.85)" : "rgba(255,255,255,.9)";
+    g.strokeText(text, x, y); g.fillStyle = colour; g.fillText(text, x, y);
+  }
+  const SHAPES = {
+    robot(g, r) { g.moveTo(1.35 * r, 0); g.lineTo(-0.85 * r, 0.8 * r); g.lineTo(-0.45 * r, 0); g.lineTo(-0.85 * r, -0.8 * r); g.closePath(); },
+    diamond(g, r) { g.moveTo(r, 0); g.lineTo(0, r); g.lineTo(-r, 0); g.lineTo(0, -r); g.closePath(); },
+    dot(g, r) { g.arc(0, 0, r, 0, 7); },
+    star(g, r) { for (let i = 0; i < 10; i++) { const q = i % 2 ? 0.45 * r : r, a = Math.PI * (i / 5 - 0.5); g.lineTo(q * Math.cos(a), q * Math.sin(a)); } g.closePath(); },
+  };
+  function mark(g, camera, item) {
+    const [x, y] = project(camera, item.f, item.p), r = item.r || 8;
+    const turn = item.a === undefined ? 0 : item.a + (item.f === "mov" ? S.mov.theta : 0);
+    g.save(); g.translate(x, y); g.rotate(-turn); g.setLineDash([]); g.beginPath();
+    if (item.s === "cross" || item.s === "ring") {
+      if (item.s === "ring") g.arc(0, 0, r, 0, 7);
+      else { g.moveTo(-r, 0); g.lineTo(r, 0); g.moveTo(0, -r); g.lineTo(0, r); }
+      g.lineWidth = 5; g.strokeStyle = S.dark ? "#111827" : "#fff"; g.stroke();
+      g.lineWidth = 2; g.strokeStyle = item.c; g.stroke();
+    } else {
+      SHAPES[item.s](g, r);
+      g.lineWidth = 4; g.strokeStyle = item.rim || (S.dark ? "#111827" : "#fff"); g.lineJoin = "round"; g.stroke();
+      g.fillStyle = item.c; g.fill();
+      if (item.rim) { g.lineWidth = 1.5; g.stroke(); }
+    }
+    g.restore();
+    if (item.t) words(g, item.t, x + (item.dx ?? r + 5), y + (item.dy ?? 0), item.tc || item.c, item.size, item.align);
+  }
+  function path(g, camera, item) {
+    g.beginPath();
+    let last = null;
+    for (const p of item.p) { const [x, y] = project(camera, item.f, p); last ? g.lineTo(x, y) : g.moveTo(x, y); last = [x, y]; }
+    if (item.close) g.closePath();
+    if (item.fill) { g.fillStyle = item.fill; g.fill(); }
+    if (item.c) {
+      if (item.halo) { g.setLineDash([]); g.lineWidth = (item.w || 1.5) + 3; g.strokeStyle = S.dark ? "rgba(17,24,39,.8)" : "rgba(255,255,255,.85)"; g.stroke(); }
+      g.setLineDash(item.d || []); g.lineWidth = item.w || 1.5; g.strokeStyle = item.c; g.stroke();
+    }
+    if (item.t && last) { const at = project(camera, item.f, item.tp || item.p[0]); words(g, item.t, at[0] + (item.dx || 0), at[1] + (item.dy || 0), item.tc || item.c, item.size || 11, item.align); }
+  }
+  // A cloud glides from its last state to its new one, so that the eye can follow single particles.
+  function cloud(g, camera, item, time) {
+    const u = item.old ? Math.min(1, (time - item.at) / item.ms) : 1;
+    if (u < 1) S.dirty = true;
+    const n = item.n, p = item.p, q = item.old || p, r = item.r || 3, k = item.n3 ? 3 : 2;
+    g.setLineDash([]); g.globalAlpha = item.alpha || 0.85;
+    g.fillStyle = item.c; g.strokeStyle = item.c; g.lineWidth = 1.2;
+    const at = [];
+    for (let i = 0; i < p.length; i += n) {
+      const point = [];
+      for (let j = 0; j < k; j++) point.push(lerp(q[i + j], p[i + j], u));
+      const s = project(camera, item.f, point);
+      at.push(s);
+      g.beginPath(); g.arc(s[0], s[1], r, 0, 7); g.fill();
+      if (!item.n3 && n > 2) { // the tick looks where map 2's x axis would
+        const a = lerp(q[i + 2], p[i + 2], u);
+        g.beginPath(); g.moveTo(s[0], s[1]); g.lineTo(s[0] + (r + 6) * Math.cos(a), s[1] - (r + 6) * Math.sin(a)); g.stroke();
+      }
+    }
+    g.globalAlpha = 1;
+    item.shown = at;
+  }
+  function scaleBar(g, camera) {
+    const px = metre(camera), most = 130 / px, power = 10 ** Math.floor(Math.log10(most));
+    const length = [5, 2, 1].map((k) => k * power).find((k) => k <= most), wide = length * px;
+    const x = 18, y = ink.clientHeight - 22, colour = S.dark ? "#F9FAFB" : "#111827";
+    for (const [width, stroke] of [[6, S.dark ? "#111827" : "#fff"], [2, colour]]) {
+      g.beginPath(); g.moveTo(x, y - 5); g.lineTo(x, y); g.lineTo(x + wide, y); g.lineTo(x + wide, y - 5);
+      g.setLineDash([]); g.lineJoin = "miter"; g.lineWidth = width; g.strokeStyle = stroke; g.stroke();
+    }
+    const label = length >= 1 ? `${length} m` : length >= 0.01 ? `${Math.round(length * 100)} cm` : `${+(length * 1000).toPrecision(1)} mm`;
+    words(g, label, x + wide / 2, y - 12, colour, 12, "center");
+    const nx = x + wide + 26; // north: the y axis of map 1
+    g.beginPath(); g.moveTo(nx, y - 16); g.lineTo(nx + 5, y); g.lineTo(nx, y - 4); g.lineTo(nx - 5, y); g.closePath();
+    g.lineWidth = 4; g.strokeStyle = S.dark ? "#111827" : "#fff"; g.stroke(); g.fillStyle = colour; g.fill();
+    words(g, "N", nx, y - 24, colour, 11, "center");
+    if (pointer && S.hud.anchor) {
+      const x1 = (pointer[0] - ink.clientWidth / 2) / px + camera.position.x + S.hud.anchor[0];
+      const y1 = (ink.clientHeight / 2 - pointer[1]) / px + camera.position.y + S.hud.anchor[1];
+      words(g, `x ${x1.toFixed(2)} m   y ${y1.toFixed(2)} m   in map 1`, nx + 20, y - 4, colour, 11);
+    }
+  }
+  function paint(time) {
+    const m = viewer();
+    if (!m || !m.canvas || !m.cameraControl) return;
+    if (canvas !== m.canvas) adopt(m.canvas);
+    if (hooked !== m.cameraControl) {
+      hooked = m.cameraControl;
+      hooked.addEventListener("controlstart", () => { S.follow = false; hooked.smoothTime = 0.05; });
+      lock(hooked); aim(false);
+    }
+    const camera = m.cameraControl.camera; // the one that draws; viser's own "camera" is another
+    clip(camera);
+    movNow(time);
+    const frame = canvas.getBoundingClientRect(), size = [frame.width, frame.height].join();
+    if (size !== seen) {
+      seen = size;
+      ink.width = frame.width * devicePixelRatio; ink.height = frame.height * devicePixelRatio;
+      ink.style.width = frame.width + "px"; ink.style.height = frame.height + "px";
+      if (S.follow) aim(false);
+      S.dirty = true;
+    }
+    const eye = camera.matrixWorldInverse.elements.join() + camera.projectionMatrix.elements.join();
+    if (!S.dirty && eye === painted) return;
+    painted = eye; S.dirty = false;
+    if (S.tween || S.moved) { placeMov(); m.requestRender(); S.moved = !!S.tween; if (S.tween) S.dirty = true; }
+    const g = ink.getContext("2d");
+    g.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
+    g.clearRect(0, 0, ink.clientWidth, ink.clientHeight);
+    const names = Object.keys(S.layers).sort((a, b) => ORDER.indexOf(a) - ORDER.indexOf(b));
+    for (const name of names) for (const item of S.layers[name]) {
+      if (item.k === "path") path(g, camera, item);
+      else if (item.k === "cloud") cloud(g, camera, item, time);
+      else mark(g, camera, item);
+    }
+    if (S.view === "map") scaleBar(g, camera);
+  }
+
+  // --- words over the map -----------------------------------------------------------------------
+  function adopt(element) {
+    canvas = element;
+    ink?.remove(); hud?.remove();
+    ink = document.createElement("canvas"); ink.id = "mapmeld-ink";
+    ink.style.cssText = "position:absolute;left:0;top:0;pointer-events:none;z-index:1";
+    hud = document.createElement("div"); hud.id = "mapmeld-hud";
+    hud.innerHTML = '<div class="mm-head"><div class="mm-title"><b>mapmeld</b><span class="mm-case"></span></div>' +
+      '<div class="mm-state"><i></i><span></span></div><div class="mm-bar"><i></i></div></div><div class="mm-legend"></div>';
+    const parent = canvas.parentElement;
+    parent.append(ink, hud);
+    canvas.addEventListener("pointermove", (e) => {
+      const box = canvas.getBoundingClientRect(); pointer = [e.clientX - box.left, e.clientY - box.top]; S.dirty = true;
+    });
+    canvas.addEventListener("pointerleave", () => { pointer = null; S.dirty = true; });
+    seen = ""; showHud();
+  }
+  function showHud() {
+    if (!hud) return;
+    const h = S.hud, put = (name, text) => { const e = hud.querySelector(name); if (e.textContent !== (text || "")) e.textContent = text || ""; };
+    hud.dataset.theme = S.dark ? "dark" : "light";
+    put(".mm-case", h.case); put(".mm-state span", h.state);
+    hud.querySelector(".mm-state").dataset.mood = h.mood || "idle";
+    const bar = hud.querySelector(".mm-bar");
+    bar.style.visibility = h.progress === null || h.progress === undefined ? "hidden" : "visible";
+    bar.firstChild.style.width = `${100 * (h.progress || 0)}%`;
+    const key = JSON.stringify([h.legend, S.dark]);
+    const legend = hud.querySelector(".mm-legend");
+    if (legend.dataset.key === key) return;
+    legend.dataset.key = key;
+    legend.replaceChildren(...(h.legend || []).map((entry) => {
+      const chip = document.createElement("span"), swatch = document.createElement("i");
+      swatch.className = "mm-" + entry.s;
+      if (entry.s === "scale") {
+        swatch.style.background = `linear-gradient(90deg, ${entry.c.join(", ")})`;
+        chip.append(entry.low + " ", swatch, " " + entry.high + "  " + entry.t);
+      } else {
+        swatch.style.setProperty("--c", entry.c);
+        chip.append(swatch, entry.t);
+      }
+      return chip;
+    }));
+  }
+  const style = document.createElement("style");
+  style.textContent = `
+    #mapmeld-hud{position:absolute;inset:0;pointer-events:none;z-index:2;font:13px/1.35 system-ui,"Segoe UI",sans-serif;color:#111827}
+    #mapmeld-hud[data-theme=dark]{color:#F9FAFB}
+    .mm-head{position:absolute;left:12px;right:12px;top:10px;padding:7px 12px 8px;border-radius:8px;background:rgba(255,255,255,.92);box-shadow:0 1px 4px rgba(17,24,39,.16)}
+    [data-theme=dark] .mm-head{background:rgba(31,41,55,.94)}
+    .mm-title{font-size:12px;color:#6B7280;overflow:hidden;white-space:nowrap;text-overflow:ellipsis}
+    .mm-title b{color:#0072B2;font-size:13px;letter-spacing:.01em;margin-right:8px}
+    [data-theme=dark] .mm-title{color:#9CA3AF} [data-theme=dark] .mm-title b{color:#56B4E9}
+    .mm-state{font-size:15px;font-weight:550;display:flex;gap:8px;align-items:baseline;min-height:20px}
+    .mm-state span{display:-webkit-box;-webkit-line-clamp:2;-webkit-box-orient:vertical;overflow:hidden}
+    .mm-state i{width:9px;height:9px;border-radius:50%;flex:none;background:#9CA3AF}
+    .mm-state[data-mood=running] i{background:#0072B2;animation:mm-pulse 1s infinite}
+    .mm-state[data-mood=accepted] i{background:#009E73} .mm-state[data-mood=accepted] span{color:#006B4E}
+    .mm-state[data-mood=refused] i,.mm-state[data-mood=failed] i{background:#D55E00}
+    .mm-state[data-mood=refused] span,.mm-state[data-mood=failed] span{color:#A34700}
+    [data-theme=dark] .mm-state[data-mood=accepted] span{color:#34D399}
+    [data-theme=dark] .mm-state[data-mood=refused] span,[data-theme=dark] .mm-state[data-mood=failed] span{color:#FB923C}
+    .mm-state[data-mood=stopped] i{background:#E69F00}
+    @keyframes mm-pulse{50%{opacity:.25}}
+    .mm-bar{position:absolute;left:0;right:0;bottom:0;height:3px;border-radius:0 0 8px 8px;overflow:hidden;background:rgba(0,114,178,.12)}
+    .mm-bar i{display:block;height:100%;background:#0072B2}
+    .mm-legend{position:absolute;right:12px;bottom:10px;max-width:62%;display:flex;flex-wrap:wrap;justify-content:flex-end;gap:2px 12px;padding:4px 10px;border-radius:6px;background:rgba(255,255,255,.88);font-size:11.5px}
+    [data-theme=dark] .mm-legend{background:rgba(31,41,55,.9)}
+    .mm-legend:empty{display:none}
+    .mm-legend span{display:inline-flex;align-items:center;gap:5px;white-space:pre}
+    .mm-legend i{width:10px;height:10px;background:var(--c)}
+    .mm-legend i.mm-dot{border-radius:50%;width:8px;height:8px}
+    .mm-legend i.mm-line{height:0;width:16px;background:none;border-top:2px dashed var(--c)}
+    .mm-legend i.mm-scale{width:84px;height:9px;border-radius:2px}
+    .mm-legend i.mm-star,.mm-legend i.mm-diamond{border-radius:1px;transform:rotate(45deg);width:8px;height:8px;outline:1px solid #374151}`;
+  document.head.append(style);
+
+  // --- what the server sends --------------------------------------------------------------------
+  S.reset = () => { const keep = [S.reset, S.apply]; Object.assign(S, blank()); [S.reset, S.apply] = keep; canvas = null; };
+  S.apply = (message) => {
+    const now = performance.now();
+    for (const [name, items] of Object.entries(message.layers || {})) {
+      const old = S.layers[name];
+      for (const [i, item] of (items || []).entries()) {
+        const before = old && old[i];
+        if (item.k === "cloud" && before && before.k === "cloud" && before.p.length === item.p.length && item.glide === before.glide) {
+          item.old = before.p; item.at = now; item.ms = Math.min(160, Math.max(30, now - (before.at || now - 60)));
+        } else if (item.k === "cloud") { item.at = now; item.ms = 1; }
+      }
+      if (items) S.layers[name] = items; else delete S.layers[name];
+    }
+    if (message.mov) {
+      const from = { ...movNow(now) }, to = message.mov;
+      S.tween = message.mov.ms ? { from, to, turn: wrap(to.theta - from.theta), began: now, ms: to.ms } : null;
+      if (!S.tween) S.mov = { x: to.x, y: to.y, theta: to.theta };
+      S.moved = true;
+    }
+    if (message.dark !== undefined) S.dark = message.dark;
+    if (message.hud) Object.assign(S.hud, message.hud);
+    if (message.follow) S.follow = true;
+    if (message.look) {
+      const turning = S.look && S.look.view !== message.look.view;
+      S.look = message.look;
+      if (S.follow || turning) aim(true);
+    }
+    if (message.background && viewer() && viewer().canvas) viewer().canvas.style.background = message.background;
+    S.background = message.background || S.background;
+    S.applied += 1; S.dirty = true;
+    showHud();
+  };
+  window.mapmeld = S;
+  document.title = "mapmeld";
+
+  // Cells are squares with hard edges: viser has no nearest filter, and makes a new texture with
+  // every new image.
+  function harden() {
+    const m = viewer();
+    if (!m || !m.scene) return;
+    if (m.canvas && S.background && m.canvas.style.background !== S.background) m.canvas.style.background = S.background;
+    let changed = false;
+    m.scene.traverse((node) => {
+      const map = node.material && node.material.map;
+      if (node.isMesh && map && node.material.depthTest) { // flat pictures: the higher one is on top
+        node.material.depthTest = node.material.depthWrite = false;
+        changed = true;
+      }
+      if (node.isMesh && map) node.renderOrder = Math.round(10 * node.matrixWorld.elements[14]);
+      if (map && map.magFilter !== 1003) { map.magFilter = 1003; map.anisotropy = 4; map.needsUpdate = true; changed = true; }
+    });
+    if (changed) m.requestRender();
+  }
+  setInterval(harden, 100);
+  const loop = (time) => { try { paint(performance.now()); } catch (error) { console.error("mapmeld:", error); } requestAnimationFrame(loop); };
+  requestAnimationFrame(loop);
+})();

@@ -1,0 +1,70 @@
+"""The colours of the page, after Okabe and Ito: safe for colour-blind eyes, light and dark."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+Rgb = tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Palette:
+    """What is drawn in which colour; sRGB, 0 … 255."""
+
+    dark: bool
+    ref: Rgb  # walls of map 1
+    mov: Rgb  # walls of map 2
+    agreed: Rgb  # wall on wall
+    conflict: Rgb  # wall on free
+    particle: Rgb
+    best: Rgb
+    answer: Rgb  # the place the search ended on
+    margin: Rgb  # windows and boxes
+    free: Rgb
+    unknown: Rgb
+    text: Rgb
+
+
+LIGHT = Palette(
+    dark=False,
+    ref=(0x00, 0x72, 0xB2),
+    mov=(0x00, 0x9E, 0x73),
+    agreed=(0x11, 0x18, 0x27),
+    conflict=(0xD5, 0x5E, 0x00),
+    particle=(0xE6, 0x9F, 0x00),
+    best=(0xCC, 0x79, 0xA7),
+    answer=(0xF0, 0xE4, 0x42),
+    margin=(0x6B, 0x72, 0x80),
+    free=(0xFF, 0xFF, 0xFF),
+    unknown=(0xE5, 0xE7, 0xEB),
+    text=(0x11, 0x18, 0x27),
+)
+DARK = replace(
+    LIGHT,
+    dark=True,
+    agreed=(0xF9, 0xFA, 0xFB),
+    margin=(0x9C, 0xA3, 0xAF),
+    free=(0x1F, 0x29, 0x37),
+    unknown=(0x11, 0x18, 0x27),
+    text=(0xF9, 0xFA, 0xFB),
+)
+
+# (256, 3) uint8: even steps of level look like even steps, also in grey
+VIRIDIS: NDArray[np.uint8] = np.ascontiguousarray(
+    cv2.applyColorMap(np.arange(256, dtype=np.uint8)[:, None], cv2.COLORMAP_VIRIDIS)[:, 0, ::-1]
+)
+
+
+def css(colour: Rgb, alpha: float = 1.0) -> str:
+    """A colour as a style sheet writes it."""
+    return f"rgba({colour[0]},{colour[1]},{colour[2]},{alpha:g})" if alpha < 1 else "#%02x%02x%02x" % colour
+
+
+def viridis(share: NDArray[np.floating]) -> NDArray[np.uint8]:
+    """Colours (…, 3) of numbers in 0 … 1."""
+    index = np.clip(np.nan_to_num(share) * 255, 0, 255).astype(np.uint8)
+    return np.asarray(VIRIDIS[index], dtype=np.uint8)

@@ -1,0 +1,1 @@
+"""The folders of the control panel: one file each."""

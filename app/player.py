@@ -1,0 +1,74 @@
+"""How long a step stays on the screen, and the wait that a newer request cuts short."""
+
+from __future__ import annotations
+
+from threading import Condition
+
+from algorithms.fuse import Fusion
+from algorithms.steps import (
+    AnswersDetail,
+    AugmentDetail,
+    CandidatesDetail,
+    HoughDetail,
+    ObservationDetail,
+    RefineDetail,
+    ShiftDetail,
+    Step,
+    WindowDetail,
+)
+
+FRAME = 1 / 15  # seconds between two pictures; a browser without a graphics card follows just so
+
+# name of the speed -> how many times the dwell below a step stays; 0: as fast as it is computed
+PACES = {"Slow": 2.5, "Normal": 1.0, "Fast": 0.35, "Instant": 0.0}
+
+DWELL: dict[type, float] = {
+    ObservationDetail: 0.5,
+    AugmentDetail: 1.2,
+    HoughDetail: 1.2,
+    WindowDetail: 0.4,
+    ShiftDetail: 0.42,
+    CandidatesDetail: 0.6,
+    AnswersDetail: 0.4,
+    Fusion: 0.9,
+}
+FIRST_SWARM = 0.033  # per iteration of the best candidate's swarm
+LATER_SWARMS = 0.006  # the rest look alike: a glimpse of each is enough
+
+
+def dwell(step: Step, pace: float, again: bool) -> float:
+    """Seconds that a step stays on the screen.
+
+    pace  : 0 for no waiting
+    again : whether steps of an earlier run are played once more, too
+    """
+    if pace <= 0 or (step.reused and not again):
+        return 0.0
+    if isinstance(step.detail, RefineDetail):
+        return pace * (FIRST_SWARM if step.detail.index == 0 else LATER_SWARMS)
+    return pace * DWELL.get(type(step.detail), 0.0)
+
+
+class Waiting:
+    """A wait that ends at once when ``cut`` is called from elsewhere."""
+
+    def __init__(self) -> None:
+        self._condition = Condition()
+        self._cuts = 0
+
+    @property
+    def mark(self) -> int:
+        """Taken before the work that the wait belongs to: a cut since then is not missed."""
+        return self._cuts
+
+    def wait(self, seconds: float, mark: int) -> None:
+        """Sleep so long, or until a cut after ``mark``."""
+        if seconds > 0:
+            with self._condition:
+                self._condition.wait_for(lambda: self._cuts != mark, seconds)
+
+    def cut(self) -> None:
+        """End every wait."""
+        with self._condition:
+            self._cuts += 1
+            self._condition.notify_all()

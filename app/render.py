@@ -1,0 +1,108 @@
+"""Grids in, pixels out: numpy only, so that every picture is tested without a browser.
+
+Row 0 of every picture is the bottom, as in a GridMap: that is also how the scene lays an image down.
+``upright`` turns a picture over for a screen, where row 0 is the top.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.augment import AugmentedMap
+from algorithms.fuse import Fusion
+from algorithms.gridmap import FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, CellArray
+from app.palette import Palette, Rgb, viridis
+
+Pixels = NDArray[np.uint8]
+
+MOST_PIXELS = 2048  # a side of a picture that is sent; a finer map is pooled down to it
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Pixels and how many cells one of them stands for.
+
+    pixels : (H, W, 4) uint8, row 0 at the bottom
+    pooled : cells per pixel on each axis, 1 where nothing was pooled
+    """
+
+    pixels: Pixels
+    pooled: int
+
+
+def pooling(shape: tuple[int, ...], most: int = MOST_PIXELS) -> int:
+    """Cells per pixel that keep both sides within ``most`` pixels."""
+    return max(1, -(-max(shape[:2]) // most))
+
+
+def pool(cells: CellArray, factor: int) -> CellArray:
+    """Cells of ``factor`` x ``factor`` cells each; the highest value wins, so that no thin wall is lost."""
+    if factor == 1:
+        return cells
+    height, width = (-(-side // factor) * factor for side in cells.shape)
+    padded = np.full((height, width), UNKNOWN, dtype=np.int8)
+    padded[: cells.shape[0], : cells.shape[1]] = cells
+    blocks = padded.reshape(height // factor, factor, width // factor, factor)
+    return np.asarray(blocks.max(axis=(1, 3)), dtype=np.int8)
+
+
+def _tinted(mask: NDArray[np.bool_], colour: Rgb, alpha: int = 255) -> Pixels:
+    """One colour everywhere and the shape in alpha alone: no dark fringe when a texture is averaged."""
+    pixels = np.empty((*mask.shape, 4), dtype=np.uint8)
+    pixels[..., :3] = colour
+    pixels[..., 3] = np.where(mask, alpha, 0)
+    return pixels
+
+
+def walls(cells: CellArray, colour: Rgb) -> Picture:
+    """The walls in one colour, everything else transparent."""
+    factor = pooling(cells.shape)
+    return Picture(_tinted(pool(cells, factor) >= OCCUPIED_FROM, colour), factor)
+
+
+def floor(cells: CellArray, palette: Palette, alpha: int = 255) -> Picture:
+    """What is known and no wall, in the colour of free space; unknown is transparent."""
+    factor = pooling(cells.shape)
+    return Picture(_tinted(pool(cells, factor) != UNKNOWN, palette.free, alpha), factor)
+
+
+def levels(augmented: AugmentedMap, palette: Palette) -> Picture:
+    """The walls in the colours of their levels, eq. (4); walls too far to count keep a faint grey."""
+    cells = augmented.grid.cells
+    factor = pooling(cells.shape)
+    pixels = _tinted(pool(cells, factor) >= OCCUPIED_FROM, palette.margin, 70)
+    if len(augmented.levels):
+        share = np.zeros(pixels.shape[:2])
+        np.maximum.at(
+            share, (augmented.rows // factor, augmented.cols // factor), augmented.levels / augmented.peak
+        )
+        rows, cols = np.nonzero(share > 0.004)  # one step of the colour scale
+        pixels[rows, cols, :3] = viridis(share[rows, cols])
+        pixels[rows, cols, 3] = 255
+    return Picture(pixels, factor)
+
+
+def merged(fusion: Fusion, palette: Palette) -> Picture:
+    """The merged map: whose wall it is, where both agree on a wall, and where they contradict."""
+    factor = pooling(fusion.merged.cells.shape)
+    ref, mov = pool(fusion.ref_cells, factor), pool(fusion.mov_cells, factor)
+    ref_wall, mov_wall = ref >= OCCUPIED_FROM, mov >= OCCUPIED_FROM
+    ref_free = (ref != UNKNOWN) & (ref <= FREE_UP_TO)
+    mov_free = (mov != UNKNOWN) & (mov <= FREE_UP_TO)
+    pixels = _tinted((ref != UNKNOWN) | (mov != UNKNOWN), palette.free)
+    for mask, colour in (
+        (ref_wall, palette.ref),
+        (mov_wall, palette.mov),
+        (ref_wall & mov_wall, palette.agreed),
+        ((ref_wall & mov_free) | (ref_free & mov_wall), palette.conflict),
+    ):
+        pixels[mask, :3] = colour
+    return Picture(pixels, factor)
+
+
+def upright(pixels: Pixels) -> Pixels:
+    """The picture for a screen: row 0 at the top."""
+    return np.ascontiguousarray(pixels[::-1])

@@ -1,0 +1,179 @@
+"""One tab's work: newest request wins, one worker computes, and every step is told at a pace.
+
+No viser here: a listener gets what is to be drawn.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from threading import Condition, RLock, Thread
+from time import perf_counter
+from typing import Any, Literal, Protocol
+
+from algorithms import methods
+from algorithms.chain import Memo
+from algorithms.errors import MapMergeError
+from algorithms.gridmap import GridMap
+from algorithms.observation import Observation
+from algorithms.steps import CandidatesDetail, MergeResult, Step
+from app.player import FRAME, Waiting, dwell
+from app.story import Story
+
+log = logging.getLogger(__name__)
+
+Goal = Literal["merge", "candidates"]
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """One request: what to merge, how, how far, and how fast to tell it.
+
+    goal  : the whole merge, or only up to the candidates (before the first merge, a moved slider
+            shows what it does without jumping to the answer)
+    pace  : factor on the time each step stays on the screen; 0: none
+    again : play steps that are known already, too
+    """
+
+    ref: GridMap
+    mov: GridMap
+    observation: Observation
+    config: Any
+    method: str = methods.DEFAULT_METHOD
+    seed: int = 0
+    goal: Goal = "merge"
+    pace: float = 0.0
+    again: bool = False
+
+
+class Listener(Protocol):
+    """Who draws. All calls come one at a time."""
+
+    def begun(self, job: Job) -> None:
+        """A run starts; what is on the screen is out of date from the first changed stage on."""
+
+    def show(self, job: Job, story: Story) -> None:
+        """Draw the newest state."""
+
+    def ended(self, job: Job, story: Story) -> None:
+        """The run came to its goal."""
+
+    def stopped(self, job: Job, story: Story) -> None:
+        """Someone pressed Stop."""
+
+    def failed(self, job: Job, error: Exception) -> None:
+        """The run could not go on: a MapMergeError to be told, or a bug to be logged."""
+
+
+class Session:
+    """A worker thread and the request it works on."""
+
+    def __init__(
+        self,
+        listener: Listener,
+        run: Callable[..., Iterator[Step]] = methods.run,
+        clock: Callable[[], float] = perf_counter,
+        waiting: Waiting | None = None,
+    ) -> None:
+        self._listener, self._run, self._clock = listener, run, clock
+        self._waiting = waiting or Waiting()
+        self._memo: Memo = {}
+        self._wake = Condition()
+        self._wanted: Job | None = None
+        self._running: Job | None = None
+        self._story = Story()
+        self._closed = False
+        # held while a picture is drawn, so that nothing of a run is drawn after Stop has returned
+        self._drawing = RLock()
+        self._worker = Thread(target=self._work, name="mapmeld-session", daemon=True)
+        self._worker.start()
+
+    @property
+    def busy(self) -> bool:
+        """Whether a run is going on or about to."""
+        return self._running is not None or self._wanted is not None
+
+    def request(self, job: Job) -> None:
+        """Run this next; a run that is going on is left where it is."""
+        with self._wake:
+            if self._closed:
+                return
+            self._wanted = job
+            self._wake.notify()
+        self._waiting.cut()
+
+    def stop(self) -> None:
+        """Leave the run that is going on; nothing of it is drawn once this has returned."""
+        with self._wake:
+            self._wanted = None
+            job, self._running = self._running, None
+        self._waiting.cut()
+        with self._drawing:
+            if job is not None:
+                self._listener.stopped(job, self._story)
+
+    def close(self) -> None:
+        """End the worker; the tab is gone."""
+        with self._wake:
+            self._closed, self._wanted, self._running = True, None, None
+            self._wake.notify()
+        self._waiting.cut()
+
+    def _work(self) -> None:
+        while True:
+            with self._wake:
+                self._wake.wait_for(lambda: self._closed or self._wanted is not None)
+                if self._closed:
+                    return
+                job, self._wanted = self._wanted, None
+                assert job is not None
+                self._running, self._story = job, Story()
+            try:
+                self._tell(job)
+            except MapMergeError as error:
+                self._deliver(job, lambda error=error: self._listener.failed(job, error))  # type: ignore[misc]
+            except Exception as error:
+                log.exception("a run of %s ended in a bug", job.method)
+                self._deliver(job, lambda error=error: self._listener.failed(job, error))  # type: ignore[misc]
+            with self._wake:
+                if self._running is job:
+                    self._running = None
+
+    def _tell(self, job: Job) -> None:
+        """Iterate the method; draw at most every FRAME, except where a step is meant to be seen."""
+        story = self._story
+        if not self._deliver(job, lambda: self._listener.begun(job)):
+            return
+        drawn_at = -FRAME
+        mark = self._waiting.mark
+        steps = self._run(job.method, job.ref, job.mov, job.observation, job.config, job.seed, self._memo)
+        for step in steps:
+            story.tell(step)
+            stay = dwell(step, job.pace, job.again)
+            if not self._wants(job):
+                return
+            if stay >= FRAME or self._clock() - drawn_at >= FRAME:
+                drawn_at = self._clock()
+                if not self._deliver(job, lambda: self._listener.show(job, story)):
+                    return
+                stay -= self._clock() - drawn_at
+            self._waiting.wait(stay, mark)
+            if not self._wants(job):
+                return
+            if job.goal == "candidates" and isinstance(step.detail, CandidatesDetail):
+                break
+            if isinstance(step.detail, MergeResult):
+                break
+        self._deliver(job, lambda: self._listener.ended(job, story))
+
+    def _wants(self, job: Job) -> bool:
+        return self._running is job and self._wanted is None and not self._closed
+
+    def _deliver(self, job: Job, tell: Callable[[], None]) -> bool:
+        """Tell the listener, unless the run has been stopped or overtaken; whether it was told."""
+        with self._drawing:
+            if not self._wants(job):
+                return False
+            tell()
+        return True

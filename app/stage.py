@@ -1,0 +1,117 @@
+"""What the page draws by itself, told by the server: camera, ink over the map, words above it.
+
+One message per ``flush``: everything that belongs together is seen together.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import viser
+from viser._messages import RunJavascriptMessage
+
+from algorithms.pose import FloatArray, Pose2
+from app.layout import Rect
+from app.palette import Palette, Rgb, css
+
+_SCRIPT = (Path(__file__).parent / "page.js").read_text(encoding="utf-8")
+
+Item = dict[str, Any]
+
+
+class Stage:
+    """The browser's side of one tab; see page.js for what each item may hold."""
+
+    def __init__(self, client: viser.ClientHandle) -> None:
+        self._client = client
+        self._pending: dict[str, Any] = {}
+        self._hud: dict[str, Any] = {}
+        self._run(_SCRIPT)
+
+    def layer(self, name: str, items: list[Item] | None) -> None:
+        """Replace a layer of ink; None removes it."""
+        self._pending.setdefault("layers", {})[name] = items or None
+
+    def hud(self, **words: Any) -> None:
+        """Change words above the map: case, state, mood, progress, legend, anchor."""
+        changed = {key: value for key, value in words.items() if self._hud.get(key, self) != value}
+        self._hud.update(changed)
+        if changed:
+            self._pending.setdefault("hud", {}).update(changed)
+
+    def place_mov(self, at: Pose2, milliseconds: float = 0) -> None:
+        """Turn and slide map 2's anchor to a pose of the scene, in this time."""
+        self._pending["mov"] = {"x": at.x, "y": at.y, "theta": at.theta, "ms": milliseconds}
+
+    def look_down(self, rect: Rect, follow: bool = False) -> None:
+        """Show a rectangle of the map from above, north up.
+
+        follow : also where the person has moved the camera since the last time
+        """
+        self._pending["look"] = {"view": "map", "box": list(rect)}
+        self._pending["follow"] = follow or self._pending.get("follow", False)
+
+    def look_at(self, view: str, centre: FloatArray, radius: float, polar: float, azimuth: float) -> None:
+        """Show a ball of the scene in 3-D; radians, polar from straight above."""
+        self._pending["look"] = {
+            "view": view,
+            "centre": centre.tolist(),
+            "radius": radius,
+            "polar": polar,
+            "azimuth": azimuth,
+        }
+        self._pending["follow"] = True
+
+    def theme(self, palette: Palette) -> None:
+        """Light or dark ink, and the colour of what no map knows."""
+        self._pending["dark"] = palette.dark
+        self._pending["background"] = css(palette.unknown)
+
+    def flush(self) -> None:
+        """Send what has gathered."""
+        if self._pending:
+            message, self._pending = self._pending, {}
+            self._run(f"window.mapmeld && window.mapmeld.apply({json.dumps(message, default=_plain)})")
+
+    def _run(self, source: str) -> None:
+        # viser's own way to run a script in one tab; it keeps order with the scene's messages
+        self._client._websock_connection.queue_message(RunJavascriptMessage(source=source))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return np.round(value.astype(float), 4).tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"{type(value).__name__} cannot be sent to the page")
+
+
+def path(points: FloatArray, colour: Rgb | None, frame: str = "scene", **more: Any) -> Item:
+    """A line through (N, 2) or (N, 3) points; d dashes, w width, fill, close, t text, halo."""
+    return {"k": "path", "f": frame, "p": points, "c": css(colour) if colour else None, **more}
+
+
+def mark(shape: str, point: FloatArray, colour: Rgb, frame: str = "scene", **more: Any) -> Item:
+    """A sign of constant size: robot, cross, ring, dot, diamond or star; a angle, r size, t text."""
+    return {"k": "mark", "s": shape, "f": frame, "p": point, "c": css(colour), **more}
+
+
+def cloud(points: FloatArray, colour: Rgb, **more: Any) -> Item:
+    """Particles: (N, 3) x, y, heading, or with n3=True x, y, z. They glide to their next place."""
+    flat = np.round(points, 3).ravel()
+    return {"k": "cloud", "f": "scene", "n": points.shape[1], "p": flat, "c": css(colour), **more}
+
+
+def rectangle(low: FloatArray, high: FloatArray) -> FloatArray:
+    """(4, 2) corners of an upright rectangle."""
+    return np.array([low, [high[0], low[1]], high, [low[0], high[1]]])
+
+
+def ellipse(centre: FloatArray, covariance: FloatArray, deviations: float) -> FloatArray:
+    """(64, 2) points at so many standard deviations of a (2, 2) covariance."""
+    turn = np.linspace(0, 2 * np.pi, 64, endpoint=False)
+    ring = np.stack([np.cos(turn), np.sin(turn)], axis=1) * deviations
+    return np.asarray(centre + ring @ np.linalg.cholesky(covariance).T, dtype=np.float64)

@@ -1,0 +1,58 @@
+"""Grids as flat pictures in the scene."""
+
+from __future__ import annotations
+
+from math import cos, sin
+
+import numpy as np
+import viser
+
+from algorithms.gridmap import GridMap
+from algorithms.pose import FloatArray
+from app.render import Picture
+
+
+class GridImage:
+    """A picture of a grid that lies in the scene where the grid's cells are."""
+
+    def __init__(self, scene: viser.SceneApi, name: str, height: float) -> None:
+        self._scene, self._name, self._height = scene, name, height
+        self._handle: viser.ImageHandle | None = None
+
+    def show(self, picture: Picture, grid: GridMap, anchor: FloatArray) -> None:
+        """Draw a picture of ``grid``.
+
+        anchor : (2,) point of the grid's frame that lies at the parent's origin; metres
+        """
+        rows, cols = picture.pixels.shape[:2]
+        size = np.array([cols, rows]) * picture.pooled * grid.resolution
+        centre = grid.origin.apply(size / 2) - anchor
+        half = grid.origin.theta / 2
+        if self._handle is not None:
+            self._handle.remove()
+        self._handle = self._scene.add_image(
+            self._name,
+            picture.pixels,
+            float(size[0]),
+            float(size[1]),
+            format="png",
+            position=(float(centre[0]), float(centre[1]), self._height),
+            wxyz=(cos(half), 0.0, 0.0, sin(half)),
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+    def hide(self) -> None:
+        """Take the picture away."""
+        self.visible(False)
+
+    def visible(self, yes: bool) -> None:
+        """Show or hide it as it is."""
+        if self._handle is not None:
+            self._handle.visible = yes
+
+    def remove(self) -> None:
+        """Forget the picture."""
+        if self._handle is not None:
+            self._handle.remove()
+            self._handle = None

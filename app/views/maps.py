@@ -1,0 +1,353 @@
+"""The view a person reads like a map: both maps, robots, what the search tries, what came out."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin
+
+import numpy as np
+import viser
+
+from algorithms.fuse import Fusion
+from algorithms.gridmap import GridMap
+from algorithms.observation import Encounter, Observation
+from algorithms.pose import FloatArray, Pose2
+from algorithms.steps import (
+    AnswersDetail,
+    AugmentDetail,
+    CandidatesDetail,
+    HoughDetail,
+    MergeResult,
+    RefineDetail,
+    ShiftDetail,
+    WindowDetail,
+)
+from algorithms.window import Box
+from app import render
+from app.layout import Layout, Rect, union
+from app.palette import Palette
+from app.stage import Item, Stage, cloud, ellipse, mark, path, rectangle
+from app.story import Story
+from app.views.images import GridImage
+
+# Heights of the flat pictures; far apart for the depth buffer, nothing for a camera far above.
+FREE_1, FREE_2, WALLS_1, WALLS_2, MERGED = 0.0, 0.1, 0.2, 0.3, 0.4
+TURN_MS, SLIDE_MS = 900.0, 330.0
+MOST_PARTICLES = 600  # drawn; more would be a blot
+
+
+class MapView:
+    """Map 1 lies still; map 2 hangs on the frame /mov, which the page turns and slides."""
+
+    def __init__(self, client: viser.ClientHandle, stage: Stage) -> None:
+        scene = client.scene
+        self._stage = stage
+        scene.add_frame("/ref", show_axes=False)
+        scene.add_frame("/mov", show_axes=False)
+        self._free_1 = GridImage(scene, "/ref/free", FREE_1)
+        self._free_2 = GridImage(scene, "/mov/free", FREE_2)
+        self._walls_1 = GridImage(scene, "/ref/walls", WALLS_1)
+        self._walls_2 = GridImage(scene, "/mov/walls", WALLS_2)
+        self._levels_1 = GridImage(scene, "/ref/levels", WALLS_1)
+        self._levels_2 = GridImage(scene, "/mov/levels", WALLS_2)
+        self._merged = GridImage(scene, "/ref/merged", MERGED)
+        self._sources = (self._free_1, self._free_2, self._walls_1, self._walls_2)
+        self._levels = (self._levels_1, self._levels_2)
+        self.layout = Layout(np.zeros(2), np.zeros(2), None, None, Pose2())
+        self._ref: GridMap | None = None
+        self._mov: GridMap | None = None
+        self._observation: Observation | None = None
+        self._at: Encounter | None = None
+        self._palette: Palette | None = None
+        self._drawn: dict[str, object] = {}
+        self._mov_at = Pose2()
+
+    # --- what was loaded --------------------------------------------------------------------------
+
+    def load(
+        self,
+        ref: GridMap | None,
+        mov: GridMap | None,
+        observation: Observation | None,
+        at: Encounter | None,
+        layout: Layout,
+        palette: Palette,
+    ) -> None:
+        """Show maps side by side, before any merge."""
+        self._ref, self._mov, self._observation, self._at = ref, mov, observation, at
+        self.layout, self._palette = layout, palette
+        self._drawn.clear()
+        for image in (*self._sources, *self._levels, self._merged):
+            image.remove()
+        if ref:
+            self._free_1.show(render.floor(ref.cells, palette), ref, layout.anchor_ref)
+            self._walls_1.show(render.walls(ref.cells, palette.ref), ref, layout.anchor_ref)
+        if mov:
+            self._free_2.show(render.floor(mov.cells, palette, 215), mov, layout.anchor_mov)
+            self._walls_2.show(render.walls(mov.cells, palette.mov), mov, layout.anchor_mov)
+        self.apart(follow=True)
+
+    def apart(self, follow: bool = False, milliseconds: float = 0) -> None:
+        """Put map 2 beside map 1, and nothing of a search over them."""
+        self._show_images("sources")
+        self._place(self.layout.apart, milliseconds)
+        for name in ("aug", "window", "box", "swarm", "trail", "best"):
+            self._stage.layer(name, None)
+        self._robots(together=False)
+        self._stage.look_down(self.layout.view(), follow)
+
+    def visible(self, yes: bool) -> None:
+        """Show or hide everything of this view."""
+        if yes:
+            self._show_images(str(self._drawn.get("images", "sources")))
+        else:
+            shown = self._drawn.get("images", "sources")
+            for image in (*self._sources, *self._levels, self._merged):
+                image.visible(False)
+            self._drawn["images"] = shown
+            for name in ("aug", "window", "box", "swarm", "trail", "best", "robots", "sight"):
+                self._stage.layer(name, None)
+
+    # --- a run ------------------------------------------------------------------------------------
+
+    def show(self, story: Story, camera: bool, live: bool) -> None:
+        """Draw the newest state of a run.
+
+        camera : whether the camera goes along
+        live   : the run is told at a pace; otherwise only its end matters and nothing glides
+        """
+        detail = story.last.detail if story.last else None
+        stage, layout = self._stage, self.layout
+        glide = 1.0 if live else 0.0
+        augmented = story.get(AugmentDetail)
+        self._augmentation(augmented)
+        if isinstance(detail, (AugmentDetail, HoughDetail)):
+            self._show_images("levels")
+            turn = detail.match.turns[0] if isinstance(detail, HoughDetail) else 0.0
+            self._place(Pose2(layout.apart.x, layout.apart.y, turn), glide * TURN_MS)
+            self._robots(together=False)
+            self._clear("window", "box", "swarm", "trail", "best")
+            if camera:
+                stage.look_down(layout.view())
+        elif isinstance(detail, (WindowDetail, ShiftDetail, CandidatesDetail)):
+            self._candidates(story, glide, camera)
+        elif isinstance(detail, RefineDetail):
+            self._refine(detail, glide, camera)
+        elif isinstance(detail, (AnswersDetail, Fusion, MergeResult)):
+            self._answer(story, glide, camera)
+
+    def _augmentation(self, detail: AugmentDetail | None) -> None:
+        if detail is None or self._palette is None or self._drawn.get("augmented") is detail:
+            return
+        self._drawn["augmented"] = detail
+        layout = self.layout
+        self._levels_1.show(render.levels(detail.ref, self._palette), detail.ref.grid, layout.anchor_ref)
+        self._levels_2.show(render.levels(detail.mov, self._palette), detail.mov.grid, layout.anchor_mov)
+        self._show_images(str(self._drawn.get("images", "levels")), force=True)
+
+    def rings(self, covariance: FloatArray) -> None:
+        """Σ_aug around the meeting place in both maps: one and two standard deviations."""
+        if self._palette is None or self._at is None:
+            return
+        items = [
+            path(
+                ellipse(np.zeros(2), covariance, k),
+                self._palette.margin,
+                frame,
+                close=True,
+                w=1.3,
+                d=[2, 4] if k == 2 else [],
+                halo=True,
+                **({"t": f"{k}σ_aug", "dy": 0, "dx": 4} if frame == "scene" else {}),
+            )
+            for frame in ("scene", "mov")
+            for k in (1, 2)
+        ]
+        self._stage.layer("aug", items)
+
+    def _candidates(self, story: Story, glide: float, camera: bool) -> None:
+        assert self._palette is not None and self._at is not None
+        layout, colours = self.layout, self._palette
+        self._show_images("sources")
+        self._clear("swarm", "trail", "best", "aug")
+        window = story.get(WindowDetail)
+        if window is not None:
+            w = window.window
+            low = np.array([w.x_low, w.y_low]) - layout.anchor_ref
+            high = np.array([w.x_high, w.y_high]) - layout.anchor_ref
+            label = {"t": "window of eqs. (9), (10) for map 2's origin", "dy": -9}
+            corners = rectangle(low, high)
+            self._stage.layer(
+                "window",
+                [path(corners, colours.margin, close=True, d=[7, 5], tp=corners[3], **label)],
+            )
+        tried = story.shifts
+        found = story.get(CandidatesDetail)
+        poses = (
+            [c.T_ref_mov for c in found.candidates] if found else [s.candidate.T_ref_mov for s in tried]
+        )
+        marks = [
+            mark("diamond", layout.placed(T).xy, colours.best if rank == 0 and found else colours.particle, r=5)
+            for rank, T in enumerate(poses)
+        ]
+        self._stage.layer("box", list(reversed(marks)))
+        if poses:
+            self._place(layout.placed(poses[0] if found else poses[-1]), glide * SLIDE_MS)
+        self._robots(together=bool(poses))
+        if camera:
+            self._stage.look_down(self._swept())
+
+    def _refine(self, detail: RefineDetail, glide: float, camera: bool) -> None:
+        assert self._palette is not None
+        layout, colours, state = self.layout, self._palette, detail.state
+        self._show_images("sources")
+        self._clear("window", "aug")
+        best = layout.placed(detail.box.transform(state.best))
+        self._place(best, glide * 70)
+        self._robots(together=True)
+        key = (detail.index, detail.total, id(detail.box))
+        if self._drawn.get("box") != key:
+            self._drawn["box"] = key
+            middle = layout.placed(detail.box.transform(detail.box.centre)).xy
+            half = (detail.box.high - detail.box.low)[:2] / 2
+            corners = rectangle(middle - half, middle + half)
+            footprint = self._footprint(detail.box)
+            self._stage.layer(
+                "box",
+                [
+                    path(
+                        corners,
+                        colours.margin,
+                        close=True,
+                        d=[6, 4],
+                        halo=True,
+                        w=1.5,
+                        t="box ± σ_x, ± σ_y",
+                        tp=corners[3],
+                        dy=-8,
+                    )
+                ],
+            )
+            if camera:
+                self._stage.look_down(footprint)
+        step = -(-len(state.poses) // MOST_PARTICLES)
+        where = self.seen_robot(detail.box.transforms(state.poses[::step]))
+        self._stage.layer(
+            "swarm", [cloud(where, colours.particle, r=2.6, alpha=0.8, glide=f"{detail.index}")]
+        )
+        self._stage.layer(
+            "best", [mark("diamond", best.xy, colours.best, r=6, rim="#ffffff", t="swarm best", dy=13, dx=8)]
+        )
+
+    def _answer(self, story: Story, glide: float, camera: bool) -> None:
+        assert self._palette is not None
+        layout, colours = self.layout, self._palette
+        answers, fusion = story.get(AnswersDetail), story.get(Fusion)
+        if answers is None:
+            return
+        T = answers.answers[0].T_ref_mov
+        self._clear("window", "aug", "swarm", "trail", "box")
+        self._drawn.pop("box", None)
+        self._place(layout.placed(T), glide * SLIDE_MS)
+        self._robots(together=True)
+        self._stage.layer(
+            "best", [mark("star", layout.placed(T).xy, colours.answer, r=9, rim="#374151")]
+        )
+        if fusion is not None:
+            if self._drawn.get("fusion") is not fusion:
+                self._drawn["fusion"] = fusion
+                self._merged.show(render.merged(fusion, colours), fusion.merged, layout.anchor_ref)
+            self._show_images("merged")
+        if camera:
+            self._stage.look_down(layout.view(layout.placed(T)))
+
+    # --- parts ------------------------------------------------------------------------------------
+
+    def seen_robot(self, poses: FloatArray) -> FloatArray:
+        """(P, 3) where each transform puts x̂2 in the scene, and its turn; metres, metres, radians."""
+        c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+        x, y = self.layout.anchor_mov
+        return np.column_stack(
+            [
+                poses[:, 0] + c * x - s * y - self.layout.anchor_ref[0],
+                poses[:, 1] + s * x + c * y - self.layout.anchor_ref[1],
+                poses[:, 2],
+            ]
+        )
+
+    def _footprint(self, box: Box) -> Rect:
+        """Rectangle that shows a box of transforms at the seen robot, with walls around it."""
+        low, high = box.low, box.high
+        corners = np.array(
+            [[x, y, a] for x in (low[0], high[0]) for y in (low[1], high[1]) for a in (low[2], high[2])]
+        )
+        at = self.seen_robot(box.transforms(corners))[:, :2]
+        middle = (at.min(axis=0) + at.max(axis=0)) / 2
+        half = max(3.0, 0.75 * float((at.max(axis=0) - at.min(axis=0)).max()))
+        return (*(middle - half).tolist(), *(middle + half).tolist())  # type: ignore[return-value]
+
+    def _swept(self) -> Rect:
+        """Rectangle that holds map 1 and map 2 at any turn about the meeting place."""
+        layout = self.layout
+        ref = layout.view(Pose2()) if layout.mov_corners is None else None
+        reach = 0.0
+        if layout.mov_corners is not None:
+            reach = float(np.hypot(*layout.mov_corners.T).max())
+        if layout.ref_corners is not None:
+            x0, y0 = layout.ref_corners.min(axis=0).tolist()
+            x1, y1 = layout.ref_corners.max(axis=0).tolist()
+            ref = (x0, y0, x1, y1)
+        assert ref is not None
+        return union(ref, (-reach, -reach, reach, reach))
+
+    def _robots(self, together: bool) -> None:
+        o, at, colours = self._observation, self._at, self._palette
+        if o is None or at is None or colours is None or self._ref is None:
+            self._clear("robots", "sight")
+            return
+        zero = np.zeros(2)
+        first = o.observer.xy - self.layout.anchor_ref
+        back = o.observer.theta + o.bearing + pi
+        away = np.array([cos(back), sin(back)])  # from x̂1 to robot 1: its label goes to the far side
+        side: Item = {"dx": 14, "align": "left"} if away[0] >= 0 else {"dx": -14, "align": "right"}
+        robots = [
+            mark("robot", first, colours.ref, a=o.observer.theta, r=9, t="robot 1", size=12, **side),
+        ]
+        other: Item = {"dx": -14, "align": "right"} if away[0] >= 0 else {"dx": 14, "align": "left"}
+        sight = [path(np.array([first, zero]), colours.text, w=1.6, d=[5, 4], halo=True)]
+        if self._mov is not None:
+            heading = {} if o.observed_heading is None else {"a": o.observed_heading}
+            shape = "dot" if o.observed_heading is None else "robot"
+            robots.append(
+                mark(shape, zero, colours.mov, "mov", r=9 if heading else 6, t="robot 2", size=12, **heading, **other)
+            )
+        if not together:
+            robots.append(mark("ring", zero, colours.conflict, r=7, t="x̂₁ seen here", size=11, **other))
+            if self._mov is not None:
+                robots.append(mark("ring", zero, colours.conflict, "mov", r=13))
+                link = np.array([zero, self.layout.apart.xy])
+                sight.append(path(link, colours.margin, w=1, d=[1, 5]))
+        self._stage.layer("robots", robots)
+        self._stage.layer("sight", sight)
+
+    def _place(self, at: Pose2, milliseconds: float) -> None:
+        if at != self._mov_at or milliseconds == 0:
+            self._mov_at = at
+            self._stage.place_mov(at, milliseconds)
+
+    def _clear(self, *names: str) -> None:
+        for name in names:
+            self._stage.layer(name, None)
+        if "box" in names:
+            self._drawn.pop("box", None)
+
+    def _show_images(self, which: str, force: bool = False) -> None:
+        if self._drawn.get("images") == which and not force:
+            return
+        self._drawn["images"] = which
+        for image in (self._free_1, self._free_2):
+            image.visible(which != "merged")
+        for image in (self._walls_1, self._walls_2):
+            image.visible(which == "sources")
+        for image in self._levels:
+            image.visible(which == "levels")
+        self._merged.visible(which == "merged")
