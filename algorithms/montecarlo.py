@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from algorithms.pose import FloatArray
-from algorithms.search import SearchState, Value, to_pose
+from algorithms.search import SearchState, Value
 from algorithms.swarm import SwarmConfig
 from algorithms.window import Box
 
@@ -36,7 +36,7 @@ def monte_carlo(
             values,
             poses.copy(),
             values.copy(),
-            to_pose(best),
+            best.copy(),
             best_value,
             stopped,
         )

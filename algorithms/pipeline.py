@@ -18,6 +18,7 @@ from algorithms.gridmap import GridMap
 from algorithms.montecarlo import monte_carlo
 from algorithms.objective import Lookup, make_objective
 from algorithms.observation import Encounter, Observation, encounter
+from algorithms.pose import FloatArray
 from algorithms.search import Optimiser
 from algorithms.smm import CandidateConfig, match_turns, shift_candidates
 from algorithms.spectra import SpectraConfig
@@ -37,7 +38,7 @@ from algorithms.steps import (
 )
 from algorithms.swarm import SwarmConfig, settled_within, swarm
 from algorithms.verdict import VerdictConfig, ambiguity_of, judge
-from algorithms.window import BoxConfig, WindowConfig, box_around, paper_window
+from algorithms.window import Box, BoxConfig, WindowConfig, box_around, paper_window
 
 OPTIMISERS: dict[str, Optimiser] = {"pso": swarm, "mco": monte_carlo}
 
@@ -125,7 +126,6 @@ def run(
         (ref, mov, refined, config.conflict),
         lambda: [fuse(ref, mov, best.T_ref_mov, config.conflict)],
     )
-    box = box_around(best.T_ref_mov, config.box)
     yield from chain.stage(
         "verdict",
         (fusion, refined, config.verdict, method),
@@ -133,7 +133,10 @@ def run(
             MergeResult(
                 T_ref_mov=best.T_ref_mov,
                 covariance=peak_covariance(
-                    found.objective, best.T_ref_mov, box, ref.resolution, config.augment.spread
+                    found.objective,
+                    best.T_ref_mov,
+                    box_around(best.T_ref_mov, found.window, config.box),
+                    config.augment.spread,
                 ),
                 value=best.value,
                 verdict=judge(
@@ -166,23 +169,23 @@ def _search(
     at: Encounter, augmented: AugmentDetail, hough: HoughDetail, config: PipelineConfig, seed: int
 ) -> Iterator[Detail]:
     """A candidate per turn, then a first look into the box of each, which ranks them by Γ."""
-    window = paper_window(at, config.window.margin)
+    window = paper_window(at, config.window)
     yield WindowDetail(window)
     candidates = []
-    turns = shift_candidates(augmented.ref, augmented.mov, hough.match, window, config.candidates.twins)
+    turns = shift_candidates(augmented.ref, augmented.mov, hough.match, window)
     for index, candidate in enumerate(turns):
         yield ShiftDetail(index, len(hough.match.turns), candidate)
         candidates.append(candidate)
     objective = make_objective(augmented.ref, augmented.mov, config.refine.lookup)
     looked = []
     for index, candidate in enumerate(candidates):
-        box = box_around(candidate.T_ref_mov, config.box)
+        box = box_around(candidate.T_ref_mov, window, config.box)
         rng = np.random.default_rng([seed, 0, index])
         poses = rng.uniform(box.low, box.high, (config.swarm.particles, 3))
         poses[0] = box.centre
-        looked.append(replace(candidate, value=float(objective(poses).max())))
+        looked.append(replace(candidate, value=float(objective(box.transforms(poses)).max())))
     looked.sort(key=lambda candidate: -(candidate.value or 0.0))
-    yield CandidatesDetail(tuple(looked), objective)
+    yield CandidatesDetail(tuple(looked), objective, window)
 
 
 def _refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Iterator[Detail]:
@@ -192,11 +195,15 @@ def _refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Itera
     refined = found.candidates[: config.refine.candidates]
     answers = []
     for index, candidate in enumerate(refined):
-        box = box_around(candidate.T_ref_mov, config.box)
+        box = box_around(candidate.T_ref_mov, found.window, config.box)
         rng = np.random.default_rng([seed, 1, index])
-        for state in optimise(found.objective, box, config.swarm, settled, rng):
+
+        def value(poses: FloatArray, box: Box = box) -> FloatArray:
+            return found.objective(box.transforms(poses))
+
+        for state in optimise(value, box, config.swarm, settled, rng):
             yield RefineDetail(index, len(refined), box, state)
-        answers.append(Answer(state.best, state.best_value, state.stopped or ""))
+        answers.append(Answer(box.transform(state.best), state.best_value, state.stopped or ""))
     answers += [
         Answer(candidate.T_ref_mov, candidate.value or 0.0, "only looked at")
         for candidate in found.candidates[config.refine.candidates :]

@@ -8,7 +8,7 @@ from math import pi
 
 import numpy as np
 
-from algorithms.pose import FloatArray, Pose2, wrap_angle
+from algorithms.pose import FloatArray
 from algorithms.window import Box
 
 Value = Callable[[FloatArray], FloatArray]  # (P, 3) poses -> (P,) values, the higher the better
@@ -18,10 +18,10 @@ Value = Callable[[FloatArray], FloatArray]  # (P, 3) poses -> (P,) values, the h
 class SearchState:
     """One iteration of an optimiser; its arrays are copies.
 
-    poses, values         : (P, 3), (P,) of this iteration's particles or samples; x and y in metres,
-                            theta in radians, unwrapped inside the box
+    poses, values         : (P, 3), (P,) of this iteration's particles or samples, in coordinates of
+                            the box: where the pivot goes in metres, theta in radians, unwrapped
     own_poses, own_values : (P, 3), (P,) best that each particle has met; for samples, themselves
-    best, best_value      : best met by anyone so far; never gets worse
+    best, best_value      : (3,) best met by anyone so far; never gets worse
     stopped               : why the search ended; None while it goes on
     """
 
@@ -30,7 +30,7 @@ class SearchState:
     values: FloatArray
     own_poses: FloatArray
     own_values: FloatArray
-    best: Pose2
+    best: FloatArray
     best_value: float
     stopped: str | None = None
 
@@ -44,9 +44,3 @@ def keep_inside(poses: FloatArray, box: Box) -> FloatArray:
     if box.high[2] - box.low[2] >= 2 * pi:
         inside[:, 2] = box.low[2] + np.mod(poses[:, 2] - box.low[2], 2 * pi)
     return inside
-
-
-def to_pose(array: FloatArray) -> Pose2:
-    """A row of ``poses`` as a Pose2, its angle wrapped."""
-    x, y, theta = array.tolist()
-    return Pose2(x, y, wrap_angle(theta))

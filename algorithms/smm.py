@@ -11,7 +11,7 @@ import numpy as np
 
 from algorithms.augment import AugmentedMap
 from algorithms.bounds import Bounds, check_bounds
-from algorithms.pose import FloatArray, Pose2, wrap_angle
+from algorithms.pose import FloatArray, Pose2, rotation, wrap_angle
 from algorithms.spectra import (
     HoughMatch,
     ShiftMatch,
@@ -71,6 +71,7 @@ def match_turns(
     correlation = correlate_turns(first, second)
     turns: list[float] = []
     strengths: list[float] = []
+    twins: list[bool] = []
     for peak in circular_peaks(correlation)[: candidates.peaks]:
         offset = parabolic_offset(
             float(correlation[peak - 1]),
@@ -81,8 +82,9 @@ def match_turns(
         for twin in (0.0, pi) if candidates.twins else (0.0,):
             turns.append(wrap_angle(turn + twin))
             strengths.append(float(correlation[peak]))
+            twins.append(twin > 0)
     angles = np.arange(len(correlation), dtype=np.float64) * (pi / len(correlation))
-    return HoughMatch(angles, first, second, correlation, tuple(turns), tuple(strengths))
+    return HoughMatch(angles, first, second, correlation, tuple(turns), tuple(strengths), tuple(twins))
 
 
 def circular_peaks(signal: FloatArray) -> list[int]:
@@ -95,16 +97,24 @@ def circular_peaks(signal: FloatArray) -> list[int]:
 
 
 def shift_candidates(
-    ref: AugmentedMap, mov: AugmentedMap, match: HoughMatch, window: Window, twins: bool
+    ref: AugmentedMap, mov: AugmentedMap, match: HoughMatch, window: Window
 ) -> Iterator[Candidate]:
     """Yield one candidate per turn: X and Y spectra of the turned map, eqs. (13)–(16)."""
     step = max(ref.grid.resolution, mov.grid.resolution)
-    for index, (turn, strength) in enumerate(zip(match.turns, match.strengths, strict=True)):
-        cells = turned(mov, turn)
-        x = match_shift(
-            ref.points[:, 0], cells[:, 0], ref.levels, mov.levels, step, window.x_low, window.x_high
+    for turn, strength, twin in zip(match.turns, match.strengths, match.twins, strict=True):
+        cells = turned(mov, turn, window.pivot)
+        x, y = (
+            match_shift(
+                ref.points[:, axis],
+                cells[:, axis],
+                ref.levels,
+                mov.levels,
+                step,
+                float(window.low[axis]),
+                float(window.high[axis]),
+            )
+            for axis in (0, 1)
         )
-        y = match_shift(
-            ref.points[:, 1], cells[:, 1], ref.levels, mov.levels, step, window.y_low, window.y_high
-        )
-        yield Candidate(Pose2(x.shift, y.shift, turn), strength, twins and index % 2 == 1, x, y)
+        goes_to = np.array([x.shift, y.shift])
+        shift_x, shift_y = (goes_to - rotation(turn) @ window.pivot).tolist()
+        yield Candidate(Pose2(shift_x, shift_y, turn), strength, twin, x, y)

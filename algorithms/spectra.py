@@ -36,6 +36,7 @@ class HoughMatch:
     correlation : (K,) CC(k), eq. (12), highest value 1; the turn is +k, see ``correlate_turns``
     turns       : ranked turns in (−π, π], each with its twin; radians
     strengths   : correlation at each of the turns
+    twins       : whether each of them is a peak's + π
     """
 
     angles: FloatArray
@@ -44,6 +45,7 @@ class HoughMatch:
     correlation: FloatArray
     turns: tuple[float, ...]
     strengths: tuple[float, ...]
+    twins: tuple[bool, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +54,7 @@ class ShiftMatch:
 
     ref, mov        : (A,), (B,) spectra, eq. (13) or (14); mov is turned already
     ref_at, mov_at  : (A,), (B,) where the bins lie on the axis; metres, ref frame
-    shifts          : (C,) shifts that were tried; metres
+    shifts          : (C,) shifts of the pivot that were tried: where T puts it; metres, ref frame
     correlation     : (C,) eq. (15) or (16), highest value 1
     low, high       : the allowed window, eqs. (9), (10); metres
     shift           : best allowed shift; metres
@@ -206,6 +208,6 @@ def match_shift(
     return ShiftMatch(ref_sums, mov_sums, ref_at, mov_at, shifts, correlation, low, high, shift)
 
 
-def turned(augmented: AugmentedMap, turn: float) -> FloatArray:
-    """(N, 2) cells of T(0, 0, turn) M2, the turned map of section III-C; metres."""
-    return np.asarray(augmented.points @ rotation(turn).T, dtype=np.float64)
+def turned(augmented: AugmentedMap, turn: float, pivot: FloatArray) -> FloatArray:
+    """(N, 2) cells of T(0, 0, turn) M2, the turned map of section III-C, seen from its pivot; metres."""
+    return np.asarray((augmented.points - pivot) @ rotation(turn).T, dtype=np.float64)

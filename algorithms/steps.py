@@ -61,11 +61,16 @@ class CandidatesDetail:
 
     candidates: tuple[Candidate, ...]
     objective: Objective
+    window: Window
 
 
 @dataclass(frozen=True, eq=False)
 class RefineDetail:
-    """Stage "refine": one snapshot of the optimiser at work on one candidate, eqs. (17)–(22)."""
+    """Stage "refine": one snapshot of the optimiser at work on one candidate, eqs. (17)–(22).
+
+    The state's poses are coordinates in the box: where the box's pivot (x̂2 by default) goes in the ref
+    frame, and the turn. ``box.transforms(state.poses)`` makes (Δx, Δy, Δθ) of them.
+    """
 
     index: int  # which of the ranked candidates, from 0
     total: int  # how many of them are refined

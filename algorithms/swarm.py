@@ -11,7 +11,7 @@ import numpy as np
 
 from algorithms.bounds import Bounds, check_bounds
 from algorithms.pose import FloatArray, wrap_angles
-from algorithms.search import SearchState, Value, keep_inside, to_pose
+from algorithms.search import SearchState, Value, keep_inside
 from algorithms.window import Box
 
 SETTLED_CELLS = 0.1  # a swarm that stays within a tenth of a cell cannot tell two answers apart
@@ -68,7 +68,7 @@ def swarm(
         elif iteration == config.iterations - 1:
             stopped = f"all {config.iterations} iterations used; the swarm had not settled"
         yield SearchState(
-            iteration, poses.copy(), values, own.copy(), own_values.copy(), to_pose(best),
+            iteration, poses.copy(), values, own.copy(), own_values.copy(), best.copy(),
             float(own_values.max()), stopped,
         )  # fmt: skip
         if stopped:
