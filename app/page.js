@@ -75,7 +75,7 @@
     return S.mov;
   }
   function placeMov() {
-    const node = viewer().nodeRefFromName["/mov"];
+    const node = viewer().nodeRefFromName["/world/mov"];
     if (!node) return;
     node.position.set(S.mov.x, S.mov.y, node.position.z);
     node.quaternion.set(0, 0, Math.sin(S.mov.theta / 2), Math.cos(S.mov.theta / 2));

@@ -36,20 +36,22 @@ MOST_PARTICLES = 600  # drawn; more would be a blot
 
 
 class MapView:
-    """Map 1 lies still; map 2 hangs on the frame /mov, which the page turns and slides."""
+    """Map 1 lies still; map 2 hangs on the frame /world/mov, which the page turns and slides."""
 
     def __init__(self, client: viser.ClientHandle, stage: Stage) -> None:
         scene = client.scene
         self._stage = stage
-        scene.add_frame("/ref", show_axes=False)
-        scene.add_frame("/mov", show_axes=False)
-        self._free_1 = GridImage(scene, "/ref/free", FREE_1)
-        self._free_2 = GridImage(scene, "/mov/free", FREE_2)
-        self._walls_1 = GridImage(scene, "/ref/walls", WALLS_1)
-        self._walls_2 = GridImage(scene, "/mov/walls", WALLS_2)
-        self._levels_1 = GridImage(scene, "/ref/levels", WALLS_1)
-        self._levels_2 = GridImage(scene, "/mov/levels", WALLS_2)
-        self._merged = GridImage(scene, "/ref/merged", MERGED)
+        # viser turns a y-up scene half round its y axis; undone here, scene and page agree
+        scene.add_frame("/world", show_axes=False, wxyz=(0.0, 0.0, 1.0, 0.0))
+        scene.add_frame("/world/ref", show_axes=False)
+        scene.add_frame("/world/mov", show_axes=False)
+        self._free_1 = GridImage(scene, "/world/ref/free", FREE_1)
+        self._free_2 = GridImage(scene, "/world/mov/free", FREE_2)
+        self._walls_1 = GridImage(scene, "/world/ref/walls", WALLS_1)
+        self._walls_2 = GridImage(scene, "/world/mov/walls", WALLS_2)
+        self._levels_1 = GridImage(scene, "/world/ref/levels", WALLS_1)
+        self._levels_2 = GridImage(scene, "/world/mov/levels", WALLS_2)
+        self._merged = GridImage(scene, "/world/ref/merged", MERGED)
         self._sources = (self._free_1, self._free_2, self._walls_1, self._walls_2)
         self._levels = (self._levels_1, self._levels_2)
         self.layout = Layout(np.zeros(2), np.zeros(2), None, None, Pose2())

@@ -1,0 +1,100 @@
+"""The command line: parse, call, print. Each command imports what it needs only when it runs."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from importlib import import_module
+
+from algorithms.errors import MapMergeError
+from app.usage import Parser, did_you_mean
+
+PROG = "mapmeld"
+
+EXIT_MERGED = 0
+EXIT_BAD_INPUT = 2
+EXIT_BUG = 70  # not 1, which means "refused"
+EXIT_INTERRUPTED = 130
+
+COMMANDS = {
+    "serve": "watch a merge in the browser",
+    "merge": "merge two maps into a folder of files",
+    "evaluate": "run a method on every case in a folder and count what came out right",
+    "samples": "make the sample maps again",
+}
+"""Every command, a module of ``app.commands`` each."""
+
+DESCRIPTION = """\
+mapmeld: merge the grid maps of two robots from one sighting of one by the other.
+
+Examples:
+  mapmeld serve                      open a sample in the browser and watch it merge
+  mapmeld serve map1.yaml map2.yaml --observation observation.yaml
+
+  mapmeld merge map1.yaml map2.yaml --observation observation.yaml --out result
+                                     leaves merged.yaml, merged.pgm, transform.yaml,
+                                     report.json and overlay.png in result/
+  mapmeld evaluate cases --jobs 4 --json results.json
+                                     every case folder under cases/, and how many came out right"""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command; the exit status. Usage errors leave by SystemExit(2), ``--help`` by SystemExit(0)."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    try:
+        return _run(words)
+    except MapMergeError as error:
+        return _complain(str(error), EXIT_BAD_INPUT)
+    except MemoryError:
+        return _complain("there is not enough memory for these maps; use smaller ones", EXIT_BAD_INPUT)
+    except KeyboardInterrupt:
+        return _complain("interrupted; nothing half-written is left", EXIT_INTERRUPTED)
+    except BrokenPipeError:  # whoever read our stdout has gone: not our mistake, and not theirs
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return EXIT_INTERRUPTED
+    except Exception:
+        traceback.print_exc()
+        return _complain("this is a bug of mapmeld; please report the lines above", EXIT_BUG)
+
+
+def _run(words: list[str]) -> int:
+    top = Parser(prog=PROG, usage=f"{PROG} {{{','.join(COMMANDS)}}} …", description=DESCRIPTION)
+    top.add_argument("--version", action="store_true", help="print the version and end")
+    group = top.add_argument_group("commands, each with a --help of its own")
+    for name, what in COMMANDS.items():
+        group.add_argument(f"_{name}", metavar=name, help=what, nargs="?")
+    if words and not words[0].startswith("-"):
+        name = words[0]
+        if name not in COMMANDS:
+            top.error(f"there is no command {name}{did_you_mean(name, COMMANDS)}")
+        command = import_module(f"app.commands.{name}")
+        parser = Parser(
+            prog=f"{PROG} {name}", usage=f"{PROG} {name} {command.USAGE}", description=command.DESCRIPTION
+        )
+        rest = [_hyphened(word) for word in words[1:]]
+        command.add_arguments(parser, rest)
+        status = command.run(parser.parse_args(rest), parser)
+        sys.stdout.flush()
+        return int(status)
+    if top.parse_args(words).version:
+        from app.version import version
+
+        print(f"{PROG} {version()}")
+        return 0
+    top.print_help(sys.stderr)
+    return EXIT_BAD_INPUT
+
+
+def _hyphened(word: str) -> str:
+    """``--box.sigma_x=1`` as ``--box.sigma-x=1``: both spellings of a flag are taken."""
+    if not word.startswith("--"):
+        return word
+    flag, equals, value = word.partition("=")
+    return flag.replace("_", "-") + equals + value
+
+
+def _complain(message: str, status: int) -> int:
+    sys.stderr.write(f"{PROG}: {' '.join(message.split())}\n")
+    return status

@@ -1,0 +1,109 @@
+"""``mapmeld evaluate``: how many of many cases come out right."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from math import degrees
+from pathlib import Path
+from typing import Any
+
+from app.usage import Parser
+
+USAGE = "DIR [--rough] [--json FILE] [--jobs N] [options]"
+DESCRIPTION = """\
+Run a method on every case folder under DIR and hold it against the truth.
+
+Examples:
+  mapmeld evaluate cases --jobs 4
+  mapmeld evaluate cases --rough --method paper-argmax --json results.json
+
+A case is a folder of map1.yaml, map2.yaml, observation.yaml and, where the answer is known,
+truth.yaml; without it the case is run and not judged.
+  right           within the case's tolerance (0.5 m and 3° where it names none), at the seen
+                  robot; for a case with expected: refuse, refused
+  fine            within 0.15 m and 1°
+  wrong accepted  accepted and not right: the number that must be 0
+
+Exit status: 0 all cases ran, 1 some case failed with an error, 2 bad input, 130 interrupted."""
+
+COLUMNS = {
+    "group": "{}",
+    "n": "{}",
+    "right": "{}",
+    "fine": "{}",
+    "refused": "{}",
+    "wrong_accepted": "{}",
+    "errors": "{}",
+    "median_seconds": "{:.2f}",
+}
+
+
+def add_arguments(parser: Parser, words: Sequence[str]) -> None:
+    """Tell the parser what the command takes; flags of the settings depend on the method in ``words``."""
+    from app.flags import add_method
+
+    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of cases, or one case")
+    parser.add_argument("--rough", action="store_true", help="take observation_rough.yaml of each case")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write every report and the totals there")
+    parser.add_argument(
+        "--jobs", type=_jobs, default=1, metavar="N", help="cases at a time, a process each (default: 1)"
+    )
+    add_method(parser, words)
+
+
+def run(args: argparse.Namespace, parser: Parser) -> int:
+    """Run all cases, print the table; 1 where a case could not be run."""
+    from algorithms.atomic import write_file
+    from algorithms.casefiles import case_folders
+    from app.evaluate import OVERALL, Order, evaluate, totals_of
+    from app.flags import config_from
+    from app.progress import bar
+
+    order = Order(args.folder, args.method, config_from(args), args.seed, args.rough)
+    total = len(case_folders(args.folder))
+    entries = list(bar(iterable=evaluate(order, args.jobs), total=total, unit="case"))
+    entries.sort(key=lambda entry: str(entry["case"]))
+    totals = totals_of(entries)
+    if args.json:
+        text = json.dumps({"cases": entries, "totals": totals}, indent=1, ensure_ascii=False, allow_nan=False)
+        write_file(args.json, (text + "\n").encode())
+    for line in (*table(totals), *remarks(entries)):
+        print(line)
+    return 1 if totals[OVERALL]["errors"] else 0
+
+
+def table(totals: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
+    """Lines of a table for people, a row per group."""
+    rows = [[name.replace("_", " ") for name in COLUMNS]]
+    for group, counts in totals.items():
+        values = {"group": group, **counts}
+        rows.append(
+            ["–" if values[name] is None else form.format(values[name]) for name, form in COLUMNS.items()]
+        )
+    widths = [max(len(row[column]) for row in rows) for column in range(len(COLUMNS))]
+    for row in rows:
+        first, *rest = (cell.rjust(width) for cell, width in zip(row, widths, strict=True))
+        yield "  ".join([row[0].ljust(len(first)), *rest])
+
+
+def remarks(entries: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """A line for every case that a person must look at."""
+    from app.evaluate import is_wrong_accepted
+
+    for entry in entries:
+        if "error" in entry:
+            yield f"failed: {entry['case']}: {entry['error']}"
+        elif is_wrong_accepted(entry):
+            truth = entry["truth"]
+            apart = "the maps share no place"
+            if truth["expected"] == "merge":
+                apart = f"{truth['distance']:.2f} m and {degrees(truth['angle']):.1f}° off"
+            yield f"wrong merge accepted: {entry['case']}: {apart}"
+
+
+def _jobs(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text} is no whole number from 1 up")
+    return int(text)

@@ -1,0 +1,165 @@
+"""``mapmeld merge``: two maps and a sighting in, a folder of files out."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from math import degrees
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+from algorithms.errors import OutputError
+from app.usage import Parser
+
+if TYPE_CHECKING:
+    from algorithms.steps import MergeResult
+
+USAGE = "MAP1 MAP2 --observation FILE --out DIR [--json] [--force] [options]"
+DESCRIPTION = """\
+Merge two maps from one sighting of robot 2 by robot 1.
+
+Examples:
+  mapmeld merge map1.yaml map2.yaml --observation observation.yaml --out result
+  mapmeld merge left.pgm right.pgm --resolution 0.05 --observation o.yaml --out result
+  mapmeld merge map1.yaml map2.yaml --observation observation.yaml --out result \\
+          --augment.spread 4 --swarm.particles 800 --seed 7 --json | jq .T_ref_mov
+
+Files in the folder of --out:
+  merged.yaml, merged.pgm   the merged map, in map 1's frame
+  transform.yaml            where map 2 lies in map 1, and the line that publishes it in ROS 2
+  report.json               transform, covariance, verdict, times, settings
+  overlay.png               both maps under the transform: agreement and contradiction
+A refused merge leaves report.json and overlay.png alone. merged.* and transform.yaml of an
+earlier run are then removed, so that nobody takes them for this run's.
+
+Exit status: 0 merged, 1 refused (with --force too), 2 bad input, 130 interrupted."""
+
+
+def add_arguments(parser: Parser, words: Sequence[str]) -> None:
+    """Tell the parser what the command takes; flags of the settings depend on the method in ``words``."""
+    from app.flags import add_method
+
+    parser.add_argument("map1", type=Path, metavar="MAP1", help="map of robot 1, the observer: YAML or image")
+    parser.add_argument("map2", type=Path, metavar="MAP2", help="map of robot 2, the observed")
+    parser.add_argument("--observation", type=Path, required=True, metavar="FILE", help="what robot 1 saw")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the files")
+    add_resolution(parser)
+    parser.add_argument("--json", action="store_true", help="print report.json and nothing else")
+    parser.add_argument("--force", action="store_true", help="write the merged map of a refused merge, too")
+    add_method(parser, words)
+
+
+def add_resolution(parser: Parser) -> None:
+    """Add ``--resolution``, for maps that are images without a YAML file."""
+    parser.add_argument(
+        "--resolution",
+        type=_resolutions,
+        metavar="M[,M]",
+        help="metres per pixel of maps given as plain images, whose lower-left corner is then the origin; "
+        "two numbers where the maps differ",
+    )
+
+
+def run(args: argparse.Namespace, parser: Parser) -> int:
+    """Merge, write and tell; the exit status."""
+    from algorithms import methods
+    from app.flags import config_from
+    from app.progress import result_of
+    from app.report import MERGED_FILES, TRANSFORM_FILE, report_json, report_of, result_files
+
+    config = config_from(args)
+    _refuse_to_overwrite([args.map1, args.map2, args.observation], args.out)
+    began = perf_counter()
+    ref, mov, observation = read_inputs(args)
+    load_s = perf_counter() - began
+    result = result_of(methods.run(args.method, ref, mov, observation, config, args.seed))
+    named = {"map1": args.map1, "map2": args.map2, "observation": args.observation}
+    report = report_of(result, config, load_s, {key: str(path) for key, path in named.items()})
+    accepted = result.verdict.accepted
+    files = result_files(result, report, with_merged=accepted or args.force)
+    stale = [] if accepted or args.force else [*MERGED_FILES, TRANSFORM_FILE]
+    removed = _leave(args.out, files, stale)
+    if args.json:
+        sys.stdout.write(report_json(report).decode())
+    else:
+        print("\n".join(_summary(result, args.out, files, removed)))
+    return 0 if accepted else 1
+
+
+def read_inputs(args: argparse.Namespace):  # type: ignore[no-untyped-def]
+    """Both maps and the observation that the command line names."""
+    from algorithms.casefiles import read_observation
+    from algorithms.mapio import IMAGE_SUFFIXES, read_image, read_map
+
+    maps = []
+    for path, resolution in zip((args.map1, args.map2), args.resolution or (None, None), strict=True):
+        plain = resolution is not None and path.suffix.lower() in IMAGE_SUFFIXES
+        maps.append(read_image(path, resolution) if plain else read_map(path))
+    return *maps, read_observation(args.observation)
+
+
+def _leave(folder: Path, files: Mapping[str, bytes], stale: Sequence[str]) -> list[str]:
+    """Write the files, then remove what an earlier run left under the names in ``stale``."""
+    from algorithms.atomic import write_files
+
+    write_files({folder / name: data for name, data in files.items()})
+    removed = []
+    for name in reversed(stale):  # what names another file goes before it
+        try:
+            (folder / name).unlink()
+        except FileNotFoundError:
+            continue
+        except OSError as error:
+            raise OutputError(
+                folder / name,
+                f"is of an earlier run and cannot be removed ({error.strerror})",
+                "this merge was refused: remove the file, do not use it",
+            ) from error
+        removed.append(name)
+    return removed
+
+
+def _refuse_to_overwrite(inputs: Sequence[Path], out: Path) -> None:
+    """Raise OutputError where a file of the result would take the place of an input."""
+    from app.report import MERGED_FILES, OVERLAY_FILE, REPORT_FILE, TRANSFORM_FILE
+
+    names = [*MERGED_FILES, TRANSFORM_FILE, OVERLAY_FILE, REPORT_FILE]
+    for path in inputs:
+        stem_mates = {path, path.with_suffix(".pgm")}
+        for name in names:
+            if os.path.realpath(out / name) in {os.path.realpath(mate) for mate in stem_mates}:
+                raise OutputError(out / name, f"would overwrite the input {path}", "choose another --out")
+
+
+def _summary(result: MergeResult, out: Path, files: Mapping[str, bytes], removed: list[str]) -> list[str]:
+    T, verdict = result.T_ref_mov, result.verdict
+    lines = [
+        verdict.reason,
+        f"map 2 in map 1: x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°",
+        f"Γ {result.value:.4g}, acceptance index {verdict.acceptance_index:.3f} "
+        f"over {verdict.overlap_cells} cells ({verdict.overlap_area:.1f} m²)",
+        f"written to {out}: {', '.join(files)}",
+    ]
+    if removed:
+        lines.append(f"removed from {out}, being of an earlier run: {', '.join(removed)}")
+    if not verdict.accepted:
+        forced = any(name.startswith("merged.") for name in files)
+        lines.append(
+            "--force: the merged map was written although the merge is refused"
+            if forced
+            else "no merged map was written; --force writes it all the same"
+        )
+    return lines
+
+
+def _resolutions(text: str) -> tuple[float, float]:
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in (1, 2) or not all(0 < number < float("inf") for number in numbers):
+        raise argparse.ArgumentTypeError(f"{text} is neither one positive number nor two with a comma")
+    return numbers[0], numbers[-1]

@@ -1,0 +1,101 @@
+"""``mapmeld serve``: the page, on this machine alone unless asked otherwise."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import threading
+import webbrowser
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.usage import Parser
+
+if TYPE_CHECKING:
+    from algorithms.casefiles import Case
+
+LOCAL = "127.0.0.1"
+PORT = 8080
+FIRST_SAMPLE = "office_r2_r1"
+
+USAGE = "[MAP1 MAP2 --observation FILE] [--host HOST] [--port PORT] [--no-browser]"
+DESCRIPTION = f"""\
+Open the page: two maps, the sighting, every step of the merge.
+
+Examples:
+  mapmeld serve                      a sample that ships with mapmeld
+  mapmeld serve map1.yaml map2.yaml --observation observation.yaml
+  mapmeld serve --port 9000 --no-browser
+
+The page is for this machine alone ({LOCAL}). --host 0.0.0.0 lets everyone on the network
+load files into it. Ctrl-C ends it."""
+
+
+def add_arguments(parser: Parser, words: Sequence[str]) -> None:
+    """Tell the parser what the command takes."""
+    from app.commands.merge import add_resolution
+
+    parser.add_argument("map1", type=Path, metavar="MAP1", nargs="?", help="map of robot 1, the observer")
+    parser.add_argument("map2", type=Path, metavar="MAP2", nargs="?", help="map of robot 2, the observed")
+    parser.add_argument("--observation", type=Path, metavar="FILE", help="what robot 1 saw")
+    add_resolution(parser)
+    parser.add_argument("--host", default=LOCAL, help=f"address to listen at (default: {LOCAL})")
+    parser.add_argument(
+        "--port", type=_port, default=PORT, help=f"the next free one from here (default: {PORT})"
+    )
+    parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
+
+
+def run(args: argparse.Namespace, parser: Parser) -> int:
+    """Serve until Ctrl-C."""
+    if (args.map1 is None) != (args.map2 is None) or (args.map1 is None) != (args.observation is None):
+        parser.error("give MAP1, MAP2 and --observation FILE together, or none of them for a sample")
+    case = _case(args)
+    from app.server import make_server
+
+    server = make_server(args.host, args.port, case)
+    shown = LOCAL if args.host in ("0.0.0.0", "::", "") else args.host
+    url = f"http://{f'[{shown}]' if ':' in shown else shown}:{server.get_port()}"
+    print(f"mapmeld is at {url}   (Ctrl-C ends it)", flush=True)
+    if not args.no_browser and _has_display():
+        webbrowser.open(url)
+    try:
+        threading.Event().wait()
+    except KeyboardInterrupt:
+        server.stop()
+        print()
+    return 0
+
+
+def _case(args: argparse.Namespace) -> Case | None:
+    """What the page opens with: the maps that were named, else a sample; None if none is installed."""
+    from algorithms.casefiles import Case, read_case
+    from app.commands.merge import read_inputs
+    from app.paths import samples
+
+    if args.map1 is not None:
+        ref, mov, observation = read_inputs(args)
+        return Case(f"{args.map1.stem} + {args.map2.stem}", ref, mov, observation, args.observation.name, None)
+    known = samples()
+    if not known:
+        return None
+    return read_case(known.get(FIRST_SAMPLE) or next(iter(known.values())))
+
+
+def _has_display() -> bool:
+    """Whether a browser window could open: a text browser in this terminal is not meant."""
+    if sys.platform in ("darwin", "win32"):
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def _port(text: str) -> int:
+    try:
+        port = int(text)
+    except ValueError:
+        port = -1
+    if not 0 <= port <= 65535:
+        raise argparse.ArgumentTypeError(f"{text} is no port; give a number in [0, 65535]")
+    return port

@@ -1,0 +1,32 @@
+"""Progress bars on stderr, only where a person looks at it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from tqdm import tqdm
+
+from algorithms.steps import MergeResult, Step
+from app import words
+from app.story import Story
+
+STEPS_FORMAT = "{desc:<9}|{bar}| {percentage:3.0f}% {elapsed}"
+
+
+def result_of(steps: Iterator[Step]) -> MergeResult:
+    """Run a method to its end with a bar that names the stage at work."""
+    story = Story()
+    with bar(total=1.0, bar_format=STEPS_FORMAT) as shown:
+        for step in steps:
+            story.tell(step)
+            shown.set_description_str(step.stage, refresh=False)
+            shown.update(max(0.0, words.progress(story) - shown.n))
+    result = story.get(MergeResult)
+    assert result is not None
+    return result
+
+
+def bar(**kwargs: Any) -> tqdm:  # type: ignore[type-arg]
+    """A bar of tqdm that is gone when it is done, and silent where stderr is no terminal."""
+    return tqdm(disable=None, leave=False, dynamic_ncols=True, **kwargs)

@@ -1,0 +1,142 @@
+"""A merge as files: what was found, how sure it is, and how to publish it."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, is_dataclass
+from enum import Enum
+from typing import Any
+
+import cv2
+import numpy as np
+
+from algorithms.gridmap import UNKNOWN
+from algorithms.mapio import map_to_bytes
+from algorithms.mapio.fields import number_text
+from algorithms.steps import MergeResult
+from app import render
+from app.palette import LIGHT
+from app.version import versions
+
+MERGED = "merged"
+MERGED_FILES = (f"{MERGED}.pgm", f"{MERGED}.yaml")
+TRANSFORM_FILE = "transform.yaml"
+OVERLAY_FILE = "overlay.png"
+REPORT_FILE = "report.json"
+
+
+def report_of(
+    result: MergeResult, config: Any = None, load_s: float = 0.0, inputs: Mapping[str, str] | None = None
+) -> dict[str, Any]:
+    """What report.json says: metres and radians; a number that is not finite is null.
+
+    config : the settings that were used
+    load_s : seconds spent on reading the maps
+    inputs : the files it was made from, as the user named them
+    """
+    T, verdict = result.T_ref_mov, result.verdict
+    report = {
+        "T_ref_mov": {"x": T.x, "y": T.y, "theta": T.theta},
+        "covariance": result.covariance,
+        "verdict": asdict(verdict),
+        "objective": result.value,
+        "proven_optimal": result.proven_optimal,
+        "method": result.method,
+        "seed": result.seed,
+        "timings_s": {"load": load_s, **result.timings_s},
+        "performance_index_at_estimate": performance_index_at_estimate(result),
+        "settings": config,
+        "inputs": dict(inputs or {}),
+        "versions": versions(),
+    }
+    return {key: _plain(value) for key, value in report.items()}
+
+
+def report_json(report: Mapping[str, Any]) -> bytes:
+    """The content of report.json, a line per key."""
+    lines = (f"  {json.dumps(key)}: {_json(value)}" for key, value in report.items())
+    return ("{\n" + ",\n".join(lines) + "\n}\n").encode()
+
+
+def performance_index_at_estimate(result: MergeResult) -> float | None:
+    """agr / N_overlap of eq. (23), the overlap taken at the estimated T; None without overlap.
+
+    The paper takes the true overlap, which nobody knows of maps of one's own: a merge in a wrong
+    place can reach a high index here.
+    """
+    fusion = result.fusion
+    overlap = int(np.count_nonzero((fusion.ref_cells != UNKNOWN) & (fusion.mov_cells != UNKNOWN)))
+    return fusion.agreed / overlap if overlap else None  # eq. (23)
+
+
+def publish_command(result: MergeResult) -> str:
+    """The command that tells ROS 2 where map 2's frame lies in map 1's."""
+    T = result.T_ref_mov
+    return (
+        f"ros2 run tf2_ros static_transform_publisher --x {T.x:.6f} --y {T.y:.6f} --yaw {T.theta:.6f} "
+        "--frame-id map1 --child-frame-id map2"
+    )
+
+
+def transform_yaml(result: MergeResult) -> bytes:
+    """The content of transform.yaml; T is written so that it reads back to the same numbers."""
+    T = result.T_ref_mov
+    x, y, theta = (number_text(value) for value in (T.x, T.y, T.theta))
+    accepted = "true" if result.verdict.accepted else "false"
+    return (
+        "# Takes points of map 2's frame to map 1's; m, m, rad. The robots' maps are the frames map1, map2.\n"
+        f"T_ref_mov: {{x: {x}, y: {y}, theta: {theta}}}\n"
+        f"accepted: {accepted}\n"
+        "# Publishes it in ROS 2; map 1's frame is the parent:\n"
+        f'publish: "{publish_command(result)}"\n'
+    ).encode()
+
+
+def overlay_png(result: MergeResult) -> bytes:
+    """A picture of both maps under T: whose wall it is, where they agree and where they contradict.
+
+    Its first row is the top, as on a screen; what no map knows is grey.
+    """
+    pixels = render.upright(render.merged(result.fusion, LIGHT).pixels)
+    colours, alpha = pixels[..., :3], pixels[..., 3:] == 255
+    flat = np.where(alpha, colours, np.array(LIGHT.unknown, dtype=np.uint8))
+    done, png = cv2.imencode(".png", flat[..., ::-1])  # OpenCV keeps blue first
+    assert done
+    return png.tobytes()
+
+
+def result_files(result: MergeResult, report: Mapping[str, Any], with_merged: bool) -> dict[str, bytes]:
+    """All files of a result by name, in the order they are to be written: the report is the last.
+
+    with_merged : also what a robot would act upon: the merged map and the transform
+    """
+    files: dict[str, bytes] = {}
+    if with_merged:
+        files |= map_to_bytes(result.fusion.merged, MERGED)
+        files[TRANSFORM_FILE] = transform_yaml(result)
+    files[OVERLAY_FILE] = overlay_png(result)
+    files[REPORT_FILE] = report_json(report)
+    return files
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+
+def _plain(value: Any) -> Any:
+    """The value as JSON can hold it."""
+    if isinstance(value, Enum):
+        return value.value
+    if is_dataclass(value) and not isinstance(value, type):
+        value = asdict(value)
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        return {str(key): _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,60 @@
+"""How the command line explains itself: examples first, and a remedy where a word is misspelt."""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import sys
+from collections.abc import Iterable
+from typing import Any, NoReturn
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose help opens with what the command does and worked examples, as they are written."""
+
+    def __init__(self, strict: bool = True, **kwargs: Any) -> None:
+        super().__init__(allow_abbrev=False, formatter_class=_Formatter, **kwargs)
+        self.strict = strict  # whether an option that is not known is an error
+        self.hint = ""  # said after an error about one
+
+    def format_help(self) -> str:
+        """Description, usage, arguments."""
+        text = super().format_help()
+        if not self.description or self.description not in text:
+            return text
+        usage, rest = text.split(self.description, 1)
+        return f"{self.description.strip()}\n\n{usage.strip()}\n\n{rest.strip()}\n"
+
+    def parse_known_args(self, args=None, namespace=None):  # type: ignore[no-untyped-def]
+        """As usual, but an option that nobody knows is told first, with the nearest that there is."""
+        words = list(sys.argv[1:] if args is None else args)
+        known = [name for action in self._actions for name in action.option_strings]
+        for word in words[: words.index("--")] if "--" in words else words:
+            flag = word.split("=", 1)[0]
+            if self.strict and flag.startswith("--") and flag not in known:
+                self.error(f"there is no option {flag}{did_you_mean(flag, known)}{self.hint}")
+        return super().parse_known_args(words, namespace)
+
+    def error(self, message: str) -> NoReturn:
+        """One line on stderr, exit status 2."""
+        sys.stderr.write(f"{self.prog}: {message}; see {self.prog} --help\n")
+        self.exit(2)
+
+
+class _Formatter(argparse.RawDescriptionHelpFormatter):
+    """Keeps the lines of a help text that has several."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog, max_help_position=30)
+
+    def _split_lines(self, text: str, width: int) -> list[str]:
+        lines = []
+        for line in text.splitlines():
+            lines += super()._split_lines(line, width)
+        return lines
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """", did you mean X?" for the nearest known word; empty where none is near."""
+    near = difflib.get_close_matches(word, list(known), n=1)
+    return f", did you mean {near[0]}?" if near else ""
