@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -64,7 +64,7 @@ def evaluate(order: Order, jobs: int = 1) -> Iterator[Entry]:
             yield _entry(folder, order) | {"error": message, "seconds": 0.0, "truth": None}
 
 
-def _in_processes(folders: Sequence[Path], order: Order, jobs: int) -> Iterator[Entry]:
+def _in_processes(folders: Sequence[Path], order: Order, jobs: int) -> Generator[Entry, None, list[Path]]:
     """Yield entries; return the folders that a broken pool left without one."""
     left = dict.fromkeys(folders)
     # "spawn": a copy of a process that already has threads can hang
@@ -82,7 +82,7 @@ def _in_processes(folders: Sequence[Path], order: Order, jobs: int) -> Iterator[
         except BaseException:  # Ctrl-C, or the caller has left the loop
             pool.shutdown(wait=True, cancel_futures=True)
             raise
-    return list(left)  # type: ignore[return-value]
+    return list(left)
 
 
 def _leave_ctrl_c() -> None:
@@ -96,9 +96,7 @@ def run_case(folder: Path, order: Order) -> Entry:
     try:
         case = read_case(folder, order.rough)
         load_s = perf_counter() - began
-        result = methods.merge(
-            case.ref, case.mov, case.observation, order.method, order.config, order.seed
-        )
+        result = methods.merge(case.ref, case.mov, case.observation, order.method, order.config, order.seed)
         entry["report"] = report_of(result, order.config, load_s)
         entry["truth"] = judge_case(case, result)
     except MapMergeError as error:
@@ -179,11 +177,11 @@ def _totals(entries: Sequence[Entry]) -> dict[str, Any]:
     }
 
 
-def is_wrong_accepted(entry: Entry) -> bool:
+def is_wrong_accepted(entry: Mapping[str, Any]) -> bool:
     """Whether the method stood by a wrong merge: what must not happen."""
     judged = "report" in entry and entry["truth"] is not None
-    return judged and _accepted(entry) and not (entry["truth"]["right"])
+    return judged and _accepted(entry) and not entry["truth"]["right"]
 
 
-def _accepted(entry: Entry) -> bool:
+def _accepted(entry: Mapping[str, Any]) -> bool:
     return bool(entry["report"]["verdict"]["accepted"])

@@ -27,6 +27,6 @@ def result_of(steps: Iterator[Step]) -> MergeResult:
     return result
 
 
-def bar(**kwargs: Any) -> tqdm:  # type: ignore[type-arg]
+def bar(**kwargs: Any) -> tqdm:
     """A bar of tqdm that is gone when it is done, and silent where stderr is no terminal."""
     return tqdm(disable=None, leave=False, dynamic_ncols=True, **kwargs)

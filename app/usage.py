@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import difflib
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, NoReturn
 
 
@@ -25,7 +25,9 @@ class Parser(argparse.ArgumentParser):
         usage, rest = text.split(self.description, 1)
         return f"{self.description.strip()}\n\n{usage.strip()}\n\n{rest.strip()}\n"
 
-    def parse_known_args(self, args=None, namespace=None):  # type: ignore[no-untyped-def]
+    def parse_known_args(  # type: ignore[override]
+        self, args: Sequence[str] | None = None, namespace: Any = None
+    ) -> tuple[Any, list[str]]:
         """As usual, but an option that nobody knows is told first, with the nearest that there is."""
         words = list(sys.argv[1:] if args is None else args)
         known = [name for action in self._actions for name in action.option_strings]
@@ -55,6 +57,6 @@ class _Formatter(argparse.RawDescriptionHelpFormatter):
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """", did you mean X?" for the nearest known word; empty where none is near."""
+    """ ", did you mean X?" for the nearest known word; empty where none is near."""
     near = difflib.get_close_matches(word, list(known), n=1)
     return f", did you mean {near[0]}?" if near else ""

@@ -15,6 +15,8 @@ from algorithms.errors import OutputError
 from app.usage import Parser
 
 if TYPE_CHECKING:
+    from algorithms.gridmap import GridMap
+    from algorithms.observation import Observation
     from algorithms.steps import MergeResult
 
 USAGE = "MAP1 MAP2 --observation FILE --out DIR [--json] [--force] [options]"
@@ -89,7 +91,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     return 0 if accepted else 1
 
 
-def read_inputs(args: argparse.Namespace):  # type: ignore[no-untyped-def]
+def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, Observation]:
     """Both maps and the observation that the command line names."""
     from algorithms.casefiles import read_observation
     from algorithms.mapio import IMAGE_SUFFIXES, read_image, read_map
@@ -98,7 +100,8 @@ def read_inputs(args: argparse.Namespace):  # type: ignore[no-untyped-def]
     for path, resolution in zip((args.map1, args.map2), args.resolution or (None, None), strict=True):
         plain = resolution is not None and path.suffix.lower() in IMAGE_SUFFIXES
         maps.append(read_image(path, resolution) if plain else read_map(path))
-    return *maps, read_observation(args.observation)
+    ref, mov = maps
+    return ref, mov, read_observation(args.observation)
 
 
 def _leave(folder: Path, files: Mapping[str, bytes], stale: Sequence[str]) -> list[str]:

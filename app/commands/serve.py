@@ -77,7 +77,9 @@ def _case(args: argparse.Namespace) -> Case | None:
 
     if args.map1 is not None:
         ref, mov, observation = read_inputs(args)
-        return Case(f"{args.map1.stem} + {args.map2.stem}", ref, mov, observation, args.observation.name, None)
+        return Case(
+            f"{args.map1.stem} + {args.map2.stem}", ref, mov, observation, args.observation.name, None
+        )
     known = samples()
     if not known:
         return None
