@@ -1,0 +1,72 @@
+# make run, make test: both make the environment first, in .venv, and are quick from then on.
+# Another Python: make test PYTHON=python3.12
+
+NEEDED := import sys; sys.exit(sys.version_info < (3, 10))
+PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.10 python; do \
+            $$p -c '$(NEEDED)' 2>/dev/null && { echo $$p; break; }; done)
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+
+.PHONY: help run test bench samples screenshots clean
+
+help:
+	@echo "make run          open the tool on a sample, in the browser (ARGS=--no-browser: only serve it)"
+	@echo "make test         check style and types, run every test, browser tests included"
+	@echo "make bench        time the stages of a merge"
+	@echo "make samples      simulate the maps in sample_maps again"
+	@echo "make screenshots  take the README's pictures again"
+	@echo "make clean        remove the environment and everything that was made"
+
+run: $(VENV)/ready
+	@$(BIN)/mapmeld serve $(ARGS)
+
+test: $(VENV)/ready-to-test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	@chromium="$$($(BIN)/python tests/chromium.py)" && \
+	  echo "pytest, with $$chromium" && CHROMIUM="$$chromium" $(BIN)/python -m pytest $(ARGS)
+
+bench: $(VENV)/ready-to-test
+	$(BIN)/python -m pytest -o addopts="" --benchmark-only $(ARGS)
+
+samples: $(VENV)/ready
+	$(BIN)/mapmeld samples sample_maps
+
+screenshots: $(VENV)/ready-to-test
+	@chromium="$$($(BIN)/python tests/chromium.py)" && \
+	  CHROMIUM="$$chromium" $(BIN)/python tests/browser/screenshots.py $(ARGS)
+
+clean:
+	rm -rf $(VENV) build dist out *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis .benchmarks
+	find algorithms app tests -name __pycache__ -prune -exec rm -rf {} +
+
+# An environment whose Python has gone, or that was never finished, is made anew.
+ifneq ($(shell $(BIN)/python -c 'print("starts")' 2>/dev/null),starts)
+.PHONY: $(VENV)/made
+endif
+
+$(VENV)/made:
+	@test -n "$(PYTHON)" || { \
+	  echo "mapmeld needs Python 3.10 or newer, and none was found. Install one, or name it:"; \
+	  echo "  make PYTHON=/path/to/python3"; exit 1; }
+	@$(PYTHON) -c '$(NEEDED)' || { \
+	  echo "mapmeld needs Python 3.10 or newer; $(PYTHON) is not. Name another: make PYTHON=python3.12"; \
+	  exit 1; }
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || { \
+	  echo "$(PYTHON) lacks the modules venv and pip. On Debian and Ubuntu: apt install python3-venv"; \
+	  exit 1; }
+	@echo "making $(VENV) with $$($(PYTHON) --version)"
+	@$(PYTHON) -m venv --clear $(VENV)
+	@touch $@
+
+$(VENV)/ready: $(VENV)/made pyproject.toml
+	@echo "installing mapmeld into $(VENV): minutes the first time, seconds from then on"
+	@$(PIP) install -e .
+	@touch $@
+
+$(VENV)/ready-to-test: $(VENV)/ready
+	@echo "installing what the tests need"
+	@$(PIP) install -e '.[test]'
+	@touch $@
