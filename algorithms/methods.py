@@ -13,6 +13,7 @@ from algorithms.observation import Observation
 from algorithms.pipeline import PipelineConfig, RefineConfig
 from algorithms.smm import CandidateConfig
 from algorithms.steps import MergeResult, Step
+from algorithms.window import WindowConfig
 
 Run = Callable[..., Iterator[Step]]
 
@@ -42,7 +43,11 @@ METHODS: dict[str, Method] = {
     "paper-argmax": Method(
         pipeline.run,
         "The paper's bare argmax: one peak, no twin, particle swarm",
-        PipelineConfig(candidates=CandidateConfig(peaks=1, twins=False), refine=RefineConfig(candidates=1)),
+        PipelineConfig(
+            candidates=CandidateConfig(peaks=1, twins=False),
+            window=WindowConfig(pivot="origin"),
+            refine=RefineConfig(candidates=1),
+        ),
     ),
     "bilateral": Method(
         bilateral.run,

@@ -14,7 +14,7 @@ from algorithms.pose import FloatArray, wrap_angles
 from algorithms.search import SearchState, Value, keep_inside
 from algorithms.window import Box
 
-SETTLED_CELLS = 0.1  # a swarm that stays within a tenth of a cell cannot tell two answers apart
+SETTLED_CELLS = 0.2  # a swarm that stays within a fifth of a cell cannot tell two answers apart
 SETTLED_ANGLE = 0.05 * pi / 180
 
 

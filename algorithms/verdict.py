@@ -21,7 +21,10 @@ class VerdictConfig:
 
     acceptance: Annotated[float, Bounds(0, 1, 0.01, "", "ω_acc", "acceptance index")] = 0.85
     """Share of the cells known to both maps that must agree."""
-    ambiguity: Annotated[float, Bounds(0, 1, 0.01, "", "", "rival")] = 0.9
+    support: Annotated[float, Bounds(0, 1, 0.01, "", "", "wall support")] = 0.5
+    """Share of the walls in the area known to both that the other map must confirm: more walls have
+    to speak for the merge than against it."""
+    ambiguity: Annotated[float, Bounds(0, 1, 0.01, "", "", "rival")] = 0.8
     """Refused where another answer reaches this share of the best Γ."""
     overlap: Annotated[float, Bounds(0, 50, 0.5, "m²", "", "overlap")] = 2.0
     """Area known to both maps below which nothing can be said."""
@@ -39,6 +42,7 @@ class Verdict:
     acceptance_index : agreeing share of the cells known to both, 0 … 1
     overlap_cells    : cells known to both maps
     overlap_area     : the same; m²
+    wall_support     : share of the walls in the area known to both that the other map confirms
     ambiguity        : Γ of the best answer elsewhere over Γ of this one, 0 … 1
     deviation        : distance of R2 from where it was seen, in standard deviations
     """
@@ -49,6 +53,7 @@ class Verdict:
     overlap_cells: int
     overlap_area: float
     conflicting_cells: int
+    wall_support: float
     ambiguity: float
     deviation: float
 
@@ -71,17 +76,20 @@ def judge(
             f"the maps contradict each other in {1 - fusion.acceptance_index:.0%} "
             f"of the {area:.0f} m² known to both"
         )
+    if area >= config.overlap and fusion.wall_support < config.support:
+        doubts.append(
+            f"only {fusion.wall_support:.0%} of the walls that both robots should have seen coincide"
+        )
     if ambiguity > config.ambiguity:
         doubts.append(f"another answer fits almost as well ({ambiguity:.0%} of the best Γ)")
     if deviation > config.deviations:
         doubts.append(f"it puts the seen robot {deviation:.1f} standard deviations from where it was seen")
-    if fusion.agreed_walls == 0 and not doubts:
-        doubts.append("no wall of one map lies on a wall of the other")
     if doubts:
         reason = "Refused: " + "; ".join(doubts) + "."
     else:
         reason = (
-            f"Merged: {fusion.acceptance_index:.0%} of the {area:.0f} m² known to both agrees; "
+            f"Merged: {fusion.acceptance_index:.0%} of the {area:.0f} m² known to both agrees, "
+            f"{fusion.wall_support:.0%} of the walls coincide; "
             f"the next best answer reaches {ambiguity:.0%} of its Γ."
         )
     return Verdict(
@@ -91,6 +99,7 @@ def judge(
         overlap_cells=fusion.overlap,
         overlap_area=area,
         conflicting_cells=fusion.conflicting,
+        wall_support=fusion.wall_support,
         ambiguity=ambiguity,
         deviation=deviation,
     )
