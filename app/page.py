@@ -1,89 +1,326 @@
-"""One tab of the page: its inputs, its panels and pictures, and its session."""
+"""One tab of the page: its inputs, panels and pictures around its session."""
 
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass
+from typing import Any
 
 import viser
 
-from algorithms.casefiles import Case, Truth
-from algorithms.errors import MapMergeError
-from algorithms.gridmap import GridMap
-from algorithms.observation import Observation, encounter
+from algorithms.casefiles import Case
+from algorithms.errors import MapMergeError, TooLargeError
 from algorithms.methods import METHODS
+from algorithms.steps import AugmentDetail, MergeResult, RefineDetail
 from app import words
+from app.export import STEM, archive
+from app.inputs import Inputs
 from app.layout import lay_out
-from app.palette import LIGHT, Palette, css
+from app.legend import legend
+from app.palette import DARK, LIGHT, Palette
+from app.panels.files import FilesPanel
+from app.panels.observation import ObservationPanel
+from app.panels.result import result_html
+from app.panels.tuning import TuningPanel
+from app.player import PACES
 from app.session import Job, Session
 from app.stage import Stage
 from app.story import Story
+from app.views.heights import HeightsView
 from app.views.maps import MapView
+from app.views.plots import PlotDock
+from app.views.swarm_space import SwarmSpaceView
 
 log = logging.getLogger(__name__)
 
-
-@dataclass(frozen=True, eq=False)
-class Inputs:
-    ref: GridMap | None = None
-    mov: GridMap | None = None
-    observation: Observation | None = None
-    name: str = ""
-    truth: Truth | None = None
+MAP, HEIGHTS, SWARM = "Map", "Heights", "Swarm space"
 
 
 class Page:
+    """Listens to its session and draws; the callbacks of its widgets only ask."""
+
     def __init__(self, client: viser.ClientHandle, initial: Case | None) -> None:
-        self.client = client
-        self.palette: Palette = LIGHT
-        self.stage = Stage(client)
-        self.maps = MapView(client, self.stage)
+        self._client = client
+        self._palette: Palette = LIGHT
+        self._stage = Stage(client)
+        self._maps = MapView(client, self._stage)
+        self._heights = HeightsView(client, self._stage)
+        self._swarm = SwarmSpaceView(self._stage)
+        self._inputs = Inputs()
+        self._story = Story()
+        self._result: MergeResult | None = None  # of the last run that came to its end
+        self._merged = False  # from the first Merge on, a moved slider runs the whole method again
+        self._pace = "Normal"
         self.session = Session(self)
-        self.inputs = Inputs()
-        self.stage.theme(self.palette)
-        gui = client.gui
-        gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
-        gui.main_panel.dock_right()
-        gui.add_button("Merge", color="green").on_click(lambda _: self.merge())
-        gui.add_button("Stop").on_click(lambda _: self.session.stop())
-        self.config = METHODS["spectra-swarm"].defaults
-        if initial:
-            self.load(Inputs(initial.ref, initial.mov, initial.observation, initial.name, initial.truth))
-
-    def load(self, inputs: Inputs) -> None:
-        self.inputs = inputs
-        at = encounter(inputs.observation) if inputs.observation else None
-        layout = lay_out(inputs.ref, inputs.mov, at)
-        self.maps.load(inputs.ref, inputs.mov, inputs.observation, at, layout, self.palette)
-        self.stage.hud(case=inputs.name, state=words.READY, mood="idle", anchor=layout.anchor_ref.tolist(),
-          legend=[{"s":"square","c":css(self.palette.ref),"t":"map 1"},{"s":"square","c":css(self.palette.mov),"t":"map 2"}])
-        self.stage.flush()
-
-    def merge(self) -> None:
-        i = self.inputs
-        self.session.request(Job(i.ref, i.mov, i.observation, self.config, pace=1.0, again=True))
-
-    def begun(self, job: Job) -> None:
-        self.stage.hud(state="Starting.", mood="running", progress=0.0)
-        self.stage.flush()
-
-    def show(self, job: Job, story: Story) -> None:
-        self.maps.show(story, True, job.pace > 0)
-        self.stage.hud(state=words.sentence(story), progress=words.progress(story))
-        self.stage.flush()
-
-    def ended(self, job: Job, story: Story) -> None:
-        self.show(job, story)
-        self.stage.hud(mood="accepted", progress=None)
-        self.stage.flush()
-
-    def stopped(self, job: Job, story: Story) -> None:
-        self.stage.hud(mood="stopped", state="Stopped.", progress=None)
-        self.stage.flush()
-
-    def failed(self, job: Job, error: Exception) -> None:
-        self.stage.hud(mood="failed", state=str(error), progress=None)
-        self.stage.flush()
+        self._build(client.gui, Inputs.of(initial) if initial else Inputs())
+        self._load(Inputs.of(initial) if initial else Inputs())
 
     def close(self) -> None:
+        """The tab is gone."""
         self.session.close()
+
+    # --- widgets ----------------------------------------------------------------------------------
+
+    def _build(self, gui: viser.GuiApi, inputs: Inputs) -> None:
+        self._theme(gui)
+        gui.set_panel_label("mapmeld")
+        gui.main_panel.dock_right()
+        self._merge_button = gui.add_button(
+            "Merge", color=(0, 114, 178), icon=viser.Icon.ARROWS_JOIN, order=1
+        )
+        self._merge_button.on_click(lambda _: self._merge())
+        self._stop_button = gui.add_button(
+            "Stop", color="gray", icon=viser.Icon.PLAYER_STOP, disabled=True, order=2
+        )
+        self._stop_button.on_click(lambda _: self.session.stop())
+        self._view = gui.add_button_group("View", (MAP, HEIGHTS, SWARM), order=3)
+        self._view.on_click(lambda _: self._turn_view())
+        self._files = FilesPanel(gui, self._load, self._report, inputs.name)
+        self._observation = ObservationPanel(gui)
+        with gui.add_folder("Run", order=50, expand_by_default=True):
+            self._speed = gui.add_button_group(
+                "Speed", tuple(PACES), hint="How long each step stays. Instant: as fast as it is computed."
+            )
+            self._speed.value = self._pace
+            self._speed.on_click(lambda _: setattr(self, "_pace", self._speed.value))
+            titles = {method.title: name for name, method in METHODS.items()}
+            method = gui.add_dropdown(
+                "Method", tuple(titles), hint="The way to merge; takes its own defaults."
+            )
+            method.on_update(lambda _: self._tuning.choose(titles[method.value]))
+            self._seed = gui.add_number(
+                "Seed", 0, min=0, max=2**31 - 1, step=1, hint="The same seed gives the same swarm."
+            )
+            self._seed.on_update(lambda _: self._changed())
+            self._follow = gui.add_checkbox(
+                "Camera follows", True, hint="The camera goes along with the run."
+            )
+            gui.add_button("Show everything", color="gray").on_click(lambda _: self._fit())
+            dark = gui.add_checkbox("Dark", False, hint="Light writing on a dark page.")
+            dark.on_update(lambda _: self._switch(dark.value))
+        self._tuning = TuningPanel(gui, self._changed, self._report)
+        with gui.add_folder("Export", order=70):
+            self._download_button = gui.add_button(
+                "Download merged map",
+                icon=viser.Icon.DOWNLOAD,
+                color="gray",
+                disabled=True,
+                hint="A zip: merged.yaml, merged.pgm, transform.yaml.",
+            )
+            self._download_button.on_click(lambda _: self._download())
+        self._plots = PlotDock(self._client)
+
+    def _theme(self, gui: viser.GuiApi) -> None:
+        gui.configure_theme(
+            show_logo=False,
+            show_share_button=False,
+            control_width="medium",
+            dark_mode=self._palette.dark,
+            brand_color=(0, 114, 178),
+        )
+        self._stage.theme(self._palette)
+
+    # --- what a person asks for -------------------------------------------------------------------
+
+    def _load(self, inputs: Inputs) -> None:
+        self.session.stop()
+        try:
+            at, layout = inputs.at, lay_out(inputs.ref, inputs.mov, inputs.at)
+        except MapMergeError as error:
+            self._report(error)
+            return
+        self._inputs, self._result, self._story, self._merged = inputs, None, Story(), False
+        self._observation.show(inputs)
+        self._plots.clear()
+        self._heights.hide()
+        self._maps.load(inputs.ref, inputs.mov, inputs.observation, at, layout, self._palette)
+        if self._view.value != MAP:
+            self._view.value = MAP
+        self._turn_view()
+        self._maps.apart(follow=True)
+        grids = [grid for grid in (inputs.ref, inputs.mov) if grid is not None]
+        self._tuning.resolutions(*(grid.resolution for grid in grids))
+        self._merge_button.disabled = not inputs.complete
+        self._download_button.disabled = True
+        doubt = inputs.doubt()
+        self._stage.hud(
+            case=inputs.name,
+            state=inputs.missing() or doubt or words.READY,
+            mood="refused" if doubt else "idle",
+            progress=None,
+            anchor=layout.anchor_ref.tolist(),
+            legend=legend(self._palette, MAP, self._story),
+        )
+        self._stage.flush()
+
+    def _job(self, **how: Any) -> Job | None:
+        i = self._inputs
+        if i.ref is None or i.mov is None or i.observation is None:
+            return None
+        return Job(
+            i.ref,
+            i.mov,
+            i.observation,
+            self._tuning.config,
+            self._tuning.method,
+            int(self._seed.value),
+            **how,
+        )
+
+    def _merge(self) -> None:
+        self._tuning.sync()
+        job = self._job(pace=PACES[self._pace], again=True)
+        if job is not None:
+            self._merged = True
+            self._plots.follow()
+            self._stage.look_down(self._maps.layout.view(), follow=True)
+            if self._view.value != MAP:
+                self._turn_view()
+            self.session.request(job)
+
+    def _changed(self) -> None:
+        """A setting was moved: what is on the screen is out of date."""
+        live = self.session.busy and self._merged
+        goal = "merge" if self._merged else "candidates"
+        job = self._job(goal=goal, pace=PACES[self._pace] if live else 0.0)
+        if job is None:
+            return
+        if self._result is not None:
+            self._plots.result.content = result_html(self._result, self._inputs, faded=True)
+            self._download_button.disabled = True
+        self.session.request(job)
+
+    def _download(self) -> None:
+        result = self._result
+        if result is None:
+            return
+        if result.verdict.accepted:
+            self._send(result)
+            return
+        modal = self._client.gui.add_modal("This merge was refused")
+        with modal:
+            self._client.gui.add_markdown(
+                f"{result.verdict.reason}\n\nA robot that trusts this map may get lost."
+            )
+            yes = self._client.gui.add_button("Download the refused map anyway", color="orange")
+            no = self._client.gui.add_button("Cancel", color="gray")
+        yes.on_click(lambda _: (self._send(result), modal.close()))
+        no.on_click(lambda _: modal.close())
+
+    def _send(self, result: MergeResult) -> None:
+        self._client.send_file_download(f"{STEM}.zip", archive(result), save_immediately=True)
+
+    def _fit(self) -> None:
+        if self._view.value != MAP:
+            self._turn_view()
+        else:
+            placed = self._result is not None or self._story.reached(RefineDetail)
+            self._stage.look_down(self._maps.extent() if placed else self._maps.layout.view(), follow=True)
+        self._stage.flush()
+
+    def _switch(self, dark: bool) -> None:
+        with self.session.drawing:
+            self._palette = DARK if dark else LIGHT
+            self._theme(self._client.gui)
+            self._maps.recolour(self._palette)
+            self._turn_view()
+
+    def _turn_view(self) -> None:
+        """Show the chosen view of the newest state."""
+        with self.session.drawing:
+            view = self._view.value
+            self._maps.visible(view == MAP)
+            if view != HEIGHTS:
+                self._heights.hide()
+            if view != SWARM:
+                self._swarm.hide()
+            if view == MAP:
+                self._maps.redraw(self._story)
+            self._draw(self._story, live=False, look=True)
+            self._stage.flush()
+
+    def _report(self, error: MapMergeError) -> None:
+        """Tell the person what is wrong with an input, in this tab."""
+        title = "Too large" if isinstance(error, TooLargeError) else "This cannot be used"
+        self._client.add_notification(title, str(error), auto_close_seconds=12.0, color="orange")
+        self._stage.hud(state=str(error), mood="failed", progress=None)
+        self._stage.flush()
+
+    # --- what the session tells -------------------------------------------------------------------
+
+    def begun(self, job: Job) -> None:
+        """A run starts."""
+        self._stop_button.disabled = False
+        self._stage.hud(state="Starting.", mood="running", progress=0.0)
+        self._stage.flush()
+
+    def show(self, job: Job, story: Story) -> None:
+        """Draw the newest state."""
+        self._story = story
+        with self._client.atomic():
+            if job.pace > 0:
+                self._draw(story, live=True)
+            elif self._view.value == SWARM:
+                self._draw(story, live=False)
+            self._plots.show(story)
+            self._stage.hud(state=words.sentence(story), mood="running", progress=words.progress(story))
+            self._stage.flush()
+
+    def ended(self, job: Job, story: Story) -> None:
+        """The run came to its goal."""
+        self._story = story
+        self._stop_button.disabled = True
+        result = story.get(MergeResult)
+        with self._client.atomic():
+            self._plots.show(story)
+            if result is None:
+                self._maps_preview(job)
+                self._stage.hud(state="Candidates are up to date. Press Merge.", mood="idle", progress=None)
+            else:
+                self._result = result
+                self._plots.result.content = result_html(result, self._inputs)
+                self._download_button.disabled = False
+                accepted = result.verdict.accepted
+                self._draw(story, live=job.pace > 0)
+                self._stage.hud(
+                    state=result.verdict.reason, mood="accepted" if accepted else "refused", progress=None
+                )
+            self._stage.flush()
+
+    def stopped(self, job: Job, story: Story) -> None:
+        """Someone pressed Stop."""
+        self._stop_button.disabled = True
+        at = words.sentence(story).rstrip(".")
+        self._stage.hud(state=f"Stopped. {at}: unfinished.", mood="stopped", progress=None)
+        self._stage.flush()
+
+    def failed(self, job: Job, error: Exception) -> None:
+        """The run could not go on."""
+        self._stop_button.disabled = True
+        if isinstance(error, MapMergeError):
+            self._report(error)
+            return
+        text = f"A bug of mapmeld's ended the run ({type(error).__name__}); the server's log has the details."
+        self._client.add_notification("The run ended", text, auto_close_seconds=12.0, color="red")
+        self._stage.hud(state=text, mood="failed", progress=None)
+        self._stage.flush()
+
+    # --- drawing ----------------------------------------------------------------------------------
+
+    def _draw(self, story: Story, live: bool, look: bool = False) -> None:
+        view, camera = self._view.value, self._follow.value
+        if view == MAP:
+            self._maps.show(story, camera or look, live)
+            self._maps.rings(self._tuning.config, story)
+        elif view == HEIGHTS:
+            self._heights.show(story.get(AugmentDetail), self._palette, look)
+        else:
+            self._swarm.show(story.get(RefineDetail), self._palette, look)
+        self._stage.hud(legend=legend(self._palette, view, story))
+
+    def _maps_preview(self, job: Job) -> None:
+        if self._view.value == MAP:
+            self._maps.preview(self._story, job.config)
+            self._maps.rings(job.config, self._story)
+            self._stage.hud(legend=legend(self._palette, MAP, self._story))
+        elif self._view.value == HEIGHTS:
+            self._draw(self._story, live=False)

@@ -61,7 +61,11 @@ VIRIDIS: NDArray[np.uint8] = np.ascontiguousarray(
 
 def css(colour: Rgb, alpha: float = 1.0) -> str:
     """A colour as a style sheet writes it."""
-    return f"rgba({colour[0]},{colour[1]},{colour[2]},{alpha:g})" if alpha < 1 else "#%02x%02x%02x" % colour
+    return (
+        f"rgba({colour[0]},{colour[1]},{colour[2]},{alpha:g})"
+        if alpha < 1
+        else "#{:02x}{:02x}{:02x}".format(*colour)
+    )
 
 
 def viridis(share: NDArray[np.floating]) -> NDArray[np.uint8]:

@@ -1,19 +1,39 @@
-"""The web server: one page per tab."""
+"""The web server: one page per tab, nothing shared between them."""
 
 from __future__ import annotations
 
+import logging
+import socket
+import threading
 from math import radians
 
 import viser
 
 from algorithms.casefiles import Case
+from algorithms.errors import MapMergeError
+from app.guard import guarded_server
 from app.page import Page
+
+log = logging.getLogger(__name__)
+
+
+class PortError(MapMergeError):
+    """The address cannot be listened at."""
 
 
 def make_server(host: str = "127.0.0.1", port: int = 8080, initial: Case | None = None) -> viser.ViserServer:
-    server = viser.ViserServer(host=host, port=port, verbose=False)
+    """Start to serve; every tab opens with ``initial``.
+
+    port   : 0 for any free one (``server.get_port()`` tells which)
+    raises : PortError where the port is taken or the address is not this machine's
+    """
+    _probe(host, port)
+    server = guarded_server(host, port)
+    if port and server.get_port() != port:  # taken between the probe and now: viser went one further
+        server.stop()
+        raise PortError(_taken(port))
     server.scene.set_up_direction("+y")
-    server.scene.configure_environment_map(hdri=None)
+    server.scene.configure_environment_map(hdri=None)  # nothing shiny here, and no second of fading in
     camera = server.initial_camera
     camera.position, camera.look_at, camera.up = (0.0, 0.0, 600.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)
     camera.fov, camera.near, camera.far = radians(4), 10.0, 5000.0
@@ -26,7 +46,43 @@ def make_server(host: str = "127.0.0.1", port: int = 8080, initial: Case | None 
     @server.on_client_disconnect
     def _(client: viser.ClientHandle) -> None:
         page = pages.pop(client.client_id, None)
-        if page:
+        if page is not None:
             page.close()
 
+    threading.Thread(target=warm_up, name="mapmeld-warm-up", daemon=True).start()
     return server
+
+
+def warm_up() -> None:
+    """Compile the kernels with a room of some cells, so that the first Merge need not wait for it."""
+    import numpy as np
+
+    from algorithms.gridmap import FREE, OCCUPIED, GridMap
+    from algorithms.methods import merge
+    from algorithms.observation import Observation
+    from algorithms.pose import Pose2
+
+    cells = np.full((40, 60), FREE, dtype=np.int8)
+    cells[[0, -1], :], cells[:, [0, -1]] = OCCUPIED, OCCUPIED
+    room = GridMap(cells, 0.1)
+    try:
+        merge(room, room, Observation(Pose2(2.0, 2.0), 3.0, 2.0, 1.0, 0.0))
+    except MapMergeError:
+        log.debug("warming up ended early", exc_info=True)
+
+
+def _taken(port: int) -> str:
+    return f"port {port} is taken by another program; give another one with --port, or 0 for any"
+
+
+def _probe(host: str, port: int) -> None:
+    """Raise PortError where the port cannot be had: viser would silently take the next one."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except OSError as error:
+            if error.errno in (98, 48, 10048):  # EADDRINUSE on Linux, macOS, Windows
+                raise PortError(_taken(port)) from error
+            raise PortError(f"cannot listen at {host}, port {port}: {error.strerror or error}") from error

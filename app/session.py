@@ -85,7 +85,7 @@ class Session:
         self._story = Story()
         self._closed = False
         # held while a picture is drawn, so that nothing of a run is drawn after Stop has returned
-        self._drawing = RLock()
+        self.drawing = RLock()
         self._worker = Thread(target=self._work, name="mapmeld-session", daemon=True)
         self._worker.start()
 
@@ -109,7 +109,7 @@ class Session:
             self._wanted = None
             job, self._running = self._running, None
         self._waiting.cut()
-        with self._drawing:
+        with self.drawing:
             if job is not None:
                 self._listener.stopped(job, self._story)
 
@@ -172,7 +172,7 @@ class Session:
 
     def _deliver(self, job: Job, tell: Callable[[], None]) -> bool:
         """Tell the listener, unless the run has been stopped or overtaken; whether it was told."""
-        with self._drawing:
+        with self.drawing:
             if not self._wants(job):
                 return False
             tell()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import cos, pi, sin
+from typing import Any
 
 import numpy as np
 import viser
@@ -99,15 +100,32 @@ class MapView:
 
     def visible(self, yes: bool) -> None:
         """Show or hide everything of this view."""
+        which = str(self._drawn.get("images", "sources"))
         if yes:
-            self._show_images(str(self._drawn.get("images", "sources")))
-        else:
-            shown = self._drawn.get("images", "sources")
-            for image in (*self._sources, *self._levels, self._merged):
-                image.visible(False)
-            self._drawn["images"] = shown
-            for name in ("aug", "window", "box", "swarm", "trail", "best", "robots", "sight"):
-                self._stage.layer(name, None)
+            self._show_images(which, force=True)
+            return
+        for image in (*self._sources, *self._levels, self._merged):
+            image.visible(False)
+        for name in ("aug", "window", "box", "swarm", "trail", "best", "robots", "sight"):
+            self._stage.layer(name, None)
+
+    def redraw(self, story: Story) -> None:
+        """Ink again, after another view had the page."""
+        self._drawn.pop("box", None)
+        if story.last is None or story.get(CandidatesDetail) is None:
+            self._robots(together=False)
+
+    def recolour(self, palette: Palette) -> None:
+        """Draw everything again in other colours."""
+        which, drawn, mov_at = self._drawn.get("images", "sources"), dict(self._drawn), self._mov_at
+        self.load(self._ref, self._mov, self._observation, self._at, self.layout, palette)
+        self._augmentation(drawn.get("augmented"))  # type: ignore[arg-type]
+        self._show_images(str(which), force=True)
+        self._place(mov_at, 0)
+
+    def extent(self) -> Rect:
+        """Rectangle around both maps as they lie now."""
+        return self.layout.view(self._mov_at)
 
     # --- a run ------------------------------------------------------------------------------------
 
@@ -115,27 +133,42 @@ class MapView:
         """Draw the newest state of a run.
 
         camera : whether the camera goes along
-        live   : the run is told at a pace; otherwise only its end matters and nothing glides
+        live   : the run is told at a pace: map 2 glides from place to place
         """
         detail = story.last.detail if story.last else None
-        stage, layout = self._stage, self.layout
         glide = 1.0 if live else 0.0
         augmented = story.get(AugmentDetail)
         self._augmentation(augmented)
         if isinstance(detail, (AugmentDetail, HoughDetail)):
-            self._show_images("levels")
             turn = detail.match.turns[0] if isinstance(detail, HoughDetail) else 0.0
-            self._place(Pose2(layout.apart.x, layout.apart.y, turn), glide * TURN_MS)
-            self._robots(together=False)
-            self._clear("window", "box", "swarm", "trail", "best")
+            self._lifted(turn, glide)
             if camera:
-                stage.look_down(layout.view())
+                self._stage.look_down(self.layout.view())
         elif isinstance(detail, (WindowDetail, ShiftDetail, CandidatesDetail)):
             self._candidates(story, glide, camera)
         elif isinstance(detail, RefineDetail):
             self._refine(detail, glide, camera)
         elif isinstance(detail, (AnswersDetail, Fusion, MergeResult)):
             self._answer(story, glide, camera)
+
+    def preview(self, story: Story, config: Any) -> None:
+        """Draw what a moved slider does before there is a merge: levels, Σ_aug, the box's size."""
+        self._augmentation(story.get(AugmentDetail))
+        self._lifted(0.0, 0.0)
+        box = getattr(config, "box", None)
+        if self._palette is not None and box is not None:
+            half = np.array([box.sigma_x, box.sigma_y])
+            label = {"t": "± σ_x, ± σ_y", "tp": np.array([-half[0], half[1]]), "dy": -9, "align": "right"}
+            corners = rectangle(-half, half)
+            self._stage.layer(
+                "box", [path(corners, self._palette.margin, close=True, d=[6, 4], halo=True, **label)]
+            )
+
+    def _lifted(self, turn: float, glide: float) -> None:
+        self._show_images("levels")
+        self._place(Pose2(self.layout.apart.x, self.layout.apart.y, turn), glide * TURN_MS)
+        self._robots(together=False)
+        self._clear("window", "box", "swarm", "trail", "best")
 
     def _augmentation(self, detail: AugmentDetail | None) -> None:
         if detail is None or self._palette is None or self._drawn.get("augmented") is detail:
@@ -144,51 +177,50 @@ class MapView:
         layout = self.layout
         self._levels_1.show(render.levels(detail.ref, self._palette), detail.ref.grid, layout.anchor_ref)
         self._levels_2.show(render.levels(detail.mov, self._palette), detail.mov.grid, layout.anchor_mov)
-        self._show_images(str(self._drawn.get("images", "levels")), force=True)
+        self._show_images(str(self._drawn.get("images", "sources")), force=True)
 
-    def rings(self, covariance: FloatArray) -> None:
+    def rings(self, config: Any, story: Story) -> None:
         """Σ_aug around the meeting place in both maps: one and two standard deviations."""
-        if self._palette is None or self._at is None:
+        detail = story.last.detail if story.last else None
+        group = getattr(config, "augment", None)
+        wanted = isinstance(detail, (AugmentDetail, HoughDetail, CandidatesDetail))
+        if self._palette is None or self._at is None or group is None or not wanted:
+            self._clear("aug")
             return
-        items = [
-            path(
-                ellipse(np.zeros(2), covariance, k),
-                self._palette.margin,
-                frame,
-                close=True,
-                w=1.3,
-                d=[2, 4] if k == 2 else [],
-                halo=True,
-                **({"t": f"{k}σ_aug", "dy": 0, "dx": 4} if frame == "scene" else {}),
-            )
-            for frame in ("scene", "mov")
-            for k in (1, 2)
-        ]
+        together = isinstance(detail, CandidatesDetail) and self._drawn.get("images") != "levels"
+        items = []
+        for frame in ("scene",) if together else ("scene", "mov"):
+            for k in (1, 2):
+                points = ellipse(np.zeros(2), group.covariance(), k)
+                label = {"t": f"{k} Σ_aug", "tp": points[16], "dy": -8, "align": "center"}
+                line = path(
+                    points, self._palette.margin, frame, close=True, w=1.2, d=[3, 4], halo=True, **label
+                )
+                items.append(line)
         self._stage.layer("aug", items)
 
     def _candidates(self, story: Story, glide: float, camera: bool) -> None:
-        assert self._palette is not None and self._at is not None
+        assert self._palette is not None
+        assert self._at is not None
         layout, colours = self.layout, self._palette
         self._show_images("sources")
-        self._clear("swarm", "trail", "best", "aug")
+        self._clear("swarm", "trail", "best")
         window = story.get(WindowDetail)
         if window is not None:
             w = window.window
-            low = np.array([w.x_low, w.y_low]) - layout.anchor_ref
-            high = np.array([w.x_high, w.y_high]) - layout.anchor_ref
-            label = {"t": "window of eqs. (9), (10) for map 2's origin", "dy": -9}
-            corners = rectangle(low, high)
+            corners = rectangle(w.low - layout.anchor_ref, w.high - layout.anchor_ref)
+            whose = "robot 2" if np.allclose(w.pivot, self._at.x_mov) else "map 2's origin"
+            label = {"t": f"window for {whose}, eqs. (9), (10)", "tp": corners[3], "dy": -10}
             self._stage.layer(
-                "window",
-                [path(corners, colours.margin, close=True, d=[7, 5], tp=corners[3], **label)],
+                "window", [path(corners, colours.margin, close=True, d=[7, 5], halo=True, **label)]
             )
         tried = story.shifts
         found = story.get(CandidatesDetail)
-        poses = (
-            [c.T_ref_mov for c in found.candidates] if found else [s.candidate.T_ref_mov for s in tried]
-        )
+        poses = [c.T_ref_mov for c in found.candidates] if found else [s.candidate.T_ref_mov for s in tried]
         marks = [
-            mark("diamond", layout.placed(T).xy, colours.best if rank == 0 and found else colours.particle, r=5)
+            mark(
+                "diamond", layout.placed(T).xy, colours.best if rank == 0 and found else colours.particle, r=5
+            )
             for rank, T in enumerate(poses)
         ]
         self._stage.layer("box", list(reversed(marks)))
@@ -202,7 +234,7 @@ class MapView:
         assert self._palette is not None
         layout, colours, state = self.layout, self._palette, detail.state
         self._show_images("sources")
-        self._clear("window", "aug")
+        self._clear("window")
         best = layout.placed(detail.box.transform(state.best))
         self._place(best, glide * 70)
         self._robots(together=True)
@@ -247,13 +279,11 @@ class MapView:
         if answers is None:
             return
         T = answers.answers[0].T_ref_mov
-        self._clear("window", "aug", "swarm", "trail", "box")
+        self._clear("window", "swarm", "trail", "box")
         self._drawn.pop("box", None)
         self._place(layout.placed(T), glide * SLIDE_MS)
         self._robots(together=True)
-        self._stage.layer(
-            "best", [mark("star", layout.placed(T).xy, colours.answer, r=9, rim="#374151")]
-        )
+        self._stage.layer("best", [mark("star", layout.placed(T).xy, colours.answer, r=9, rim="#374151")])
         if fusion is not None:
             if self._drawn.get("fusion") is not fusion:
                 self._drawn["fusion"] = fusion
@@ -320,7 +350,17 @@ class MapView:
             heading = {} if o.observed_heading is None else {"a": o.observed_heading}
             shape = "dot" if o.observed_heading is None else "robot"
             robots.append(
-                mark(shape, zero, colours.mov, "mov", r=9 if heading else 6, t="robot 2", size=12, **heading, **other)
+                mark(
+                    shape,
+                    zero,
+                    colours.mov,
+                    "mov",
+                    r=9 if heading else 6,
+                    t="robot 2",
+                    size=12,
+                    **heading,
+                    **other,
+                )
             )
         if not together:
             robots.append(mark("ring", zero, colours.conflict, r=7, t="x̂₁ seen here", size=11, **other))

@@ -1,0 +1,56 @@
+"""What the colours of the picture at hand mean."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from algorithms.fuse import Fusion
+from algorithms.steps import (
+    AugmentDetail,
+    CandidatesDetail,
+    HoughDetail,
+    RefineDetail,
+    ShiftDetail,
+    WindowDetail,
+)
+from app.palette import VIRIDIS, Palette, Rgb, css
+from app.story import Story
+
+Entry = dict[str, Any]
+
+
+def _chip(shape: str, colour: Rgb, text: str) -> Entry:
+    return {"s": shape, "c": css(colour), "t": text}
+
+
+def level_scale(detail: AugmentDetail) -> Entry:
+    """The colour scale of the levels, from nothing to the peak."""
+    stops = [css(tuple(int(part) for part in VIRIDIS[k])) for k in range(0, 256, 51)]  # type: ignore[arg-type]
+    return {"s": "scale", "c": stops, "low": "0", "high": f"{detail.ref.peak:.3g}", "t": "level, eq. (4)"}
+
+
+def legend(palette: Palette, view: str, story: Story) -> list[Entry]:
+    """Entries for the view and for what the run has come to."""
+    detail = story.last.detail if story.last else None
+    augmented = story.get(AugmentDetail)
+    maps = [_chip("square", palette.ref, "map 1"), _chip("square", palette.mov, "map 2")]
+    particle = _chip("dot", palette.particle, "particle")
+    best = _chip("diamond", palette.best, "swarm best")
+    if view == "Heights":
+        return [level_scale(augmented)] if augmented else []
+    if view == "Swarm space":
+        return [particle, best]
+    if story.reached(Fusion):
+        return [
+            *maps,
+            _chip("square", palette.agreed, "both: wall"),
+            _chip("square", palette.conflict, "wall against free"),
+            _chip("star", palette.answer, "robot 2 under T"),
+        ]
+    if isinstance(detail, RefineDetail):
+        return [*maps, particle, best, _chip("line", palette.margin, "box")]
+    if isinstance(detail, (WindowDetail, ShiftDetail)):
+        return [*maps, _chip("diamond", palette.particle, "robot 2 under a candidate")]
+    if isinstance(detail, (AugmentDetail, HoughDetail, CandidatesDetail)) and augmented:
+        return [level_scale(augmented)] if not isinstance(detail, CandidatesDetail) else [*maps, best]
+    return maps

@@ -1,0 +1,134 @@
+"""Folder "Maps": samples and uploads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from html import escape
+from pathlib import PurePath
+
+import viser
+
+from algorithms.casefiles import observation_from_bytes, read_case
+from algorithms.errors import MapMergeError
+from algorithms.mapio import map_from_bytes
+from app import paths
+from app.inputs import Inputs
+
+NONE = "(choose)"
+Report = Callable[[MapMergeError], None]
+
+
+@dataclass(frozen=True)
+class Upload:
+    """One file as the browser sent it; its name is never used as a path."""
+
+    name: str
+    content: bytes
+
+
+# key -> label of the button, what the picker offers
+SLOTS = {
+    "yaml1": ("Map 1: YAML", ".yaml,.yml"),
+    "image1": ("Map 1: image", ".pgm,.png,.bmp"),
+    "yaml2": ("Map 2: YAML", ".yaml,.yml"),
+    "image2": ("Map 2: image", ".pgm,.png,.bmp"),
+    "observation": ("Observation: YAML", ".yaml,.yml"),
+}
+
+
+def inputs_from(uploads: dict[str, Upload]) -> Inputs:
+    """What the files so far make up: a map where both its files are there, an observation.
+
+    raises : MapMergeError that names the file, the finding and the remedy
+    """
+
+    def grid(number: int):  # type: ignore[no-untyped-def]
+        text, image = uploads.get(f"yaml{number}"), uploads.get(f"image{number}")
+        if text is None or image is None:
+            return None
+        return map_from_bytes(text.name, text.content, image.name, image.content)
+
+    seen = uploads.get("observation")
+    return Inputs(
+        ref=grid(1),
+        mov=grid(2),
+        observation=observation_from_bytes(seen.name, seen.content) if seen else None,
+        name="uploaded: " + ", ".join(upload.name for upload in uploads.values()),
+    )
+
+
+class FilesPanel:
+    """Chooses what is merged. ``load`` gets the inputs, ``report`` what is wrong with a file."""
+
+    def __init__(
+        self, gui: viser.GuiApi, load: Callable[[Inputs], None], report: Report, chosen: str
+    ) -> None:
+        self._load, self._report = load, report
+        self._uploads: dict[str, Upload] = {}
+        samples = paths.samples()
+        names = [chosen] if chosen and chosen not in samples else []
+        with gui.add_folder("Maps"):
+            self._sample = gui.add_dropdown(
+                "Sample",
+                (NONE, *names, *samples),
+                initial_value=chosen or NONE,
+                hint="A pair that came along.",
+            )
+            self._sample.on_update(lambda _: self._take_sample())
+            with gui.add_folder("Upload your own", expand_by_default=False):
+                self._status = gui.add_html(self._table())
+                for key, (label, kinds) in SLOTS.items():
+                    button = gui.add_upload_button(label, mime_type=kinds, color="gray")
+                    button.on_upload(lambda _, key=key, button=button: self._take_upload(key, button.value))
+                gui.add_button("Forget uploads", color="gray").on_click(lambda _: self._forget())
+        self._taken = chosen or NONE
+
+    def _take_sample(self) -> None:
+        name = self._sample.value
+        folder = paths.samples().get(name)
+        if folder is None or name == self._taken:
+            return
+        self._taken = name
+        try:
+            case = read_case(folder)
+        except MapMergeError as error:
+            self._report(error)
+            return
+        self._load(Inputs(case.ref, case.mov, case.observation, case.name, case.truth))
+
+    def _take_upload(self, key: str, file: viser.UploadedFile) -> None:
+        before = self._uploads.get(key)
+        # the last part only, and short: it is shown to a person, nothing else
+        self._uploads[key] = Upload(PurePath(file.name.replace("\\", "/")).name[:80] or key, file.content)
+        try:
+            inputs = inputs_from(self._uploads)
+        except MapMergeError as error:
+            del self._uploads[key]
+            if before is not None:
+                self._uploads[key] = before
+            self._status.content = self._table(bad=key)
+            self._report(error)
+            return
+        self._status.content = self._table()
+        self._taken = NONE
+        if self._sample.value != NONE:
+            self._sample.value = NONE
+        self._load(inputs)
+
+    def _forget(self) -> None:
+        self._uploads.clear()
+        self._status.content = self._table()
+
+    def _table(self, bad: str = "") -> str:
+        rows = []
+        for key, (label, _) in SLOTS.items():
+            upload = self._uploads.get(key)
+            sign = "✗" if key == bad else "✓" if upload else "·"
+            colour = "#D55E00" if key == bad else "#009E73" if upload else "#9CA3AF"
+            name = "cannot be used" if key == bad else escape(upload.name) if upload else "missing"
+            rows.append(
+                f'<tr><td style="color:{colour};width:1.2em">{sign}</td>'
+                f"<td>{label}</td><td style='opacity:.75;overflow-wrap:anywhere'>{name}</td></tr>"
+            )
+        return f'<table style="font-size:12px;margin:2px 10px 6px;width:92%">{"".join(rows)}</table>'

@@ -1,0 +1,191 @@
+"""Folders "Augmentation", "Search" and "Result": a slider for every setting of the chosen method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import viser
+
+from algorithms.errors import MapMergeError, SettingError
+from algorithms.methods import DEFAULT_METHOD, METHODS
+from app.controls import Path, Setting, in_cells, settings_of, value_at, with_value, word_for
+
+# Group of the config -> folder; what is not named goes to "Search".
+FOLDERS = {"augment": "Augmentation", "verdict": "Result", "conflict": "Result"}
+ORDER = {"Augmentation": 30.0, "Search": 40.0, "Result": 60.0}
+
+# Shown at once, in this order; every other setting is under "More".
+FRONT: tuple[Path, ...] = (
+    ("augment", "intensity"),
+    ("augment", "spread"),
+    ("window", "margin"),
+    ("box", "sigma_x"),
+    ("box", "sigma_y"),
+    ("box", "sigma_theta"),
+    ("refine", "optimiser"),
+    ("swarm", "particles"),
+    ("swarm", "iterations"),
+    ("swarm", "omega"),
+    ("swarm", "tau"),
+)
+
+
+class TuningPanel:
+    """Owns the config. ``changed`` is called with it after every change by the person."""
+
+    def __init__(
+        self, gui: viser.GuiApi, changed: Callable[[], None], report: Callable[[MapMergeError], None]
+    ) -> None:
+        self._gui, self._changed, self._report = gui, changed, report
+        self._handles: dict[Path, Any] = {}
+        self._settings: dict[Path, Setting] = {}
+        self._folders: list[Any] = []
+        self._notes: dict[str, Any] = {}
+        self._cells: tuple[float, ...] = ()
+        self.method = DEFAULT_METHOD
+        self.config: Any = METHODS[self.method].defaults
+        self._build()
+
+    def choose(self, method: str) -> None:
+        """Take another method, at its defaults."""
+        if method != self.method:
+            self.method, self.config = method, METHODS[method].defaults
+            for folder in self._folders:
+                folder.remove()
+            self._build()
+            self._changed()
+
+    def resolutions(self, *cells: float) -> None:
+        """Metres per cell of the maps, so that lengths are shown in cells, too."""
+        self._cells = cells
+        self._show_cells()
+
+    # --- building ---------------------------------------------------------------------------------
+
+    def _build(self) -> None:
+        self._handles.clear()
+        self._notes.clear()
+        self._settings = {setting.path: setting for setting in settings_of(self.config)}
+        self._folders = []
+        for title, order in ORDER.items():
+            mine = [path for path in self._settings if FOLDERS.get(path[0], "Search") == title]
+            if not mine:
+                continue
+            front = [path for path in FRONT if path in mine]
+            more = [path for path in mine if path not in front]
+            folder = self._gui.add_folder(title, order=order, expand_by_default=bool(front))
+            self._folders.append(folder)
+            with folder:
+                for path in front:
+                    self._add(self._settings[path])
+                if any(
+                    self._settings[path].bounds and self._settings[path].bounds.unit == "m" for path in mine
+                ):
+                    self._notes[title] = self._gui.add_html("")
+                if front and more:
+                    with self._gui.add_folder("More", expand_by_default=False):
+                        for path in more:
+                            self._add(self._settings[path])
+                elif more:
+                    for path in more:
+                        self._add(self._settings[path])
+                reset = self._gui.add_button(f"Reset {title.lower()}", color="gray")
+                reset.on_click(lambda _, mine=tuple(mine): self._reset(mine))
+        self._show_cells()
+
+    def _add(self, setting: Setting) -> None:
+        hint, value = setting.hint or None, setting.default
+        if setting.bounds is not None:
+            b, kind = setting.bounds, int if setting.whole else float
+            handle: Any = self._gui.add_slider(
+                setting.label,
+                min=kind(b.low),
+                max=kind(b.high),
+                step=kind(b.step),
+                initial_value=kind(value),
+                hint=hint,
+            )
+        elif setting.choices is not None:
+            handle = self._gui.add_dropdown(
+                setting.label, tuple(setting.choices), initial_value=word_for(setting, value), hint=hint
+            )
+        else:
+            handle = self._gui.add_checkbox(setting.label, value, hint=hint)
+        self._handles[setting.path] = handle
+        handle.on_update(lambda _: self._read())
+
+    # --- reading and writing ----------------------------------------------------------------------
+
+    def _wanted(self, path: Path) -> Any:
+        value, setting = self._handles[path].value, self._settings[path]
+        if setting.choices is not None:
+            return setting.choices[value]
+        if setting.bounds is None:
+            return bool(value)
+        # sliders step from their lower end in binary fractions; 0.1 + 2 * 0.1 is meant as 0.3
+        return int(value) if setting.whole else round(float(value), 6)
+
+    def read(self) -> Any:
+        """The config as the panel stands: every widget is asked, none is trusted to have told."""
+        config = self.config
+        for path in self._handles:
+            value = self._wanted(path)
+            if value != value_at(config, path):
+                config = with_value(config, path, value)
+        return config
+
+    def sync(self) -> None:
+        """Take in what the widgets say now: a message of theirs may have been lost on the way."""
+        try:
+            self.config = self.read()
+        except SettingError as error:
+            self._report(error)
+            self._write(self.config)
+
+    def _read(self) -> None:
+        try:
+            config = self.read()
+        except SettingError as error:
+            self._report(error)
+            self._write(self.config)
+            return
+        if config != self.config:
+            self.config = config
+            self._show_cells()
+            self._changed()
+
+    def _reset(self, mine: tuple[Path, ...]) -> None:
+        config = self.config
+        for path in mine:
+            config = with_value(config, path, self._settings[path].default)
+        if config != self.config:
+            self.config = config
+            self._write(config)
+            self._show_cells()
+            self._changed()
+
+    def _write(self, config: Any) -> None:
+        for path, handle in self._handles.items():
+            value, setting = value_at(config, path), self._settings[path]
+            shown = word_for(setting, value) if setting.choices is not None else value
+            if handle.value != shown:
+                handle.value = shown
+
+    def _show_cells(self) -> None:
+        """Lengths in cells below the sliders of a folder; the maps may differ in resolution."""
+        for title, note in self._notes.items():
+            parts = []
+            for path, setting in self._settings.items():
+                if (
+                    FOLDERS.get(path[0], "Search") != title
+                    or setting.bounds is None
+                    or setting.bounds.unit != "m"
+                ):
+                    continue
+                if self._cells:
+                    cells = in_cells(value_at(self.config, path), *self._cells)
+                    parts.append(f"{setting.bounds.symbol} = {cells}")
+            note.content = (
+                f'<div style="font-size:11.5px;opacity:.7;margin:-2px 10px 6px">{" · ".join(parts)}</div>'
+            )

@@ -1,0 +1,197 @@
+"""The dock at the left: the curves and numbers of the stage at hand."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import viser
+from viser import uplot
+
+from algorithms.steps import (
+    AnswersDetail,
+    AugmentDetail,
+    CandidatesDetail,
+    HoughDetail,
+    MergeResult,
+    RefineDetail,
+    ShiftDetail,
+    WindowDetail,
+)
+from app import charts
+from app.palette import LIGHT, css
+from app.panels.tables import table
+from app.story import Story
+
+TURN, SHIFT, SWARM, RESULT = "Turn", "Shift", "Swarm", "Result"
+LINES = 4  # courses of Γ that are drawn
+
+# colours that read on light and on dark panels alike
+REF, MOV, MARK, BEST = css(LIGHT.ref), css(LIGHT.mov), css(LIGHT.particle), css(LIGHT.best)
+GREY = css(LIGHT.margin)
+TWO = (np.array([0.0, 1.0]), np.zeros(2))
+
+
+def _dots(label: str, colour: str, size: float) -> uplot.Series:
+    points = {"show": True, "size": size, "fill": colour, "stroke": colour, "width": 1}
+    return uplot.Series(label=label, width=0, stroke=colour, points=points)  # type: ignore[typeddict-item]
+
+
+def _line(label: str, colour: str, width: float = 1.5) -> uplot.Series:
+    return uplot.Series(label=label, stroke=colour, width=width, points={"show": False})
+
+
+class PlotDock:
+    """Follows the run until the person chooses a page of it; the next Merge follows again."""
+
+    def __init__(self, client: viser.ClientHandle, dark: bool = False) -> None:
+        gui = client.gui
+        self._panel = gui.add_panel()
+        self._chosen = False
+        self._setting = False
+        self._shown: dict[str, object] = {}
+        with self._panel.add_tab("Stages", icon=viser.Icon.CHART_LINE):
+            self._pages = gui.add_button_group("", (TURN, SHIFT, SWARM, RESULT))
+            self._pages.on_click(lambda _: self._choose())
+            self._hough = self._plot(
+                gui,
+                "Hough spectra, eq. (11)",
+                "direction (°)",
+                (_line("map 1", REF), _line("map 2", MOV)),
+                190,
+            )
+            self._turns = self._plot(
+                gui,
+                "Their correlation, eq. (12)",
+                "turn Δθ (°), or that + 180°",
+                (_line("CC", GREY), _dots("candidates", MARK, 8), _dots("at hand", BEST, 10)),
+                190,
+            )
+            window = uplot.Series(
+                label="window", width=0, fill="rgba(107,114,128,.20)", points={"show": False}
+            )
+            self._shifts: list[tuple[Any, Any]] = []
+            for axis, number in (("x", "(13)"), ("y", "(14)")):
+                self._shifts.append(
+                    (
+                        self._plot(
+                            gui,
+                            f"{axis.upper()} spectra, eq. {number}; map 2 turned and shifted",
+                            f"{axis} (m)",
+                            (_line("map 1", REF), _line("map 2", MOV)),
+                            140,
+                        ),
+                        self._plot(
+                            gui,
+                            "Correlation, window of eqs. (9), (10) shaded",
+                            f"Δ{axis} (m)",
+                            (window, _line("C", GREY), _dots("shift", BEST, 9)),
+                            140,
+                        ),
+                    )
+                )
+            colours = (BEST, MARK, REF, GREY)
+            self._gamma = self._plot(
+                gui,
+                "Best Γ so far, eq. (17)",
+                "iteration",
+                tuple(_line(f"{k + 1}", colour, 2.2 if k == 0 else 1.3) for k, colour in enumerate(colours)),
+                230,
+            )
+            self._candidates = gui.add_html("")
+            self.result = gui.add_html("")
+        self._panel.dock_left()
+        self._panel.set_width(310)
+        self.page = TURN
+        self._show_page()
+
+    def _plot(
+        self, gui: viser.GuiApi, title: str, label: str, series: tuple[uplot.Series, ...], height: int
+    ) -> Any:
+        small = "11px system-ui, sans-serif"
+        return gui.add_uplot(
+            (TWO[0], *(TWO[1] for _ in series)),
+            (uplot.Series(label=label), *series),
+            title=title,
+            scales={"x": uplot.Scale(time=False), "y": uplot.Scale(auto=True)},
+            axes=(
+                uplot.Axis(label=label, labelSize=16, labelFont=small, font=small, size=26),
+                uplot.Axis(font=small, size=38),
+            ),
+            legend=uplot.Legend(show=True, live=False),
+            height=height,
+        )
+
+    # --- pages ------------------------------------------------------------------------------------
+
+    def _choose(self) -> None:
+        self._chosen = True
+        self.page = self._pages.value
+        self._show_page()
+
+    def follow(self) -> None:
+        """Go along with the run from now on."""
+        self._chosen = False
+
+    def turn_to(self, page: str) -> None:
+        """Show a page, unless the person has chosen one."""
+        if not self._chosen and page != self.page:
+            self.page = page
+            self._show_page()
+
+    def _show_page(self) -> None:
+        if self._pages.value != self.page:
+            self._pages.value = self.page
+        for handles, page in (
+            ((self._hough, self._turns), TURN),
+            ([handle for pair in self._shifts for handle in pair], SHIFT),
+            ((self._gamma, self._candidates), SWARM),
+            ((self.result,), RESULT),
+        ):
+            for handle in handles:
+                if handle.visible != (self.page == page):
+                    handle.visible = self.page == page
+
+    # --- a run ------------------------------------------------------------------------------------
+
+    def clear(self) -> None:
+        """Nothing is known."""
+        self._shown.clear()
+        self._candidates.content = self.result.content = ""
+        for plot in (self._hough, self._turns, self._gamma, *(p for pair in self._shifts for p in pair)):
+            plot.data = (TWO[0], *(TWO[1] for _ in plot.data[1:]))
+
+    def show(self, story: Story) -> None:
+        """Draw what has changed since the last call."""
+        detail = story.last.detail if story.last else None
+        hough, refine = story.get(HoughDetail), story.get(RefineDetail)
+        shift = story.shifts[-1] if story.shifts else None
+        found = story.get(CandidatesDetail)
+        # after the search the best candidate is the one at hand
+        at_hand = found.candidates[0] if found else shift.candidate if shift else None
+        if hough is not None and self._new("turn", (hough, at_hand)):
+            self._hough.data = charts.hough_spectra(hough.match)
+            chosen = at_hand.T_ref_mov.theta if at_hand else None
+            self._turns.data = charts.turn_correlation(hough.match, chosen)
+        if at_hand is not None and self._new("shift", at_hand):
+            for (spectra, correlation), match in zip(self._shifts, (at_hand.x, at_hand.y), strict=True):
+                spectra.data = charts.shift_spectra(match)
+                correlation.data = charts.shift_correlation(match)
+        if refine is not None and self._new("gamma", refine):
+            self._gamma.data = charts.gammas(story.gammas, LINES)
+        if found is not None and self._new("candidates", (found, refine)):
+            rows = charts.candidate_rows(found.candidates, story.gammas)
+            head = ("candidate", "Δθ", "Δx (m)", "Δy (m)", "Γ, look", "Γ, swarm")
+            self._candidates.content = table(rows, head)
+        if isinstance(detail, (AugmentDetail, HoughDetail)):
+            self.turn_to(TURN)
+        elif isinstance(detail, (WindowDetail, ShiftDetail, CandidatesDetail)):
+            self.turn_to(SHIFT)
+        elif isinstance(detail, (RefineDetail, AnswersDetail)):
+            self.turn_to(SWARM)
+        elif isinstance(detail, MergeResult):
+            self.turn_to(RESULT)
+
+    def _new(self, name: str, source: object) -> bool:
+        before, self._shown[name] = self._shown.get(name), source
+        return before is None or before != source

@@ -1,0 +1,121 @@
+"""The swarm in the space of what it searches: x, y and turn, inside its box."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from algorithms.pose import FloatArray
+from algorithms.steps import RefineDetail
+from app.palette import Palette, css
+from app.stage import Item, Stage, cloud, mark, path
+
+TRAILS = 24  # particles that draw a trail
+TRAIL_LENGTH = 10
+POINTS = 500
+
+# a box corner (x, y, turn) in -1 … 1 -> the page's axes: x right, turn up, y away from the eye
+_AXES = np.array([[1.0, 0, 0], [0, 0, -1.0], [0, 1.0, 0]])
+
+
+def to_cube(poses: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+    """(P, 3) coordinates in a box as (P, 3) places in a cube of edge 2, in the page's axes."""
+    width = np.where(high > low, high - low, 1.0)
+    return np.asarray((2 * (poses - low) / width - 1) @ _AXES, dtype=np.float64)
+
+
+class SwarmSpaceView:
+    """Particles, a few trails, the swarm's best, and shadows on floor and walls."""
+
+    def __init__(self, stage: Stage) -> None:
+        self._stage = stage
+        self._trail: list[FloatArray] = []
+        self._of: object = None
+
+    def hide(self) -> None:
+        """Take everything away."""
+        for name in ("axes", "swarm", "trail", "best", "floor"):
+            self._stage.layer(name, None)
+        self._trail.clear()
+
+    def show(self, detail: RefineDetail | None, palette: Palette, look: bool) -> None:
+        """Draw a snapshot; ``look`` puts the camera before the box."""
+        if look:
+            self._stage.look_at("swarm", np.array([0.0, 0.0, 0.0]), 1.95, 1.15, -0.55)
+        if detail is None:
+            text = mark(
+                "dot",
+                np.zeros(3),
+                palette.margin,
+                r=0.1,
+                t="Press Merge: the swarm appears here.",
+                align="center",
+                size=14,
+            )
+            self._stage.layer("axes", [text])
+            return
+        low, high = detail.box.low, detail.box.high
+        if self._of is not detail.box:
+            self._of = detail.box
+            self._trail.clear()
+            self._stage.layer("axes", self._frame(detail, palette))
+        step = -(-len(detail.state.poses) // POINTS)
+        cube = to_cube(detail.state.poses[::step], low, high)
+        best = to_cube(detail.state.best[None], low, high)[0]
+        self._trail = [*self._trail[-TRAIL_LENGTH + 1 :], cube[:TRAILS]]
+        glide = {"glide": f"{detail.index}", "n3": True}
+        floor, back, side = cube.copy(), cube.copy(), cube.copy()
+        floor[:, 1], back[:, 2], side[:, 0] = -1, -1, 1
+        self._stage.layer(
+            "floor",
+            [cloud(shadow, palette.margin, r=1.4, alpha=0.28, **glide) for shadow in (floor, back, side)],
+        )
+        if len(self._trail) > 1:
+            trails = np.stack(self._trail, axis=1)  # (particles, times, 3)
+            self._stage.layer(
+                "trail", [path(line, None, w=1) | {"c": css(palette.particle, 0.35)} for line in trails]
+            )
+        self._stage.layer("swarm", [cloud(cube, palette.particle, r=3, alpha=0.9, **glide)])
+        legs = [path(np.array([best, foot]), palette.best, w=1, d=[2, 3]) for foot in self._feet(best)]
+        self._stage.layer(
+            "best", [*legs, mark("diamond", best, palette.best, r=7, rim="#ffffff", t="swarm best")]
+        )
+
+    @staticmethod
+    def _feet(point: FloatArray) -> list[FloatArray]:
+        x, y, z = point
+        return [np.array([x, -1, z]), np.array([x, y, -1]), np.array([1, y, z])]
+
+    @staticmethod
+    def _frame(detail: RefineDetail, palette: Palette) -> list[Item]:
+        low, high = detail.box.low.copy(), detail.box.high.copy()
+        low[2], high[2] = low[2] * 180 / pi, high[2] * 180 / pi
+        edges = [
+            (np.array([a, b, c]), axis)
+            for axis in range(3)
+            for a, b, c in ((i, j, k) for i in (-1, 1) for j in (-1, 1) for k in (-1, 1))
+            if (a, b, c)[axis] == -1
+        ]
+        items: list[Item] = []
+        for start, axis in edges:
+            end = start.copy()
+            end[axis] = 1
+            items.append(path(np.array([start, end], dtype=float), palette.margin, w=1, d=[5, 4]))
+        names = ("x", "y") if np.any(detail.box.pivot) else ("Δx", "Δy")
+
+        def text(at: list[float], words: str, **more: object) -> Item:
+            return mark("dot", np.array(at), palette.text, r=0.1, t=words, size=12, **more)
+
+        items += [
+            text([-1, -1, 1], f"{low[0]:.2f}", align="center", dy=16, dx=0),
+            text([1, -1, 1], f"{high[0]:.2f}", align="center", dy=16, dx=0),
+            text([0, -1, 1], f"{names[0]} (m)", align="center", dy=26, dx=0),
+            text([1, -1, 1], f"{low[1]:.2f}", dx=14, dy=2),
+            text([1, -1, -1], f"{high[1]:.2f}", dx=10, dy=6),
+            text([1, -1, 0], f"{names[1]} (m)", dx=22, dy=12),
+            text([-1, -1, 1], f"{low[2]:.1f}", align="right", dx=-8, dy=-4),
+            text([-1, 1, 1], f"{high[2]:.1f}", align="right", dx=-8, dy=0),
+            text([-1, 0, 1], "Δθ (°)", align="right", dx=-12, dy=0),
+        ]
+        return items
