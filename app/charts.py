@@ -78,12 +78,13 @@ def shift_correlation(match: ShiftMatch) -> Columns:
 
 
 def gammas(courses: list[list[float]], lines: int) -> Columns:
-    """Iteration, then best Γ so far for each refined candidate; NaN where it has none."""
-    longest = max((len(course) for course in courses), default=0)
-    table = np.full((lines, max(2, longest)), np.nan)
+    """Iteration, then best Γ so far for each refined candidate; one that has ended stays where it was."""
+    longest = max(2, max((len(course) for course in courses), default=0))
+    table = np.zeros((lines, longest))
     for row, course in zip(table, courses, strict=False):
-        row[: len(course)] = course
-    return (np.arange(1, table.shape[1] + 1, dtype=float), *table)
+        if course:
+            row[: len(course)], row[len(course) :] = course, course[-1]
+    return (np.arange(1, longest + 1, dtype=float), *table)
 
 
 def candidate_rows(candidates: tuple[Candidate, ...], refined: list[list[float]]) -> list[tuple[str, ...]]:

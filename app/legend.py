@@ -43,9 +43,9 @@ def legend(palette: Palette, view: str, story: Story) -> list[Entry]:
     if story.reached(Fusion):
         return [
             *maps,
-            _chip("square", palette.agreed, "both: wall"),
-            _chip("square", palette.conflict, "wall against free"),
-            _chip("star", palette.answer, "robot 2 under T"),
+            _chip("square", palette.agreed, "both"),
+            _chip("square", palette.conflict, "contradiction"),
+            _chip("star", palette.answer, "robot 2"),
         ]
     if isinstance(detail, RefineDetail):
         return [*maps, particle, best, _chip("line", palette.margin, "box")]

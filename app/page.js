@@ -109,7 +109,7 @@
     const [x, y] = project(camera, item.f, item.p), r = item.r || 8;
     const turn = item.a === undefined ? 0 : item.a + (item.f === "mov" ? S.mov.theta : 0);
     g.save(); g.translate(x, y); g.rotate(-turn); g.setLineDash([]); g.beginPath();
-    if (item.s === "cross" || item.s === "ring") {
+    if (item.s === "none") { /* words alone */ } else if (item.s === "cross" || item.s === "ring") {
       if (item.s === "ring") g.arc(0, 0, r, 0, 7);
       else { g.moveTo(-r, 0); g.lineTo(r, 0); g.moveTo(0, -r); g.lineTo(0, r); }
       g.lineWidth = 5; g.strokeStyle = S.dark ? "#111827" : "#fff"; g.stroke();
@@ -259,6 +259,8 @@
   const style = document.createElement("style");
   style.textContent = `
     #mapmeld-hud{position:absolute;inset:0;pointer-events:none;z-index:2;font:13px/1.35 system-ui,"Segoe UI",sans-serif;color:#111827}
+    button.mantine-Button-root[aria-pressed=true]{background:#0072B2!important;color:#fff!important;border-color:#0072B2!important}
+    *:has(> p > label:empty){display:none}
     #mapmeld-hud[data-theme=dark]{color:#F9FAFB}
     .mm-head{position:absolute;left:12px;right:12px;top:10px;padding:7px 12px 8px;border-radius:8px;background:rgba(255,255,255,.92);box-shadow:0 1px 4px rgba(17,24,39,.16)}
     [data-theme=dark] .mm-head{background:rgba(31,41,55,.94)}
@@ -322,6 +324,13 @@
     S.applied += 1; S.dirty = true;
     showHud();
   };
+  function press() { // viser's groups of buttons do not show which one is chosen
+    const pressed = S.hud.pressed || [];
+    for (const button of document.querySelectorAll("button.mantine-Button-root[data-size^=compact]")) {
+      const on = String(pressed.includes(button.textContent.trim()));
+      if (button.getAttribute("aria-pressed") !== on) button.setAttribute("aria-pressed", on);
+    }
+  }
   window.mapmeld = S;
   document.title = "mapmeld";
 
@@ -335,7 +344,13 @@
     m.scene.traverse((node) => {
       const map = node.material && node.material.map;
       if (node.isMesh && map && node.material.depthTest) { // flat pictures: the higher one is on top
-        node.material.depthTest = node.material.depthWrite = false;
+        const material = node.material;
+        material.depthTest = material.depthWrite = false;
+        material.onBeforeCompile = (shader) => { // thin walls stay dark from afar
+          shader.fragmentShader = shader.fragmentShader.replace("#include <map_fragment>",
+            "#include <map_fragment>\ndiffuseColor.a = min(1.0, 2.0 * diffuseColor.a);");
+        };
+        material.needsUpdate = true;
         changed = true;
       }
       if (node.isMesh && map) node.renderOrder = Math.round(10 * node.matrixWorld.elements[14]);
@@ -343,7 +358,7 @@
     });
     if (changed) m.requestRender();
   }
-  setInterval(harden, 100);
+  setInterval(() => { harden(); press(); }, 100);
   const loop = (time) => { try { paint(performance.now()); } catch (error) { console.error("mapmeld:", error); } requestAnimationFrame(loop); };
   requestAnimationFrame(loop);
 })();

@@ -69,19 +69,22 @@ class Page:
         )
         self._merge_button.on_click(lambda _: self._merge())
         self._stop_button = gui.add_button(
-            "Stop", color="gray", icon=viser.Icon.PLAYER_STOP, disabled=True, order=2
+            "Stop", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, disabled=True, order=2
         )
         self._stop_button.on_click(lambda _: self.session.stop())
-        self._view = gui.add_button_group("View", (MAP, HEIGHTS, SWARM), order=3)
+        self._speed = gui.add_button_group(
+            "Speed",
+            tuple(PACES),
+            order=3,
+            hint="How long each step stays. Instant: as fast as it is computed.",
+        )
+        self._speed.value = self._pace
+        self._speed.on_click(lambda _: self._set_speed())
+        self._view = gui.add_button_group("View", (MAP, HEIGHTS, SWARM), order=4)
         self._view.on_click(lambda _: self._turn_view())
         self._files = FilesPanel(gui, self._load, self._report, inputs.name)
         self._observation = ObservationPanel(gui)
-        with gui.add_folder("Run", order=50, expand_by_default=True):
-            self._speed = gui.add_button_group(
-                "Speed", tuple(PACES), hint="How long each step stays. Instant: as fast as it is computed."
-            )
-            self._speed.value = self._pace
-            self._speed.on_click(lambda _: setattr(self, "_pace", self._speed.value))
+        with gui.add_folder("Run", order=50):
             titles = {method.title: name for name, method in METHODS.items()}
             method = gui.add_dropdown(
                 "Method", tuple(titles), hint="The way to merge; takes its own defaults."
@@ -94,7 +97,7 @@ class Page:
             self._follow = gui.add_checkbox(
                 "Camera follows", True, hint="The camera goes along with the run."
             )
-            gui.add_button("Show everything", color="gray").on_click(lambda _: self._fit())
+            gui.add_button("Show everything", color=(226, 232, 240)).on_click(lambda _: self._fit())
             dark = gui.add_checkbox("Dark", False, hint="Light writing on a dark page.")
             dark.on_update(lambda _: self._switch(dark.value))
         self._tuning = TuningPanel(gui, self._changed, self._report)
@@ -102,12 +105,12 @@ class Page:
             self._download_button = gui.add_button(
                 "Download merged map",
                 icon=viser.Icon.DOWNLOAD,
-                color="gray",
+                color=(226, 232, 240),
                 disabled=True,
                 hint="A zip: merged.yaml, merged.pgm, transform.yaml.",
             )
             self._download_button.on_click(lambda _: self._download())
-        self._plots = PlotDock(self._client)
+        self._plots = PlotDock(self._client, self._turned_page)
 
     def _theme(self, gui: viser.GuiApi) -> None:
         gui.configure_theme(
@@ -202,12 +205,25 @@ class Page:
                 f"{result.verdict.reason}\n\nA robot that trusts this map may get lost."
             )
             yes = self._client.gui.add_button("Download the refused map anyway", color="orange")
-            no = self._client.gui.add_button("Cancel", color="gray")
+            no = self._client.gui.add_button("Cancel", color=(226, 232, 240))
         yes.on_click(lambda _: (self._send(result), modal.close()))
         no.on_click(lambda _: modal.close())
 
     def _send(self, result: MergeResult) -> None:
         self._client.send_file_download(f"{STEM}.zip", archive(result), save_immediately=True)
+
+    def _set_speed(self) -> None:
+        self._pace = self._speed.value
+        self._press()
+        self._stage.flush()
+
+    def _turned_page(self) -> None:
+        self._press()
+        self._stage.flush()
+
+    def _press(self) -> None:
+        """Let the page show which button of each group is the chosen one."""
+        self._stage.hud(pressed=[self._pace, self._view.value, self._plots.page])
 
     def _fit(self) -> None:
         if self._view.value != MAP:
@@ -262,6 +278,7 @@ class Page:
             elif self._view.value == SWARM:
                 self._draw(story, live=False)
             self._plots.show(story)
+            self._press()
             self._stage.hud(state=words.sentence(story), mood="running", progress=words.progress(story))
             self._stage.flush()
 
@@ -315,6 +332,7 @@ class Page:
             self._heights.show(story.get(AugmentDetail), self._palette, look)
         else:
             self._swarm.show(story.get(RefineDetail), self._palette, look)
+        self._press()
         self._stage.hud(legend=legend(self._palette, view, story))
 
     def _maps_preview(self, job: Job) -> None:

@@ -61,11 +61,8 @@ VIRIDIS: NDArray[np.uint8] = np.ascontiguousarray(
 
 def css(colour: Rgb, alpha: float = 1.0) -> str:
     """A colour as a style sheet writes it."""
-    return (
-        f"rgba({colour[0]},{colour[1]},{colour[2]},{alpha:g})"
-        if alpha < 1
-        else "#{:02x}{:02x}{:02x}".format(*colour)
-    )
+    red, green, blue = colour
+    return f"rgba({red},{green},{blue},{alpha:g})" if alpha < 1 else f"#{red:02x}{green:02x}{blue:02x}"
 
 
 def viridis(share: NDArray[np.floating]) -> NDArray[np.uint8]:

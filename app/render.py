@@ -85,14 +85,19 @@ def levels(augmented: AugmentedMap, palette: Palette) -> Picture:
     return Picture(pixels, factor)
 
 
-def merged(fusion: Fusion, palette: Palette) -> Picture:
-    """The merged map: whose wall it is, where both agree on a wall, and where they contradict."""
+def merged_floor(fusion: Fusion, palette: Palette) -> Picture:
+    """What either map knows, in the colour of free space."""
+    return floor(fusion.merged.cells, palette)
+
+
+def merged_walls(fusion: Fusion, palette: Palette) -> Picture:
+    """Whose wall it is, where both agree on a wall, and where they contradict; the rest transparent."""
     factor = pooling(fusion.merged.cells.shape)
     ref, mov = pool(fusion.ref_cells, factor), pool(fusion.mov_cells, factor)
     ref_wall, mov_wall = ref >= OCCUPIED_FROM, mov >= OCCUPIED_FROM
     ref_free = (ref != UNKNOWN) & (ref <= FREE_UP_TO)
     mov_free = (mov != UNKNOWN) & (mov <= FREE_UP_TO)
-    pixels = _tinted((ref != UNKNOWN) | (mov != UNKNOWN), palette.free)
+    pixels = _tinted(ref_wall | mov_wall, palette.margin)
     for mask, colour in (
         (ref_wall, palette.ref),
         (mov_wall, palette.mov),

@@ -132,13 +132,16 @@ class Session:
             try:
                 self._tell(job)
             except MapMergeError as error:
-                self._deliver(job, lambda error=error: self._listener.failed(job, error))  # type: ignore[misc]
+                self._fail(job, error)
             except Exception as error:
                 log.exception("a run of %s ended in a bug", job.method)
-                self._deliver(job, lambda error=error: self._listener.failed(job, error))  # type: ignore[misc]
+                self._fail(job, error)
             with self._wake:
                 if self._running is job:
                     self._running = None
+
+    def _fail(self, job: Job, error: Exception) -> None:
+        self._deliver(job, lambda: self._listener.failed(job, error))
 
     def _tell(self, job: Job) -> None:
         """Iterate the method; draw at most every FRAME, except where a step is meant to be seen."""

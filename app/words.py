@@ -48,8 +48,8 @@ def sentence(story: Story) -> str:
     if isinstance(detail, WindowDetail):
         return "Shifting: the observation leaves this window."
     if isinstance(detail, ShiftDetail):
-        turn = degrees(detail.candidate.T_ref_mov.theta)
-        return f"Shifting candidate {detail.index + 1} of {detail.total}: map 2 turned by {turn:.1f}°."
+        turn = f"{degrees(detail.candidate.T_ref_mov.theta):.1f}".replace("-", "−")
+        return f"Shifting candidate {detail.index + 1} of {detail.total}: map 2 turned by {turn}°."
     if isinstance(detail, CandidatesDetail):
         return f"{len(detail.candidates)} candidates, ranked by Γ."
     if isinstance(detail, RefineDetail):

@@ -68,7 +68,7 @@ class FilesPanel:
         self._uploads: dict[str, Upload] = {}
         samples = paths.samples()
         names = [chosen] if chosen and chosen not in samples else []
-        with gui.add_folder("Maps"):
+        with gui.add_folder("Maps", order=10.0):
             self._sample = gui.add_dropdown(
                 "Sample",
                 (NONE, *names, *samples),
@@ -79,9 +79,9 @@ class FilesPanel:
             with gui.add_folder("Upload your own", expand_by_default=False):
                 self._status = gui.add_html(self._table())
                 for key, (label, kinds) in SLOTS.items():
-                    button = gui.add_upload_button(label, mime_type=kinds, color="gray")
+                    button = gui.add_upload_button(label, mime_type=kinds, color=(226, 232, 240))
                     button.on_upload(lambda _, key=key, button=button: self._take_upload(key, button.value))
-                gui.add_button("Forget uploads", color="gray").on_click(lambda _: self._forget())
+                gui.add_button("Forget uploads", color=(226, 232, 240)).on_click(lambda _: self._forget())
         self._taken = chosen or NONE
 
     def _take_sample(self) -> None:

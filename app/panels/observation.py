@@ -14,7 +14,7 @@ class ObservationPanel:
     """Shows where the robots were and what one saw of the other."""
 
     def __init__(self, gui: viser.GuiApi) -> None:
-        with gui.add_folder("Observation", expand_by_default=False):
+        with gui.add_folder("Observation", order=20.0, expand_by_default=False):
             self._html = gui.add_html("")
 
     def show(self, inputs: Inputs) -> None:

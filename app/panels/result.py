@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from math import degrees, sqrt
 
+import numpy as np
+
 from algorithms.fuse import fuse
 from algorithms.pose import pose_error
 from algorithms.steps import MergeResult
@@ -37,11 +39,12 @@ def result_html(result: MergeResult, inputs: Inputs, faded: bool = False) -> str
 def numbers(result: MergeResult, inputs: Inputs) -> list[tuple[str, ...]]:
     """The transform with its standard deviations, Γ, and the figures of merit."""
     T, verdict = result.T_ref_mov, result.verdict
-    sx, sy, st = (sqrt(max(0.0, float(result.covariance[k, k]))) for k in range(3))
+    at_robot, turn = _deviations(result)
     rows = [
-        ("T: Δx", f"{T.x:.3f} ± {sx:.3f} m"),
-        ("T: Δy", f"{T.y:.3f} ± {sy:.3f} m"),
-        ("T: Δθ", f"{degrees(T.theta):.2f} ± {degrees(st):.2f}°"),
+        ("T: Δx", f"{T.x:.3f} m"),
+        ("T: Δy", f"{T.y:.3f} m"),
+        ("T: Δθ", f"{degrees(T.theta):.2f} ± {degrees(turn):.2f}°"),
+        ("robot 2 known to", f"± {at_robot:.3f} m"),
         ("Γ, eq. (17)", f"{result.value:.5g}"),
     ]
     truth = inputs.truth.T_ref_mov if inputs.truth else None
@@ -63,6 +66,17 @@ def numbers(result: MergeResult, inputs: Inputs) -> list[tuple[str, ...]]:
         ("seed", f"{result.seed}"),
     ]
     return rows
+
+
+def _deviations(result: MergeResult) -> tuple[float, float]:
+    """Standard deviations of the answer: metres at robot 2 (the larger axis), radians of the turn.
+
+    Those of (Δx, Δy) alone say little: they are taken at map 2's origin, which may lie far away.
+    """
+    x, y = (result.T_ref_mov.apply(result.encounter.x_mov) - result.T_ref_mov.xy).tolist()
+    jacobian = np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])
+    at_robot = jacobian @ result.covariance @ jacobian.T
+    return sqrt(max(0.0, float(np.linalg.eigvalsh(at_robot)[-1]))), sqrt(max(0.0, result.covariance[2, 2]))
 
 
 def times(result: MergeResult) -> list[tuple[str, ...]]:

@@ -90,7 +90,7 @@ class TuningPanel:
                 elif more:
                     for path in more:
                         self._add(self._settings[path])
-                reset = self._gui.add_button(f"Reset {title.lower()}", color="gray")
+                reset = self._gui.add_button(f"Reset {title.lower()}", color=(226, 232, 240))
                 reset.on_click(lambda _, mine=tuple(mine): self._reset(mine))
         self._show_cells()
 

@@ -8,33 +8,13 @@ import viser
 from algorithms.augment import AugmentedMap
 from algorithms.pose import FloatArray
 from algorithms.steps import AugmentDetail
-from app.palette import Palette, viridis
-from app.stage import Stage, path
+from app.palette import Palette, css, viridis
+from app.stage import Item, Stage, path
 
-TALLEST = 0.22  # of the shown radius: height of a wall with the highest level there is
+TALLEST = 0.3  # of the shown radius: height of a wall with the highest level there is
 VISIBLE = 0.01  # of the peak; lower walls are left flat
+APART = 1.12  # of the shown radius: how far each map's middle lies from the scene's
 MOST_BARS = 12_000  # of one map; further ones are thinned out
-
-_CUBE = np.array(
-    [[x, y, z] for y in (0, 1) for z in (-0.5, 0.5) for x in (-0.5, 0.5)], dtype=np.float32
-)  # stands on the floor
-_FACES = np.array(
-    [
-        [0, 1, 3],
-        [0, 3, 2],
-        [4, 6, 7],
-        [4, 7, 5],
-        [0, 4, 5],
-        [0, 5, 1],
-        [2, 3, 7],
-        [2, 7, 6],
-        [0, 2, 6],
-        [0, 6, 4],
-        [1, 5, 7],
-        [1, 7, 3],
-    ],
-    dtype=np.uint32,
-)
 
 
 def bars(augmented: AugmentedMap, most: int = MOST_BARS) -> tuple[FloatArray, FloatArray]:
@@ -46,7 +26,7 @@ def bars(augmented: AugmentedMap, most: int = MOST_BARS) -> tuple[FloatArray, Fl
 
 
 class HeightsView:
-    """Both maps side by side, each around its meeting place; y is up here."""
+    """Both maps, one behind the other, each around its meeting place; y is up here."""
 
     def __init__(self, client: viser.ClientHandle, stage: Stage) -> None:
         self._scene, self._stage = client.scene, stage
@@ -62,13 +42,12 @@ class HeightsView:
         if self._drawn is not detail:
             self.hide()
             self._drawn = detail
-            for name, augmented, side in (("1", detail.ref, -1.06), ("2", detail.mov, 1.06)):
-                self._bars(name, augmented, np.array([side * radius, 0.0]), radius)
-        self._stage.layer(
-            "floor", [*self._floor(-1.06, radius, palette, 1), *self._floor(1.06, radius, palette, 2)]
-        )
+            for name, augmented, side in (("1", detail.ref, -1.0), ("2", detail.mov, 1.0)):
+                self._bars(name, augmented, side * APART * radius, radius)
+        items = [*self._floor(-1, radius, palette, 1), *self._floor(1, radius, palette, 2)]
+        self._stage.layer("floor", items)
         if look:
-            self._stage.look_at("heights", np.array([0.0, 0.1 * radius, 0.0]), 2.2 * radius, 0.95, 0.0)
+            self._stage.look_at("heights", np.array([0.0, 0.12 * radius, 0.0]), 1.62 * radius, 0.92, 0.0)
 
     def hide(self) -> None:
         """Take everything away."""
@@ -83,55 +62,33 @@ class HeightsView:
         reach = [np.abs(bars(side)[0]).max(initial=0.5) for side in (detail.ref, detail.mov)]
         return float(max(reach)) * 1.05
 
-    def _bars(self, name: str, augmented: AugmentedMap, at: FloatArray, radius: float) -> None:
+    def _bars(self, name: str, augmented: AugmentedMap, away: float, radius: float) -> None:
+        """Unlit stems: a lit colour would no longer be the one of the scale."""
         where, share = bars(augmented)
         if len(share) == 0:
             return
-        cell = augmented.grid.resolution
-        place = np.column_stack([where[:, 0] + at[0], np.zeros(len(share)), -where[:, 1]])
-        size = np.column_stack(
-            [np.full(len(share), cell), share * TALLEST * 2 * radius, np.full(len(share), cell)]
-        )
-        # the page's frame is turned half round y against viser's: see views/maps.py
+        foot = np.column_stack([where[:, 0], np.zeros(len(share)), away - where[:, 1]])
+        top = foot.copy()
+        top[:, 1] = share * TALLEST * 2 * radius
+        colours = viridis(np.stack([0.55 * share, share], axis=1))
         self._handles.append(
-            self._scene.add_batched_meshes_simple(
+            self._scene.add_line_segments(
                 f"/world/heights/{name}",
-                _CUBE,
-                _FACES,
-                batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (len(share), 1)),
-                batched_positions=place,
-                batched_scales=size,
-                batched_colors=viridis(share),
-                lod="off",
-                flat_shading=True,
-                side="double",
-                cast_shadow=False,
-                receive_shadow=False,
+                np.stack([foot, top], axis=1).astype(np.float32),
+                colours,
+                thickness=augmented.grid.resolution,
+                thickness_units="world",
             )
         )
 
     @staticmethod
-    def _floor(side: float, radius: float, palette: Palette, number: int) -> list[dict[str, object]]:
-        x = side * radius
-        corners = np.array(
-            [[x + i * radius, 0.0, j * radius] for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-        )
-        colour = palette.ref if number == 1 else palette.mov
-        front = np.array([x - radius, 0.0, radius])
-        high = np.array([[x - radius, 0.0, -radius], [x - radius, TALLEST * 2 * radius, -radius]])
+    def _floor(side: int, radius: float, palette: Palette, number: int) -> list[Item]:
+        z = side * APART * radius
+        unit = np.array([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]], dtype=float)
+        corners = unit * radius + (0, 0, z)
+        post = np.array([[-radius, 0, z - radius], [-radius, TALLEST * 2 * radius, z - radius]])
+        name = {"t": f"map {number}: {2 * radius:.0f} m around robot 2", "tp": corners[3], "size": 13}
         return [
-            path(
-                corners,
-                palette.margin,
-                close=True,
-                w=1,
-                fill="rgba(255,255,255,.0)",
-                tp=front,
-                t=f"map {number}, {2 * radius:.0f} m wide",
-                tc=f"rgb{colour}",
-                size=13,
-                dy=16,
-                dx=4,
-            ),
-            path(high, palette.margin, w=1.5, tp=high[1], t="peak level", dx=6, tc=f"rgb{palette.text}"),
+            path(corners, palette.margin, close=True, w=1, dy=14, dx=4, tc=css(palette.text), **name),
+            path(post, palette.margin, w=1.5, tp=post[1], t="peak level", dx=6, tc=css(palette.text)),
         ]

@@ -31,7 +31,7 @@ from app.story import Story
 from app.views.images import GridImage
 
 # Heights of the flat pictures; far apart for the depth buffer, nothing for a camera far above.
-FREE_1, FREE_2, WALLS_1, WALLS_2, MERGED = 0.0, 0.1, 0.2, 0.3, 0.4
+FREE_1, FREE_2, WALLS_1, WALLS_2, MERGED_FREE, MERGED_WALLS = 0.0, 0.1, 0.2, 0.3, 0.4, 0.5
 TURN_MS, SLIDE_MS = 900.0, 330.0
 MOST_PARTICLES = 600  # drawn; more would be a blot
 
@@ -52,7 +52,10 @@ class MapView:
         self._walls_2 = GridImage(scene, "/world/mov/walls", WALLS_2)
         self._levels_1 = GridImage(scene, "/world/ref/levels", WALLS_1)
         self._levels_2 = GridImage(scene, "/world/mov/levels", WALLS_2)
-        self._merged = GridImage(scene, "/world/ref/merged", MERGED)
+        self._merged = (
+            GridImage(scene, "/world/ref/merged_free", MERGED_FREE),
+            GridImage(scene, "/world/ref/merged_walls", MERGED_WALLS),
+        )
         self._sources = (self._free_1, self._free_2, self._walls_1, self._walls_2)
         self._levels = (self._levels_1, self._levels_2)
         self.layout = Layout(np.zeros(2), np.zeros(2), None, None, Pose2())
@@ -79,13 +82,13 @@ class MapView:
         self._ref, self._mov, self._observation, self._at = ref, mov, observation, at
         self.layout, self._palette = layout, palette
         self._drawn.clear()
-        for image in (*self._sources, *self._levels, self._merged):
+        for image in (*self._sources, *self._levels, *self._merged):
             image.remove()
         if ref:
             self._free_1.show(render.floor(ref.cells, palette), ref, layout.anchor_ref)
             self._walls_1.show(render.walls(ref.cells, palette.ref), ref, layout.anchor_ref)
         if mov:
-            self._free_2.show(render.floor(mov.cells, palette, 215), mov, layout.anchor_mov)
+            self._free_2.show(render.floor(mov.cells, palette), mov, layout.anchor_mov)
             self._walls_2.show(render.walls(mov.cells, palette.mov), mov, layout.anchor_mov)
         self.apart(follow=True)
 
@@ -104,7 +107,7 @@ class MapView:
         if yes:
             self._show_images(which, force=True)
             return
-        for image in (*self._sources, *self._levels, self._merged):
+        for image in (*self._sources, *self._levels, *self._merged):
             image.visible(False)
         for name in ("aug", "window", "box", "swarm", "trail", "best", "robots", "sight"):
             self._stage.layer(name, None)
@@ -143,7 +146,8 @@ class MapView:
             turn = detail.match.turns[0] if isinstance(detail, HoughDetail) else 0.0
             self._lifted(turn, glide)
             if camera:
-                self._stage.look_down(self.layout.view())
+                turned = Pose2(self.layout.apart.x, self.layout.apart.y, turn)
+                self._stage.look_down(union(self.layout.view(), self.layout.view(turned)))
         elif isinstance(detail, (WindowDetail, ShiftDetail, CandidatesDetail)):
             self._candidates(story, glide, camera)
         elif isinstance(detail, RefineDetail):
@@ -192,7 +196,8 @@ class MapView:
         for frame in ("scene",) if together else ("scene", "mov"):
             for k in (1, 2):
                 points = ellipse(np.zeros(2), group.covariance(), k)
-                label = {"t": f"{k} Σ_aug", "tp": points[16], "dy": -8, "align": "center"}
+                name = {"t": "σ_aug" if k == 1 else "2 σ_aug", "tp": points[16], "dy": -8, "align": "center"}
+                label = name if frame == "scene" else {}
                 line = path(
                     points, self._palette.margin, frame, close=True, w=1.2, d=[3, 4], halo=True, **label
                 )
@@ -210,7 +215,12 @@ class MapView:
             w = window.window
             corners = rectangle(w.low - layout.anchor_ref, w.high - layout.anchor_ref)
             whose = "robot 2" if np.allclose(w.pivot, self._at.x_mov) else "map 2's origin"
-            label = {"t": f"window for {whose}, eqs. (9), (10)", "tp": corners[3], "dy": -10}
+            label = {
+                "t": f"window for {whose}, eqs. (9), (10)",
+                "tp": corners[2],
+                "dy": -12,
+                "align": "center",
+            }
             self._stage.layer(
                 "window", [path(corners, colours.margin, close=True, d=[7, 5], halo=True, **label)]
             )
@@ -237,7 +247,7 @@ class MapView:
         self._clear("window")
         best = layout.placed(detail.box.transform(state.best))
         self._place(best, glide * 70)
-        self._robots(together=True)
+        self._robots(together=True, seen=False)  # the swarm's best stands there
         key = (detail.index, detail.total, id(detail.box))
         if self._drawn.get("box") != key:
             self._drawn["box"] = key
@@ -268,9 +278,7 @@ class MapView:
         self._stage.layer(
             "swarm", [cloud(where, colours.particle, r=2.6, alpha=0.8, glide=f"{detail.index}")]
         )
-        self._stage.layer(
-            "best", [mark("diamond", best.xy, colours.best, r=6, rim="#ffffff", t="swarm best", dy=13, dx=8)]
-        )
+        self._stage.layer("best", [mark("diamond", best.xy, colours.best, r=6, rim="#ffffff")])
 
     def _answer(self, story: Story, glide: float, camera: bool) -> None:
         assert self._palette is not None
@@ -287,8 +295,10 @@ class MapView:
         if fusion is not None:
             if self._drawn.get("fusion") is not fusion:
                 self._drawn["fusion"] = fusion
-                self._merged.show(render.merged(fusion, colours), fusion.merged, layout.anchor_ref)
-            self._show_images("merged")
+                below, above = self._merged
+                below.show(render.merged_floor(fusion, colours), fusion.merged, layout.anchor_ref)
+                above.show(render.merged_walls(fusion, colours), fusion.merged, layout.anchor_ref)
+            self._show_images("merged", force=True)
         if camera:
             self._stage.look_down(layout.view(layout.placed(T)))
 
@@ -314,7 +324,7 @@ class MapView:
         )
         at = self.seen_robot(box.transforms(corners))[:, :2]
         middle = (at.min(axis=0) + at.max(axis=0)) / 2
-        half = max(3.0, 0.75 * float((at.max(axis=0) - at.min(axis=0)).max()))
+        half = max(1.4, 0.9 * float((at.max(axis=0) - at.min(axis=0)).max()))
         return (*(middle - half).tolist(), *(middle + half).tolist())  # type: ignore[return-value]
 
     def _swept(self) -> Rect:
@@ -331,7 +341,7 @@ class MapView:
         assert ref is not None
         return union(ref, (-reach, -reach, reach, reach))
 
-    def _robots(self, together: bool) -> None:
+    def _robots(self, together: bool, seen: bool = True) -> None:
         o, at, colours = self._observation, self._at, self._palette
         if o is None or at is None or colours is None or self._ref is None:
             self._clear("robots", "sight")
@@ -346,7 +356,7 @@ class MapView:
         ]
         other: Item = {"dx": -14, "align": "right"} if away[0] >= 0 else {"dx": 14, "align": "left"}
         sight = [path(np.array([first, zero]), colours.text, w=1.6, d=[5, 4], halo=True)]
-        if self._mov is not None:
+        if self._mov is not None and seen:
             heading = {} if o.observed_heading is None else {"a": o.observed_heading}
             shape = "dot" if o.observed_heading is None else "robot"
             robots.append(
@@ -392,4 +402,5 @@ class MapView:
             image.visible(which == "sources")
         for image in self._levels:
             image.visible(which == "levels")
-        self._merged.visible(which == "merged")
+        for image in self._merged:
+            image.visible(which == "merged")

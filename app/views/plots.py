@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -44,11 +45,11 @@ def _line(label: str, colour: str, width: float = 1.5) -> uplot.Series:
 class PlotDock:
     """Follows the run until the person chooses a page of it; the next Merge follows again."""
 
-    def __init__(self, client: viser.ClientHandle, dark: bool = False) -> None:
+    def __init__(self, client: viser.ClientHandle, turned: Callable[[], None]) -> None:
         gui = client.gui
+        self._turned = turned
         self._panel = gui.add_panel()
         self._chosen = False
-        self._setting = False
         self._shown: dict[str, object] = {}
         with self._panel.add_tab("Stages", icon=viser.Icon.CHART_LINE):
             self._pages = gui.add_button_group("", (TURN, SHIFT, SWARM, RESULT))
@@ -97,26 +98,36 @@ class PlotDock:
                 "iteration",
                 tuple(_line(f"{k + 1}", colour, 2.2 if k == 0 else 1.3) for k, colour in enumerate(colours)),
                 230,
+                None,
             )
             self._candidates = gui.add_html("")
             self.result = gui.add_html("")
         self._panel.dock_left()
-        self._panel.set_width(310)
+        self._panel.set_width(316)
         self.page = TURN
         self._show_page()
 
     def _plot(
-        self, gui: viser.GuiApi, title: str, label: str, series: tuple[uplot.Series, ...], height: int
+        self,
+        gui: viser.GuiApi,
+        title: str,
+        label: str,
+        series: tuple[uplot.Series, ...],
+        height: int,
+        top: float | None = 1.1,
     ) -> Any:
         small = "11px system-ui, sans-serif"
         return gui.add_uplot(
             (TWO[0], *(TWO[1] for _ in series)),
             (uplot.Series(label=label), *series),
             title=title,
-            scales={"x": uplot.Scale(time=False), "y": uplot.Scale(auto=True)},
+            scales={
+                "x": uplot.Scale(time=False),
+                "y": uplot.Scale(auto=True) if top is None else uplot.Scale(range=(0.0, top)),
+            },
             axes=(
                 uplot.Axis(label=label, labelSize=16, labelFont=small, font=small, size=26),
-                uplot.Axis(font=small, size=38),
+                uplot.Axis(font=small, size=46 if top is None else 42),
             ),
             legend=uplot.Legend(show=True, live=False),
             height=height,
@@ -125,9 +136,12 @@ class PlotDock:
     # --- pages ------------------------------------------------------------------------------------
 
     def _choose(self) -> None:
+        if self._pages.value == self.page:
+            return  # it was set by us
         self._chosen = True
         self.page = self._pages.value
         self._show_page()
+        self._turned()
 
     def follow(self) -> None:
         """Go along with the run from now on."""

@@ -105,7 +105,7 @@ class SwarmSpaceView:
         names = ("x", "y") if np.any(detail.box.pivot) else ("Δx", "Δy")
 
         def text(at: list[float], words: str, **more: object) -> Item:
-            return mark("dot", np.array(at), palette.text, r=0.1, t=words, size=12, **more)
+            return mark("none", np.array(at), palette.text, r=0, t=words, size=12, **more)
 
         items += [
             text([-1, -1, 1], f"{low[0]:.2f}", align="center", dy=16, dx=0),
