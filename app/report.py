@@ -99,10 +99,13 @@ def overlay_png(result: MergeResult) -> bytes:
 
     Its first row is the top, as on a screen; what no map knows is grey.
     """
-    pixels = render.upright(render.merged(result.fusion, LIGHT).pixels)
-    colours, alpha = pixels[..., :3], pixels[..., 3:] == 255
-    flat = np.where(alpha, colours, np.array(LIGHT.unknown, dtype=np.uint8))
-    done, png = cv2.imencode(".png", flat[..., ::-1])  # OpenCV keeps blue first
+    floor = render.merged_floor(result.fusion, LIGHT).pixels
+    picture = np.empty((*floor.shape[:2], 3), dtype=np.uint8)
+    picture[:] = LIGHT.unknown
+    for layer in (floor, render.merged_walls(result.fusion, LIGHT).pixels):
+        seen = layer[..., 3] > 0
+        picture[seen] = layer[seen, :3]
+    done, png = cv2.imencode(".png", render.upright(picture)[..., ::-1])  # OpenCV keeps blue first
     assert done
     return png.tobytes()
 

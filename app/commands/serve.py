@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 from app.usage import Parser
 
 if TYPE_CHECKING:
+    from viser import ViserServer
+
     from algorithms.casefiles import Case
 
 LOCAL = "127.0.0.1"
@@ -43,7 +45,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     add_resolution(parser)
     parser.add_argument("--host", default=LOCAL, help=f"address to listen at (default: {LOCAL})")
     parser.add_argument(
-        "--port", type=_port, default=PORT, help=f"the next free one from here (default: {PORT})"
+        "--port", type=_port, help=f"0 for any free one (default: {PORT}, or any free one if that is taken)"
     )
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
 
@@ -53,9 +55,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     if (args.map1 is None) != (args.map2 is None) or (args.map1 is None) != (args.observation is None):
         parser.error("give MAP1, MAP2 and --observation FILE together, or none of them for a sample")
     case = _case(args)
-    from app.server import make_server
-
-    server = make_server(args.host, args.port, case)
+    server = _listen(args.host, args.port, case)
     shown = LOCAL if args.host in ("0.0.0.0", "::", "") else args.host
     url = f"http://{f'[{shown}]' if ':' in shown else shown}:{server.get_port()}"
     print(f"mapmeld is at {url}   (Ctrl-C ends it)", flush=True)
@@ -67,6 +67,17 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         server.stop()
         print()
     return 0
+
+
+def _listen(host: str, port: int | None, case: Case | None) -> ViserServer:
+    from app.server import PortError, make_server
+
+    if port is not None:
+        return make_server(host, port, case)
+    try:
+        return make_server(host, PORT, case)
+    except PortError:
+        return make_server(host, 0, case)
 
 
 def _case(args: argparse.Namespace) -> Case | None:

@@ -1,0 +1,86 @@
+"""Case folders drawn in code: two maps of one flat whose transform is known, and two of different places."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from drawn import flat_pair
+
+from algorithms.atomic import write_files
+from algorithms.casefiles import (
+    OBSERVATION_FILE,
+    ROUGH_OBSERVATION_FILE,
+    TRUTH_FILE,
+    Case,
+    Truth,
+    observation_to_bytes,
+    truth_to_bytes,
+)
+from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.mapio import map_to_bytes
+from algorithms.pose import Pose2
+
+
+def round_hall() -> GridMap:
+    """A hall without a corner, with pillars: nothing in it is like the flat."""
+    size, cell = 200, 0.05
+    rows, cols = np.indices((size, size))
+    x, y = (cols - size / 2 + 0.5) * cell, (rows - size / 2 + 0.5) * cell
+    from_centre = np.hypot(x, y)
+    cells = np.where(from_centre < 4.5, FREE, UNKNOWN)
+    cells[(from_centre >= 4.5) & (from_centre < 4.6)] = OCCUPIED
+    for pillar_x, pillar_y in ((1.0, 2.0), (-2.5, 0.5), (0.5, -3.0)):
+        cells[np.hypot(x - pillar_x, y - pillar_y) < 0.3] = OCCUPIED
+    return GridMap(cells.astype(np.int8), cell, Pose2(-5.0, -5.0), "hall")
+
+
+def write_case(case: Case, folder: Path) -> Path:
+    """Write a case as the files of its folder."""
+    rough = replace(case.observation, range=case.observation.range + 0.2, sigma_range=0.3)
+    files = {
+        **map_to_bytes(case.ref, "map1"),
+        **map_to_bytes(case.mov, "map2"),
+        OBSERVATION_FILE: observation_to_bytes(case.observation),
+        ROUGH_OBSERVATION_FILE: observation_to_bytes(rough),
+    }
+    if case.truth is not None:
+        files[TRUTH_FILE] = truth_to_bytes(case.truth)
+    write_files({folder / name: data for name, data in files.items()})
+    return folder
+
+
+@pytest.fixture(scope="session")
+def small_case() -> Case:
+    """Two maps of one flat, seen in part by each robot, and the sighting without error."""
+    ref, mov, observation, T_ref_mov = flat_pair()
+    return Case("flat_1", ref, mov, observation, OBSERVATION_FILE, Truth(T_ref_mov))
+
+
+@pytest.fixture(scope="session")
+def strangers(small_case: Case) -> Case:
+    """Maps of two different buildings, and a sighting that never was."""
+    observation = replace(small_case.observation, observed_x=1.0, observed_y=-1.0, bearing_back=None)
+    truth = Truth(None, expected="refuse")
+    return replace(small_case, name="strangers_1", mov=round_hall(), observation=observation, truth=truth)
+
+
+@pytest.fixture(scope="session")
+def case_folder(small_case: Case, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of ``small_case``; not to be written to."""
+    return write_case(small_case, tmp_path_factory.mktemp("drawn") / small_case.name)
+
+
+@pytest.fixture(scope="session")
+def strangers_folder(strangers: Case, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of ``strangers``; not to be written to."""
+    return write_case(strangers, tmp_path_factory.mktemp("drawn") / strangers.name)
+
+
+@pytest.fixture
+def case_maker(tmp_path: Path) -> Callable[[Case, str], Path]:
+    """``case_maker(case, name)`` writes a case into the folder ``cases`` of this test."""
+    return lambda case, name: write_case(case, tmp_path / "cases" / name)

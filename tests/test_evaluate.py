@@ -1,0 +1,203 @@
+"""Many cases at once: what counts as right, what the totals say, and that one bad case costs no other."""
+
+import json
+import os
+from dataclasses import replace
+from math import radians
+from pathlib import Path
+
+import pytest
+
+from algorithms import methods
+from algorithms.casefiles import Truth
+from algorithms.pose import Pose2
+from app import evaluate
+from app.cli import main
+from app.evaluate import Order, judge_case, run_case, totals_of
+
+METHOD = "spectra-swarm"
+DEFAULTS = methods.METHODS[METHOD].defaults
+
+
+def order(root, **more):
+    return Order(Path(root), METHOD, DEFAULTS, **more)
+
+
+@pytest.fixture(scope="module")
+def result(small_case):
+    return methods.merge(small_case.ref, small_case.mov, small_case.observation)
+
+
+def off_by(case, result, metres=0.0, angle=0.0, **truth):
+    """The case with a truth so far from the result, at the seen robot."""
+    at = result.encounter.x_mov
+    x, y = result.T_ref_mov.apply(at).tolist()
+    turn = Pose2(theta=result.T_ref_mov.theta + angle)
+    dx, dy = turn.apply(at).tolist()
+    return replace(case, truth=Truth(Pose2(x + metres - dx, y - dy, turn.theta), **truth))
+
+
+@pytest.mark.parametrize(
+    ("metres", "degrees", "right", "fine"),
+    [
+        (0.14, 0.9, True, True),
+        (0.16, 0.9, True, False),
+        (0.14, 1.1, True, False),
+        (0.49, 2.9, True, False),
+        (0.51, 0.0, False, False),
+        (0.0, -3.1, False, False),
+    ],
+)
+def test_right_and_fine_are_within_the_stated_distance_and_angle(
+    small_case, result, metres, degrees, right, fine
+):
+    truth = judge_case(off_by(small_case, result, metres, radians(degrees)), result)
+    assert truth["distance"] == pytest.approx(metres, abs=1e-9)
+    assert truth["angle"] == pytest.approx(abs(radians(degrees)), abs=1e-9)
+    assert (truth["right"], truth["fine"]) == (right, fine)
+
+
+def test_the_distance_is_taken_at_the_seen_robot_not_at_the_origin(small_case, result):
+    truth = judge_case(off_by(small_case, result, 0.0, radians(2)), result)
+    assert truth["distance"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_case_may_state_a_tolerance_of_its_own(small_case, result):
+    case = off_by(small_case, result, 0.8, radians(4), tolerance_m=1.0, tolerance_rad=radians(5))
+    assert judge_case(case, result)["right"]
+
+
+@pytest.mark.parametrize("accepted", [True, False])
+def test_two_maps_of_different_places_are_right_when_refused(small_case, result, accepted):
+    case = replace(small_case, truth=Truth(None, expected="refuse"))
+    verdict = replace(result.verdict, accepted=accepted)
+    truth = judge_case(case, replace(result, verdict=verdict))
+    assert truth["right"] is not accepted
+    assert truth["distance"] is None
+
+
+def entry(name, accepted=True, right=True, fine=False, seconds=1.0, judged=True):
+    truth = {"distance": 0.0, "angle": 0.0, "right": right, "fine": fine} if judged else None
+    report = {"verdict": {"accepted": accepted}}
+    return {"case": name, "observation": "o", "report": report, "seconds": seconds, "truth": truth}
+
+
+def test_totals_count_each_group_by_the_name_up_to_its_first_underscore():
+    totals = totals_of(
+        [
+            entry("a_1_x", fine=True, seconds=1.0),
+            entry("a_2", right=False, seconds=3.0),
+            entry("a_3", right=False, accepted=False, seconds=8.0),
+            entry("b_1", judged=False),
+            entry("b_2", accepted=False),
+            {"case": "b_3", "observation": "o", "error": "bad", "seconds": 0.0, "truth": None},
+        ]
+    )
+    assert list(totals) == ["a", "b", "overall"]
+    assert totals["a"] == {
+        "n": 3,
+        "judged": 3,
+        "right": 1,
+        "fine": 1,
+        "refused": 1,
+        "wrong_accepted": 1,
+        "errors": 0,
+        "median_seconds": 3.0,
+    }
+    assert totals["b"] == {
+        "n": 3,
+        "judged": 1,
+        "right": 1,
+        "fine": 0,
+        "refused": 1,
+        "wrong_accepted": 0,
+        "errors": 1,
+        "median_seconds": 1.0,
+    }
+    assert totals["overall"]["n"] == 6
+
+
+def test_an_accepted_case_without_a_truth_is_not_called_wrong():
+    assert totals_of([entry("a", judged=False)])["overall"]["wrong_accepted"] == 0
+
+
+@pytest.fixture
+def cases(case_maker, small_case, strangers, tmp_path):
+    """A folder of five cases: right, unjudged, to be refused, broken, and one a level deeper."""
+    case_maker(small_case, "flat_1")
+    case_maker(replace(small_case, truth=None), "flat_2")
+    case_maker(strangers, "neg_1")
+    broken = case_maker(small_case, "bad_1")
+    (broken / "map2.pgm").write_bytes(b"P5 nonsense")
+    case_maker(small_case, "more/flat_3")
+    return tmp_path / "cases"
+
+
+def test_evaluate_runs_every_case_and_goes_on_after_a_broken_one(cases, tmp_path, capsys):
+    assert main(["evaluate", str(cases), "--json", str(tmp_path / "out.json")]) == 1  # one could not run
+    told = json.loads((tmp_path / "out.json").read_text())
+    by_name = {case["case"]: case for case in told["cases"]}
+    assert list(by_name) == ["bad_1", "flat_1", "flat_2", "more/flat_3", "neg_1"]
+    assert "map2.pgm" in by_name["bad_1"]["error"]
+    assert "report" not in by_name["bad_1"]
+    assert by_name["flat_1"]["truth"]["right"]
+    assert by_name["flat_2"]["truth"] is None
+    assert by_name["flat_1"]["observation"] == "observation.yaml"
+    assert by_name["flat_1"]["report"]["T_ref_mov"] == by_name["flat_2"]["report"]["T_ref_mov"]
+    assert by_name["neg_1"]["truth"]["right"]
+    assert told["totals"]["flat"]["n"] == 3
+    assert told["totals"]["overall"]["wrong_accepted"] == 0
+    said = capsys.readouterr().out
+    assert "failed: bad_1: " in said
+    assert said.splitlines()[0].split()[:2] == ["group", "n"]
+
+
+def without_times(entries):
+    for case in entries:
+        case.pop("seconds")
+        case.get("report", {}).pop("timings_s", None)
+    return sorted(entries, key=lambda case: case["case"])
+
+
+def test_the_answers_do_not_depend_on_how_many_processes_work(cases):
+    one = list(evaluate.evaluate(order(cases), jobs=1))
+    two = list(evaluate.evaluate(order(cases), jobs=2))
+    assert without_times(one) == without_times(two)
+
+
+def test_rough_takes_the_badly_measured_observation(cases):
+    told = run_case(cases / "flat_1", order(cases, rough=True))
+    assert told["observation"] == "observation_rough.yaml"
+    fine = run_case(cases / "flat_1", order(cases))
+    assert told["report"]["verdict"]["deviation"] != fine["report"]["verdict"]["deviation"]
+
+
+def test_a_bug_in_one_case_is_told_as_one(cases, monkeypatch):
+    monkeypatch.setattr(methods, "merge", lambda *_args: 1 / 0)
+    told = run_case(cases / "flat_1", order(cases))
+    assert told["error"] == "bug: ZeroDivisionError: division by zero"
+
+
+def die(folder, order):
+    """Stands for ``run_case``: one of the cases takes its process down."""
+    if folder.name == "neg_1":
+        os._exit(1)
+    return {"case": folder.name}
+
+
+def test_a_case_that_kills_its_process_costs_no_other(cases, monkeypatch):
+    monkeypatch.setattr(evaluate, "run_case", die)
+    told = list(evaluate.evaluate(order(cases), jobs=2))
+    assert {case["case"] for case in told} == {"bad_1", "flat_1", "flat_2", "flat_3", "neg_1"}
+    assert [case["case"] for case in told if "error" in case] == ["neg_1"]
+
+
+def test_a_folder_without_cases_ends_with_2(tmp_path, capsys):
+    assert main(["evaluate", str(tmp_path)]) == 2
+    assert "map1.yaml" in capsys.readouterr().err
+
+
+def test_one_case_can_be_given_as_the_folder(cases, tmp_path, capsys):
+    assert main(["evaluate", str(cases / "flat_1"), "--json", str(tmp_path / "out.json")]) == 0
+    told = json.loads((tmp_path / "out.json").read_text())
+    assert [case["case"] for case in told["cases"]] == ["flat_1"]
