@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, hypot, isfinite, pi, sin
+from math import cos, isfinite, pi, sin
 
 import numpy as np
 
@@ -120,9 +120,3 @@ def bilateral_covariance(observation: Observation) -> FloatArray:
     jacobian[2] = 0.0, 1.0, -1.0
     noise = np.diag([o.sigma_range**2, o.sigma_bearing**2, o.sigma_bearing**2])
     return np.asarray(jacobian @ noise @ jacobian.T, dtype=np.float64)
-
-
-def distance_from_observation(T_ref_mov: Pose2, at: Encounter) -> float:
-    """How far T puts R2 from where R1 saw it; metres."""
-    dx, dy = (T_ref_mov.apply(at.x_mov) - at.x_ref).tolist()
-    return hypot(dx, dy)

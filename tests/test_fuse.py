@@ -1,0 +1,146 @@
+import numpy as np
+import pytest
+from drawn import T_REF_MOV, drawn_map, flat_pair, poses
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from algorithms.errors import TooLargeError
+from algorithms.fuse import Conflict, fuse
+from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.pose import Pose2
+
+classes = st.sampled_from([UNKNOWN, FREE, OCCUPIED])
+near = st.builds(Pose2, st.floats(-2, 2), st.floats(-2, 2), st.floats(-np.pi, np.pi))
+
+
+def grids(resolution=0.1):
+    shape = st.tuples(st.integers(1, 12), st.integers(1, 12))
+    return st.builds(
+        lambda cells, origin: GridMap(cells, resolution, origin),
+        shape.flatmap(lambda s: arrays(np.int8, s, elements=classes)),
+        near,
+    )
+
+
+@settings(deadline=None)
+@given(grids(), grids(), near)
+def test_the_cells_of_the_first_map_are_not_resampled(ref, mov, T):
+    fusion = fuse(ref, mov, T)
+    rows, cols = np.indices(ref.cells.shape)
+    centres = ref.centres(rows.ravel(), cols.ravel())
+    at = np.floor(fusion.merged.grid_coordinates(centres)).astype(int)
+    assert np.array_equal(fusion.ref_cells[at[:, 1], at[:, 0]], ref.cells.ravel())
+    assert np.count_nonzero(fusion.ref_cells != UNKNOWN) == np.count_nonzero(ref.cells != UNKNOWN)
+
+
+@settings(deadline=None)
+@given(grids(), grids(0.07), near)
+def test_no_wall_of_either_map_is_lost(ref, mov, T):
+    merged = fuse(ref, mov, T).merged
+    for points in (ref.points, T.apply(mov.points)):
+        for point in points:
+            assert merged.value_at(point) == OCCUPIED
+
+
+@settings(deadline=None)
+@given(grids(), grids(), near, st.sampled_from(list(Conflict)))
+def test_a_cell_is_free_only_where_a_map_knows_it_to_be_free(ref, mov, T, rule):
+    fusion = fuse(ref, mov, T, rule)
+    free = fusion.merged.cells == FREE
+    assert np.all((fusion.ref_cells[free] == FREE) | (fusion.mov_cells[free] == FREE))
+    known = fusion.merged.cells != UNKNOWN
+    assert np.array_equal(known, (fusion.ref_cells != UNKNOWN) | (fusion.mov_cells != UNKNOWN))
+    rows, cols = np.nonzero(fusion.mov_cells == FREE)
+    for centre in T.inverse().apply(fusion.merged.centres(rows, cols)):
+        assert mov.value_at(centre) == FREE
+
+
+@settings(deadline=None)
+@given(grids(), grids(), near)
+def test_the_merged_grid_is_the_bounding_box_of_both_and_no_more(ref, mov, T):
+    merged = fuse(ref, mov, T).merged
+    corners = np.concatenate([ref.corners(), T.apply(mov.corners())])
+    at = merged.grid_coordinates(corners)
+    size = np.array([merged.width, merged.height])
+    assert np.all(at > -1e-3)
+    assert np.all(at < size + 1e-3)
+    assert np.all(at.min(axis=0) < 1)
+    assert np.all(at.max(axis=0) > size - 1)
+
+
+@settings(deadline=None)
+@given(grids())
+def test_a_map_merged_with_itself_is_itself(ref):
+    fusion = fuse(ref, ref, Pose2())
+    assert np.array_equal(fusion.merged.cells, ref.cells)
+    assert fusion.conflicting == 0
+    assert fusion.agreed == np.count_nonzero(ref.cells != UNKNOWN)
+    assert fusion.acceptance_index == (1.0 if fusion.agreed else 0.0)
+
+
+def row(*cells):
+    return GridMap(np.array([cells], dtype=np.int8), 1.0)
+
+
+def test_every_pair_of_answers_is_counted_once():
+    ref = row(0, 0, 0, 100, 100, 100, -1, -1, -1)
+    mov = row(0, 100, -1, 0, 100, -1, 0, 100, -1)
+    fusion = fuse(ref, mov, Pose2())
+    assert (fusion.agreed, fusion.agreed_walls, fusion.conflicting, fusion.overlap) == (2, 1, 2, 4)
+    assert fusion.acceptance_index == 0.5
+
+
+@pytest.mark.parametrize(
+    ("rule", "expected"),
+    [(Conflict.OCCUPIED_WINS, [100, 100]), (Conflict.REF_WINS, [0, 100]), (Conflict.MOV_WINS, [100, 0])],
+)
+def test_a_conflict_is_settled_by_the_rule(rule, expected):
+    assert fuse(row(0, 100), row(100, 0), Pose2(), rule).merged.cells.tolist() == [expected]
+
+
+def test_a_decided_cell_beats_an_undecided_one():
+    assert fuse(row(50, 0, 40), row(0, 50, -1), Pose2()).merged.cells.tolist() == [[0, 0, 40]]
+
+
+def test_the_finer_resolution_is_kept():
+    coarse, fine = drawn_map(Pose2(), 0.1), drawn_map(Pose2(), 0.05)
+    assert fuse(coarse, fine, Pose2()).merged.resolution == 0.05
+    assert fuse(fine, coarse, Pose2()).merged.resolution == 0.05
+
+
+def test_a_yawed_origin_stays_the_origin_of_the_merged_map():
+    ref = drawn_map(Pose2(), origin_yaw=0.6)
+    assert fuse(ref, drawn_map(Pose2()), Pose2()).merged.origin.theta == pytest.approx(0.6)
+
+
+def test_two_maps_of_one_flat_agree_at_the_known_pose_and_not_beside_it():
+    ref, mov, _, T = flat_pair()
+    right, wrong = fuse(ref, mov, T), fuse(ref, mov, T @ Pose2(0.4, 0.3, 0.3))
+    assert right.acceptance_index > 0.98 > wrong.acceptance_index
+    assert right.wall_support > 0.95
+    assert wrong.wall_support < 0.6
+
+
+def test_walls_that_miss_each_other_by_a_cell_still_support_each_other():
+    a = np.zeros((9, 9), dtype=np.int8)
+    b = a.copy()
+    a[4], b[5] = 100, 100
+    beside = fuse(GridMap(a, 0.05), GridMap(b, 0.05), Pose2())
+    assert beside.wall_support == 1.0
+    assert beside.agreed_walls == 0
+
+
+def test_maps_too_far_apart_are_refused_not_allocated():
+    with pytest.raises(TooLargeError, match="merged map"):
+        fuse(row(0), row(0), Pose2(30_000.0, 30_000.0))
+
+
+@given(poses)
+@settings(deadline=None, max_examples=20)
+def test_where_the_frames_lie_changes_nothing_in_the_counts(T_new_ref):
+    ref, mov, _, _ = flat_pair()
+    moved = GridMap(ref.cells, ref.resolution, T_new_ref @ ref.origin)
+    here, there = fuse(ref, mov, T_REF_MOV), fuse(moved, mov, T_new_ref @ T_REF_MOV)
+    assert there.overlap == pytest.approx(here.overlap, rel=2e-3)
+    assert there.conflicting == pytest.approx(here.conflicting, abs=0.002 * here.overlap)

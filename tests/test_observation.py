@@ -1,0 +1,79 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from drawn import OBSERVED, OBSERVER, T_MOV_WORLD, T_REF_MOV, T_REF_WORLD, poses, sighting
+from hypothesis import given
+from hypothesis import strategies as st
+
+from algorithms.errors import SettingError
+from algorithms.observation import bilateral_covariance, bilateral_transform, encounter
+from algorithms.pose import Pose2, pose_error
+
+in_flat = st.builds(Pose2, st.floats(0, 9), st.floats(0, 7), st.floats(-np.pi, np.pi))
+SEEN = sighting(T_REF_WORLD, T_MOV_WORLD, OBSERVER, OBSERVED)
+
+
+@given(poses, poses, in_flat, in_flat)
+def test_the_encounter_is_one_place_in_both_frames(T_ref_world, T_mov_world, observer, observed):
+    at = encounter(sighting(T_ref_world, T_mov_world, observer, observed))
+    T_ref_mov = T_ref_world @ T_mov_world.inverse()
+    assert np.allclose(T_ref_mov.apply(at.x_mov), at.x_ref, atol=1e-6)
+
+
+@given(poses, poses, in_flat, in_flat)
+def test_two_bearings_give_back_the_known_transform(T_ref_world, T_mov_world, observer, observed):
+    T = bilateral_transform(sighting(T_ref_world, T_mov_world, observer, observed))
+    known = T_ref_world @ T_mov_world.inverse()
+    distance, angle = pose_error(T, known, (T_mov_world @ observed).xy)
+    assert distance < 1e-6
+    assert angle < 1e-6
+
+
+def test_the_error_ellipse_is_long_across_the_line_of_sight_for_a_far_robot():
+    far = replace(SEEN, observer=Pose2(), range=10.0, bearing=0.0, sigma_range=0.05, sigma_bearing=0.05)
+    covariance = encounter(far).covariance
+    assert covariance[0, 0] == pytest.approx(0.05**2)
+    assert covariance[1, 1] == pytest.approx(0.5**2)
+    assert covariance[0, 1] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_covariance_is_what_noise_on_the_measurement_does():
+    rng = np.random.default_rng(1)
+    noisy = [
+        encounter(
+            replace(SEEN, range=SEEN.range + dr, bearing=SEEN.bearing + db)
+        ).x_ref
+        for dr, db in rng.normal(0, (SEEN.sigma_range, SEEN.sigma_bearing), (4000, 2))
+    ]  # fmt: skip
+    assert np.allclose(np.cov(np.array(noisy).T), encounter(SEEN).covariance, atol=3e-4)
+
+
+def test_the_bilateral_covariance_is_what_noise_on_the_measurement_does():
+    rng = np.random.default_rng(2)
+    noisy = []
+    for dr, db, dback in rng.normal(0, (SEEN.sigma_range, *2 * [SEEN.sigma_bearing]), (4000, 3)):
+        T = bilateral_transform(
+            replace(
+                SEEN, range=SEEN.range + dr, bearing=SEEN.bearing + db, bearing_back=SEEN.bearing_back + dback
+            )
+        )
+        noisy.append(T.array() - T_REF_MOV.array())
+    sample, stated = np.cov(np.array(noisy).T), bilateral_covariance(SEEN)
+    assert np.allclose(sample, stated, atol=0.06 * np.abs(stated).max())
+
+
+@pytest.mark.parametrize("missing", ["bearing_back", "observed_heading"])
+def test_the_bilateral_method_says_what_it_lacks(missing):
+    with pytest.raises(SettingError, match="bearing_back"):
+        bilateral_transform(replace(SEEN, **{missing: None}))
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("range", -1.0), ("range", float("nan")), ("sigma_range", 0.0), ("sigma_bearing", -0.1),
+     ("bearing", float("inf")), ("observer", Pose2(x=float("nan")))],
+)  # fmt: skip
+def test_an_impossible_measurement_is_refused_by_name(field, value):
+    with pytest.raises(SettingError, match=field):
+        replace(SEEN, **{field: value})
