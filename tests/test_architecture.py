@@ -1,0 +1,93 @@
+"""Who may import whom. Each question is asked in a process that has imported nothing else."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PLOTTERS = {"matplotlib", "plotly", "bokeh", "seaborn"}
+
+
+def modules(package):
+    """Names of all modules under a package, entry points left out: importing them would run them."""
+    for path in sorted((ROOT / package).rglob("*.py")):
+        name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
+        if not name.endswith("__main__"):
+            yield name.removesuffix(".__init__")
+
+
+def loaded_by(*names):
+    """Top-level names and own modules that are loaded once ``names`` have been imported."""
+    code = (
+        "import importlib, sys\n"
+        "for name in sys.argv[1:]: importlib.import_module(name)\n"
+        "print(*sorted(sys.modules))"
+    )
+    told = subprocess.run(
+        [sys.executable, "-c", code, *names], capture_output=True, text=True, cwd=ROOT, check=True
+    )
+    full = set(told.stdout.split())
+    return full | {name.split(".")[0] for name in full}
+
+
+def imports_of(module):
+    """Own modules that the source of a module names in an import, wherever it stands in the file."""
+    path = ROOT / Path(*module.split("."))
+    path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def test_algorithms_load_neither_the_page_nor_a_plotting_library_nor_a_progress_bar():
+    loaded = loaded_by(*modules("algorithms"))
+    assert "algorithms.methods" in loaded  # the question was asked of everything
+    assert not loaded & ({"app", "viser", "tqdm", "tyro", "rich"} | PLOTTERS)
+
+
+def offenders(package, forbidden):
+    """Modules of a package whose source names something forbidden, also inside a function."""
+    found = {}
+    for module in modules(package):
+        bad = {name for name in imports_of(module) if any(f"{name}.".startswith(f"{f}.") for f in forbidden)}
+        if bad:
+            found[module] = sorted(bad)
+    return found
+
+
+def test_no_algorithm_imports_the_page_even_inside_a_function():
+    assert offenders("algorithms", {"app", "viser", "tqdm"} | PLOTTERS) == {}
+
+
+def test_file_formats_know_no_method():
+    above = ("methods", "pipeline", "bilateral", "steps", "verdict", "fuse")
+    assert offenders("algorithms/mapio", {f"algorithms.{name}" for name in above}) == {}
+
+
+def test_only_the_table_of_methods_knows_the_methods():
+    known = offenders("algorithms", {"algorithms.methods"})
+    assert [module for module in known if not module.startswith("algorithms.simulator")] == []
+
+
+@pytest.mark.parametrize("module", ["swarm", "montecarlo", "search"])
+def test_an_optimiser_knows_nothing_of_maps(module):
+    named = set(imports_of(f"algorithms.{module}"))
+    assert not named & {"algorithms.gridmap", "algorithms.objective", "algorithms.augment", "algorithms.fuse"}
+
+
+def test_the_page_does_not_know_the_command_line():
+    commands = {"app.cli", "app.commands", "app.flags", "app.usage", "app.progress"}
+    knowing = offenders("app", commands)
+    terminal = ("app.cli", "app.commands", "app.flags")
+    assert [module for module in knowing if not module.startswith(terminal)] == []
+
+
+@pytest.mark.parametrize("module", ["session", "render", "controls", "report", "evaluate"])
+def test_what_is_tested_without_a_browser_loads_no_server(module):
+    assert "viser" not in loaded_by(f"app.{module}")
