@@ -1,0 +1,107 @@
+"""Settings of a config as a panel shows them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Annotated, Literal
+
+import pytest
+
+from algorithms.bounds import Bounds, check_bounds
+from algorithms.errors import SettingError
+from algorithms.methods import METHODS
+from algorithms.pipeline import PipelineConfig
+from app.controls import field_docs, in_cells, settings_of, value_at, with_value, word_for
+
+
+class Rule(str, Enum):
+    FIRST = "first-wins"
+    LAST = "last-wins"
+
+
+@dataclass(frozen=True)
+class Inner:
+    """A stage."""
+
+    width: Annotated[float, Bounds(0.5, 2.0, 0.1, "m", "σ_w", "width")] = 1.0
+    """How wide. Wider
+    takes longer."""
+    count: Annotated[int, Bounds(1, 9, 1)] = 3
+    plain: bool = True
+    """On or off."""
+
+    def __post_init__(self) -> None:
+        check_bounds(self)
+
+
+@dataclass(frozen=True)
+class Outer:
+    """Everything."""
+
+    inner: Inner = field(default_factory=Inner)
+    rule: Rule = Rule.FIRST
+    """Who wins."""
+    kind: Literal["pso", "mco"] = "pso"
+
+
+def named(config):
+    return {".".join(setting.path): setting for setting in settings_of(config)}
+
+
+def test_a_field_with_bounds_becomes_a_slider_with_symbol_unit_and_hint():
+    setting = named(Outer())["inner.width"]
+    assert setting.label == "σ_w width (m)"
+    assert setting.hint == "How wide. Wider takes longer."
+    assert setting.bounds == Bounds(0.5, 2.0, 0.1, "m", "σ_w", "width")
+    assert not setting.whole
+
+
+def test_a_bare_number_is_named_after_its_field():
+    setting = named(Outer())["inner.count"]
+    assert (setting.label, setting.hint, setting.whole) == ("count", "", True)
+
+
+def test_switches_enums_and_literals_become_choices():
+    settings = named(Outer())
+    assert settings["inner.plain"].choices is None
+    assert settings["rule"].choices == {"first-wins": Rule.FIRST, "last-wins": Rule.LAST}
+    assert settings["kind"].choices == {"PSO": "pso", "MCO": "mco"}
+    assert word_for(settings["kind"], "mco") == "MCO"
+
+
+def test_a_value_is_changed_wherever_it_is_nested():
+    config = with_value(Outer(), ("inner", "width"), 1.5)
+    assert value_at(config, ("inner", "width")) == 1.5
+    assert with_value(config, ("rule",), Rule.LAST).rule is Rule.LAST
+    assert Outer().inner.width == 1.0
+
+
+def test_a_value_out_of_bounds_is_refused_by_name():
+    with pytest.raises(SettingError, match=r"Inner.width is 9 m; it must lie in \[0.5, 2\] m"):
+        with_value(Outer(), ("inner", "width"), 9.0)
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_every_setting_of_every_method_can_be_shown(name):
+    settings = list(settings_of(METHODS[name].defaults))
+    assert len({setting.path for setting in settings}) == len(settings)
+    for setting in settings:
+        assert setting.label
+        assert setting.bounds is None or setting.bounds.low <= setting.default <= setting.bounds.high
+
+
+def test_every_slider_of_the_method_has_a_hint():
+    missing = [
+        setting.path for setting in settings_of(PipelineConfig()) if setting.bounds and not setting.hint
+    ]
+    assert missing == []
+
+
+def test_docs_of_a_class_without_source_are_empty():
+    assert field_docs(type("Made", (), {})) == {}
+
+
+def test_a_length_is_told_in_cells_of_both_maps_only_where_they_differ():
+    assert in_cells(3.0, 0.05, 0.05) == "60 cells"
+    assert in_cells(3.0, 0.05, 0.04) == "60 / 75 cells"

@@ -1,0 +1,56 @@
+"""Where the two maps lie on the page."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from algorithms.gridmap import FREE, UNKNOWN, GridMap
+from algorithms.observation import Observation, encounter
+from algorithms.pose import Pose2
+from app.layout import known_corners, lay_out, rect_of
+
+
+def grid(rows: int, cols: int, origin: Pose2 = Pose2()) -> GridMap:  # noqa: B008 - frozen
+    return GridMap(np.full((rows, cols), FREE, dtype=np.int8), 0.1, origin)
+
+
+@pytest.mark.parametrize(
+    ("first", "second"), [((50, 200), (60, 180)), ((200, 50), (180, 60)), ((9, 9), (90, 90))]
+)
+def test_maps_lie_apart_before_the_merge(first, second):
+    layout = lay_out(grid(*first), grid(*second, Pose2(40, -70)), None)
+    a, b = rect_of(layout.ref_corners), rect_of(layout.apart.apply(layout.mov_corners))
+    gap = max(b[0] - a[2], a[0] - b[2], b[1] - a[3], a[1] - b[3])
+    assert gap > 0
+
+
+def test_the_meeting_place_is_the_middle_of_the_scene():
+    seen = Observation(Pose2(1, 1, 0), 2.0, 3.0, 1.0, 0.0)
+    layout = lay_out(grid(50, 50), grid(50, 50), encounter(seen))
+    assert layout.anchor_ref.tolist() == [2.0, 1.0]
+    assert layout.anchor_mov.tolist() == [2.0, 3.0]
+
+
+def test_a_transform_places_map_2_so_that_its_points_land_where_the_transform_puts_them():
+    seen = Observation(Pose2(1, 1, 0), 2.0, 3.0, 1.0, 0.0)
+    layout = lay_out(grid(50, 50), grid(50, 50), encounter(seen))
+    T, point = Pose2(7.0, -2.0, 2.0), np.array([4.0, 0.5])
+    shown = layout.placed(T).apply(point - layout.anchor_mov)
+    assert shown == pytest.approx(T.apply(point) - layout.anchor_ref)
+
+
+def test_only_what_is_known_counts_for_the_size_of_a_map():
+    cells = np.full((100, 100), UNKNOWN, dtype=np.int8)
+    cells[20:30, 40:60] = FREE
+    corners = known_corners(GridMap(cells, 0.1, Pose2(0, 0, pi / 2)))
+    assert rect_of(corners) == pytest.approx((-3.0, 4.0, -2.0, 6.0))
+
+
+@pytest.mark.parametrize(("ref", "mov"), [(None, None), (grid(10, 10), None), (None, grid(10, 10))])
+def test_missing_maps_leave_a_view_all_the_same(ref, mov):
+    x0, y0, x1, y1 = lay_out(ref, mov, None).view()
+    assert x1 > x0
+    assert y1 > y0

@@ -1,0 +1,87 @@
+"""Pictures: the right way up, walls never lost, whose wall is whose."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from algorithms.augment import augment
+from algorithms.fuse import fuse
+from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.pose import Pose2
+from app import render
+from app.palette import DARK, LIGHT, VIRIDIS
+
+
+def l_shaped(rows: int = 12, cols: int = 20) -> GridMap:
+    """A wall along the left edge and along the bottom: an L as a person reads it."""
+    cells = np.full((rows, cols), FREE, dtype=np.int8)
+    cells[:, 0] = OCCUPIED
+    cells[0, :] = OCCUPIED
+    cells[-1, -1] = UNKNOWN
+    return GridMap(cells, 0.1)
+
+
+def test_a_scene_picture_has_the_bottom_row_first_and_a_screen_picture_the_top_row():
+    picture = render.walls(l_shaped().cells, LIGHT.ref).pixels
+    assert (picture[0, :, 3] == 255).all()  # the foot of the L
+    assert (picture[-1, 1:, 3] == 0).all()
+    assert (render.upright(picture)[-1, :, 3] == 255).all()
+    assert (picture[:, 0, 3] == 255).all()  # its stem, at the left in both
+
+
+def test_walls_have_one_colour_and_everything_else_is_transparent():
+    picture = render.walls(l_shaped().cells, LIGHT.mov).pixels
+    assert set(map(tuple, picture[..., :3].reshape(-1, 3))) == {LIGHT.mov}
+    assert set(np.unique(picture[..., 3])) == {0, 255}
+
+
+@pytest.mark.parametrize("palette", [LIGHT, DARK], ids=["light", "dark"])
+def test_the_floor_is_transparent_only_where_nothing_is_known(palette):
+    picture = render.floor(l_shaped().cells, palette).pixels
+    assert picture[-1, -1, 3] == 0
+    assert (picture[..., 3] == 0).sum() == 1
+    assert tuple(picture[5, 5, :3]) == palette.free
+
+
+def test_a_huge_map_is_sent_at_a_bounded_size_and_keeps_its_thinnest_wall():
+    cells = np.full((4000, 3000), FREE, dtype=np.int8)
+    cells[:, 1501] = OCCUPIED
+    picture = render.walls(cells, LIGHT.ref)
+    assert max(picture.pixels.shape) <= render.MOST_PIXELS
+    assert picture.pooled == 2
+    assert (picture.pixels[:, 1501 // picture.pooled, 3] == 255).all()
+
+
+def test_pooling_lets_walls_win_over_free_and_free_over_unknown():
+    cells = np.array([[UNKNOWN, FREE, UNKNOWN, UNKNOWN, UNKNOWN]], dtype=np.int8)
+    assert render.pool(cells, 2).tolist() == [[FREE, UNKNOWN, UNKNOWN]]
+    cells = np.array([[OCCUPIED, FREE]], dtype=np.int8)
+    assert render.pool(cells, 2).tolist() == [[OCCUPIED]]
+
+
+def test_levels_are_brightest_at_the_meeting_place_and_far_walls_stay_faint():
+    room = l_shaped(80, 120)
+    lifted = augment(room, np.array([0.05, 0.05]), np.eye(2) * 0.3**2, 100.0)
+    picture = render.levels(lifted, LIGHT).pixels
+    assert np.abs(picture[0, 0, :3].astype(int) - VIRIDIS[255]).max() <= 2  # a wall on x̂ has the peak level
+    assert picture[0, -1, 3] < 100
+    assert picture[40, 60, 3] == 0
+
+
+def test_a_merged_map_shows_agreement_and_contradiction_in_their_own_colours():
+    left, right = l_shaped(), l_shaped()
+    changed = right.cells.copy()
+    changed[0, 5] = FREE  # one map's wall, the other's free cell
+    picture = render.merged_walls(fuse(left, GridMap(changed, 0.1), Pose2()), LIGHT).pixels
+    assert tuple(picture[0, 10]) == (*LIGHT.agreed, 255)
+    assert tuple(picture[0, 5]) == (*LIGHT.conflict, 255)
+    assert picture[5, 5, 3] == 0
+
+
+def test_walls_that_one_map_alone_knows_keep_that_maps_colour():
+    left = l_shaped()
+    beside = fuse(left, left, Pose2(5.0, 0.0, 0.0))
+    picture = render.merged_walls(beside, LIGHT).pixels
+    assert tuple(picture[0, 3, :3]) == LIGHT.ref
+    assert tuple(picture[0, -3, :3]) == LIGHT.mov

@@ -1,0 +1,201 @@
+"""The worker of a tab: newest wins, Stop stops, every step is told, bugs don't end it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from threading import Event
+
+import numpy as np
+import pytest
+
+from algorithms.errors import MapMergeError
+from algorithms.gridmap import FREE, GridMap
+from algorithms.observation import Encounter, Observation
+from algorithms.pose import Pose2
+from algorithms.steps import ObservationDetail, Step
+from app.player import DWELL, FIRST_SWARM, FRAME, LATER_SWARMS, Waiting, dwell
+from app.session import Job, Session
+
+PATIENCE = 10.0  # seconds until a test gives up
+ROOM = GridMap(np.full((4, 4), FREE, dtype=np.int8), 0.1)
+SEEN = Observation(Pose2(), 0.1, 0.1, 0.1, 0.0)
+
+
+def detail(number: float = 0.0) -> ObservationDetail:
+    return ObservationDetail(Encounter(np.full(2, number), np.zeros(2), np.eye(2)))
+
+
+def job(config: object = None, **how) -> Job:
+    return Job(ROOM, ROOM, SEEN, config, **how)
+
+
+class Ear:
+    """A listener that writes down what it hears."""
+
+    def __init__(self) -> None:
+        self.heard: list[tuple[str, object]] = []
+        self.done = Event()
+        self.shown = Event()
+
+    def begun(self, job):
+        self.heard.append(("begun", job.config))
+
+    def show(self, job, story):
+        self.heard.append(("show", story.last.detail.encounter.x_ref[0]))
+        self.shown.set()
+
+    def ended(self, job, story):
+        self.heard.append(("ended", job.config))
+        self.done.set()
+
+    def stopped(self, job, story):
+        self.heard.append(("stopped", job.config))
+        self.done.set()
+
+    def failed(self, job, error):
+        self.heard.append(("failed", error))
+        self.done.set()
+
+
+@pytest.fixture
+def ear():
+    return Ear()
+
+
+@pytest.fixture
+def start(ear):
+    sessions = []
+
+    def make(run, **more) -> Session:
+        sessions.append(Session(ear, run, **more))
+        return sessions[-1]
+
+    yield make
+    for session in sessions:
+        session.close()
+
+
+def steps(*numbers: float):
+    def run(*_) -> Iterator[Step]:
+        for number in numbers:
+            yield Step("observe", detail(number), 0.0)
+
+    return run
+
+
+def test_a_run_is_told_from_begin_to_end(start, ear):
+    start(steps(1.0)).request(job("a"))
+    assert ear.done.wait(PATIENCE)
+    assert ear.heard == [("begun", "a"), ("show", 1.0), ("ended", "a")]
+
+
+def test_at_no_pace_the_pictures_come_at_most_once_a_frame_and_the_newest_is_kept(start, ear):
+    now = iter(np.arange(0, 1000, FRAME / 4))
+    start(steps(*range(100)), clock=lambda: next(now)).request(job())
+    assert ear.done.wait(PATIENCE)
+    shown = [number for what, number in ear.heard if what == "show"]
+    assert 1 < len(shown) < 60
+    assert shown == sorted(shown)
+
+
+def test_at_a_pace_every_step_that_is_meant_to_be_seen_is_shown(start, ear, monkeypatch):
+    waited = []
+    waiting = Waiting()
+    monkeypatch.setattr(waiting, "wait", lambda seconds, mark: waited.append(seconds))
+    start(steps(1, 2, 3), waiting=waiting, clock=lambda: 0.0).request(job(pace=2.0))
+    assert ear.done.wait(PATIENCE)
+    assert [number for what, number in ear.heard if what == "show"] == [1, 2, 3]
+    assert waited == [2.0 * DWELL[ObservationDetail]] * 3
+
+
+def test_a_newer_request_cuts_the_older_one_short_even_while_it_waits(start, ear):
+    session = start(steps(*range(1000)))
+    session.request(job("old", pace=100.0))  # fifty seconds on the first step
+    assert ear.shown.wait(PATIENCE)
+    session.request(job("new"))
+    assert ear.done.wait(PATIENCE)
+    assert ("ended", "old") not in ear.heard
+    assert ear.heard[-1] == ("ended", "new")
+
+
+def test_of_many_requests_the_newest_wins(start, ear):
+    held, entered = Event(), Event()
+
+    def run(method, ref, mov, observation, config, *_) -> Iterator[Step]:
+        entered.set()
+        held.wait(PATIENCE)
+        yield Step("observe", detail(), 0.0)
+
+    session = start(run)
+    session.request(job(0))
+    assert entered.wait(PATIENCE)
+    for number in range(1, 50):
+        session.request(job(number))
+    held.set()
+    assert ear.done.wait(PATIENCE)
+    assert [config for what, config in ear.heard if what == "ended"] == [49]
+    assert sum(what == "begun" for what, _ in ear.heard) == 2  # the first, and the newest
+
+
+def test_nothing_of_a_run_is_told_once_stop_has_returned(start, ear):
+    session = start(steps(*range(100_000)))
+    session.request(job("a", pace=100.0))
+    assert ear.shown.wait(PATIENCE)
+    session.stop()
+    heard = list(ear.heard)
+    assert heard[-1] == ("stopped", "a")
+    assert not session.busy
+    session.request(job("b", pace=100.0))
+    ear.shown.clear()
+    assert ear.shown.wait(PATIENCE)
+    assert [config for what, config in ear.heard[len(heard) :] if what == "begun"] == ["b"]
+
+
+def test_stop_without_a_run_says_nothing(start, ear):
+    start(steps(1)).stop()
+    assert ear.heard == []
+
+
+@pytest.mark.parametrize("error", [MapMergeError("a.yaml: is empty; give a map"), ZeroDivisionError("bug")])
+def test_an_error_is_told_and_the_session_lives_on(start, ear, error, caplog):
+    def run(method, ref, mov, observation, config, *_) -> Iterator[Step]:
+        if config == "bad":
+            raise error
+        yield Step("observe", detail(), 0.0)
+
+    session = start(run)
+    session.request(job("bad"))
+    assert ear.done.wait(PATIENCE)
+    assert ear.heard[-1] == ("failed", error)
+    assert bool(caplog.records) == (not isinstance(error, MapMergeError))  # a bug leaves its traceback
+    ear.done.clear()
+    session.request(job("good"))
+    assert ear.done.wait(PATIENCE)
+    assert ear.heard[-1] == ("ended", "good")
+
+
+def test_a_closed_session_ends_its_thread(start, ear):
+    session = start(steps(*range(1000)))
+    session.request(job(pace=100.0))
+    assert ear.shown.wait(PATIENCE)
+    session.close()
+    session._worker.join(PATIENCE)
+    assert not session._worker.is_alive()
+
+
+def test_known_steps_are_played_again_only_when_asked_for():
+    known = Step("observe", detail(), 0.0, reused=True)
+    assert dwell(known, 1.0, again=False) == 0
+    assert dwell(known, 1.0, again=True) == DWELL[ObservationDetail]
+    assert dwell(known, 0.0, again=True) == 0
+
+
+def test_the_first_swarm_is_told_slower_than_the_rest():
+    assert FIRST_SWARM > LATER_SWARMS > 0
+
+
+def test_a_cut_before_the_wait_is_not_missed():
+    waiting = Waiting()
+    mark = waiting.mark
+    waiting.cut()
+    waiting.wait(1e6, mark)  # returns at once, or this test never ends
