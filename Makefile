@@ -29,7 +29,8 @@ test: $(VENV)/ready-to-test
 	  echo "pytest, with $$chromium" && CHROMIUM="$$chromium" $(BIN)/python -m pytest $(ARGS)
 
 bench: $(VENV)/ready-to-test
-	$(BIN)/python -m pytest -o addopts="" --benchmark-only $(ARGS)
+	$(BIN)/python -m pytest -o addopts="" -o python_files="bench_*.py" -o python_functions="bench_*" \
+	  --benchmark-only --benchmark-columns=min,median,max,rounds tests/bench $(ARGS)
 
 samples: $(VENV)/ready
 	$(BIN)/mapmeld samples sample_maps

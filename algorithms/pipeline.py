@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from math import hypot, pi
 from typing import Annotated, Literal
@@ -19,7 +19,7 @@ from algorithms.montecarlo import monte_carlo
 from algorithms.objective import Lookup, make_objective
 from algorithms.observation import Encounter, Observation, encounter
 from algorithms.pose import FloatArray
-from algorithms.search import Optimiser
+from algorithms.search import Optimiser, SearchState
 from algorithms.smm import CandidateConfig, match_turns, shift_candidates
 from algorithms.spectra import SpectraConfig
 from algorithms.steps import (
@@ -39,6 +39,9 @@ from algorithms.steps import (
 from algorithms.swarm import SwarmConfig, settled_within, swarm
 from algorithms.verdict import VerdictConfig, ambiguity_of, judge
 from algorithms.window import Box, BoxConfig, WindowConfig, box_around, paper_window
+
+GIVE_UP_AFTER = 15  # iterations
+GIVE_UP_BELOW = 0.5  # of the best Γ so far
 
 OPTIMISERS: dict[str, Optimiser] = {"pso": swarm, "mco": monte_carlo}
 
@@ -193,7 +196,7 @@ def _refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Itera
     optimise = OPTIMISERS[config.refine.optimiser]
     settled = settled_within(found.objective.ref.grid.resolution)
     refined = found.candidates[: config.refine.candidates]
-    answers = []
+    answers: list[Answer] = []
     for index, candidate in enumerate(refined):
         box = box_around(candidate.T_ref_mov, found.window, config.box)
         rng = np.random.default_rng([seed, 1, index])
@@ -202,7 +205,11 @@ def _refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Itera
             return found.objective(box.transforms(poses))
 
         for state in optimise(value, box, config.swarm, settled, rng):
+            if _hopeless(state, answers):
+                state = replace(state, stopped=f"given up after {state.iteration + 1} iterations")
             yield RefineDetail(index, len(refined), box, state)
+            if state.stopped:
+                break
         answers.append(Answer(box.transform(state.best), state.best_value, state.stopped or ""))
     answers += [
         Answer(candidate.T_ref_mov, candidate.value or 0.0, "only looked at")
@@ -210,6 +217,16 @@ def _refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Itera
     ]
     answers.sort(key=lambda answer: -answer.value)
     yield AnswersDetail(tuple(answers))
+
+
+def _hopeless(state: SearchState, answers: Sequence[Answer]) -> bool:
+    """Whether a candidate need not be followed to its end: it has had its time, and is far behind.
+
+    What is given up has not even half of the best Γ, so it could neither win nor count as a rival.
+    """
+    best = max((answer.value for answer in answers), default=0.0)
+    late = state.iteration + 1 >= GIVE_UP_AFTER
+    return late and state.stopped is None and state.best_value < GIVE_UP_BELOW * best
 
 
 def _ambiguity(refined: AnswersDetail, at: Encounter, box: BoxConfig) -> float:

@@ -189,3 +189,13 @@ def test_the_covariance_is_one_and_narrower_than_the_box():
     lever[:2, 2] = -lever[1, 2], lever[0, 2]
     at_robot = lever @ result.covariance @ lever.T
     assert np.sqrt(np.diag(at_robot)[:2]).max() < 0.3
+
+
+def test_a_candidate_without_half_of_the_best_is_given_up_and_says_so():
+    details = [step.detail for step in run("spectra-swarm", REF, MOV, SEEN)]
+    result = details[-1]
+    given_up = [a for a in result.answers if a.stopped.startswith("given up")]
+    assert given_up
+    assert all(a.value < 0.5 * result.value for a in given_up)
+    last = {d.index: d.state for d in details if isinstance(d, RefineDetail)}
+    assert all(state.stopped for state in last.values())
