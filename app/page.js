@@ -10,6 +10,7 @@
   const FOV = 4 * Math.PI / 180; // far and narrow: as good as parallel
   const ORDER = ["floor", "window", "aug", "box", "trail", "swarm", "sight", "robots", "best", "axes"];
   const lerp = (a, b, u) => a + (b - a) * u;
+  const LIGHTER = { "#0072b2": "#56b4e9", "#009e73": "#34d399", "#d55e00": "#fb923c" }; // words on dark ground
   const smooth = (u) => u * u * (3 - 2 * u);
   const wrap = (a) => a - 2 * Math.PI * Math.round(a / (2 * Math.PI));
 
@@ -97,7 +98,7 @@
     g.textAlign = align || "left"; g.textBaseline = "middle";
     g.lineJoin = "round"; g.lineWidth = 4; g.setLineDash([]);
     g.strokeStyle = S.dark ? "rgba(17,24,39,.85)" : "rgba(255,255,255,.9)";
-    g.strokeText(text, x, y); g.fillStyle = colour; g.fillText(text, x, y);
+    g.strokeText(text, x, y); g.fillStyle = (S.dark && LIGHTER[colour]) || colour; g.fillText(text, x, y);
   }
   const SHAPES = {
     robot(g, r) { g.moveTo(1.35 * r, 0); g.lineTo(-0.85 * r, 0.8 * r); g.lineTo(-0.45 * r, 0); g.lineTo(-0.85 * r, -0.8 * r); g.closePath(); },
@@ -292,7 +293,11 @@
   document.head.append(style);
 
   // --- what the server sends --------------------------------------------------------------------
-  S.reset = () => { const keep = [S.reset, S.apply]; Object.assign(S, blank()); [S.reset, S.apply] = keep; canvas = null; };
+  S.reset = () => { Object.assign(S, blank()); canvas = null; };
+  S.pixel = (point, frame) => { // where a point of the scene is in the window; for tests
+    const box = canvas.getBoundingClientRect(), at = project(hooked.camera, frame || "scene", point);
+    return [box.left + at[0], box.top + at[1]];
+  };
   S.apply = (message) => {
     const now = performance.now();
     for (const [name, items] of Object.entries(message.layers || {})) {
@@ -354,6 +359,9 @@
         changed = true;
       }
       if (node.isMesh && map) node.renderOrder = Math.round(10 * node.matrixWorld.elements[14]);
+      if (node.isLineSegments2 && node.material.toneMapped) { // colours of a scale are colours of a scale
+        node.material.toneMapped = false; node.material.needsUpdate = true; changed = true;
+      }
       if (map && map.magFilter !== 1003) { map.magFilter = 1003; map.anisotropy = 4; map.needsUpdate = true; changed = true; }
     });
     if (changed) m.requestRender();

@@ -1,0 +1,143 @@
+"""One tab of the page as a person uses it, in a real Chromium."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from time import monotonic, sleep
+from typing import Any
+
+import numpy as np
+from PIL import Image
+from playwright.sync_api import Browser, Page
+
+PATIENCE = 60.0  # seconds until a wait is given up; a slow machine is no failure
+
+# a software renderer, so that the tests need no graphics card
+ARGUMENTS = [
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+]
+READY = "() => window.mapmeld?.applied > 0 && document.querySelector('.mm-state span')?.textContent"
+
+
+def settle(check: Callable[[], Any], what: str) -> Any:
+    """Poll until ``check`` gives something true, and return it."""
+    end = monotonic() + PATIENCE
+    while monotonic() < end:
+        found = check()
+        if found:
+            return found
+        sleep(0.03)
+    raise AssertionError(f"waited {PATIENCE:.0f} s for {what}")
+
+
+class Tab:
+    """Finds things by their words; waits by polling."""
+
+    def __init__(self, browser: Browser, address: str, size: tuple[int, int]) -> None:
+        self.context = browser.new_context(
+            viewport={"width": size[0], "height": size[1]}, accept_downloads=True
+        )
+        self.page: Page = self.context.new_page()
+        self.errors: list[str] = []
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.on(
+            "console",
+            lambda message: (
+                self.errors.append(message.text)
+                if message.type == "error" and "mapmeld" in message.text
+                else None
+            ),
+        )
+        self.page.goto(address)
+        self.page.wait_for_function(READY, timeout=1000 * PATIENCE)
+        # viser's toast about the software renderer lies over the page's top left
+        self.page.add_style_tag(
+            content=".mantine-Notifications-root{opacity:0!important;pointer-events:none}"
+        )
+
+    # --- reading ----------------------------------------------------------------------------------
+
+    @property
+    def state(self) -> str:
+        """The sentence at the top."""
+        return str(self.page.evaluate("() => document.querySelector('.mm-state span').textContent"))
+
+    @property
+    def mood(self) -> str:
+        """idle, running, accepted, refused, stopped or failed."""
+        return str(self.page.evaluate("() => document.querySelector('.mm-state').dataset.mood"))
+
+    @property
+    def text(self) -> str:
+        """All words on the page."""
+        return self.page.locator("body").inner_text()
+
+    def layer(self, name: str) -> list[dict[str, Any]]:
+        """What is drawn over the map under this name; [] where nothing is."""
+        return list(self.page.evaluate("(name) => window.mapmeld.layers[name] || []", name))
+
+    def swarm(self) -> list[float]:
+        """Coordinates of all particles as they are drawn."""
+        clouds = self.layer("swarm")
+        return clouds[0]["p"] if clouds else []
+
+    def number(self, name: str) -> str:
+        """The number beside these words in a table; "" where they are not shown."""
+        row = self.page.locator("tr", has=self.page.get_by_text(name, exact=True))
+        return row.locator("td").last.inner_text() if row.count() else ""
+
+    def pixels(self) -> np.ndarray:
+        """(H, W, 3) what the window shows."""
+        return np.asarray(Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")).astype(int)
+
+    def colour_at(self, point: tuple[float, float], frame: str = "scene") -> tuple[int, ...]:
+        """The colour at a point of the scene; metres."""
+        where = "([point, frame]) => window.mapmeld.pixel(point, frame)"
+        x, y = self.page.evaluate(where, [list(point), frame])
+        return tuple(self.pixels()[round(y), round(x)])
+
+    # --- doing ------------------------------------------------------------------------------------
+
+    def press(self, name: str) -> None:
+        """Press a button by its name."""
+        self.page.get_by_role("button", name=name, exact=True).click()
+
+    def wait_for(self, mood: str) -> None:
+        """Wait until the run has come to this."""
+        settle(lambda: self.mood == mood, f"{mood}; the page says: {self.state}")
+
+    def unfold(self, folder: str) -> None:
+        """Open a folder of the panel."""
+        self.page.get_by_text(folder, exact=True).click()
+
+    def choose(self, label: str, option: str) -> None:
+        """Choose from a menu."""
+        self.page.get_by_label(label, exact=True).first.click()
+        self.page.get_by_role("option", name=option, exact=True).click()
+
+    def move(self, label: str, presses: int) -> None:
+        """Move a slider by so many steps; to the left where it is negative."""
+        words = self.page.locator("label", has_text=label).first
+        thumb = self.page.locator(f'[id="{words.get_attribute("for")}"]').get_by_role("slider")
+        thumb.focus()
+        for _ in range(abs(presses)):
+            self.page.keyboard.press("ArrowRight" if presses > 0 else "ArrowLeft")
+
+    def upload(self, slot: int, *files: Path) -> None:
+        """Give a file to the upload button of this number."""
+        self.page.locator("input[type=file]").nth(slot).set_input_files([str(file) for file in files])
+
+    def close(self) -> None:
+        """Close the tab."""
+        self.context.close()

@@ -1,0 +1,248 @@
+"""The page in a real Chromium: what an operator does, and what they see."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from driver import settle
+
+from algorithms.casefiles import Case, observation_to_bytes
+from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.mapio import map_to_bytes, read_map
+from algorithms.methods import merge
+from algorithms.observation import Observation
+from algorithms.pose import Pose2
+from app.palette import LIGHT
+from app.server import make_server
+
+pytestmark = pytest.mark.browser
+
+
+def test_a_sample_merges_before_the_eyes(tab):
+    assert tab.page.title() == "mapmeld"
+    assert tab.state == "Ready. Press Merge."
+    tab.press("Merge")
+    first = settle(tab.swarm, "a swarm")
+    later = settle(lambda: (now := tab.swarm()) != first and now, "the swarm to move")
+    assert len(later) == len(first)
+    tab.wait_for("accepted")
+    assert tab.state.startswith("Merged")
+    assert settle(lambda: tab.number("acceptance index"), "the numbers").endswith("%")
+    assert tab.number("error to the truth").endswith("°")
+    assert tab.layer("best")[0]["s"] == "star"
+    assert float(tab.number("all")) > 0  # milliseconds
+
+
+def test_a_moved_slider_changes_gamma(tab):
+    tab.press("Instant")
+    tab.press("Merge")
+    tab.wait_for("accepted")
+    before = settle(lambda: tab.number("Γ, eq. (17)"), "Γ")
+    tab.move("spread", 5)
+    after = settle(lambda: (now := tab.number("Γ, eq. (17)")) not in ("", before) and now, "another Γ")
+    assert float(after) < float(before)  # a wider Gaussian of the same mass is lower
+
+
+def test_a_moved_slider_changes_the_pictures_before_the_first_merge(tab):
+    tab.move("spread", 10)
+    settle(lambda: "Candidates are up to date" in tab.state, "the candidates")
+    small = settle(lambda: tab.layer("aug"), "the rings of Σ_aug")[0]["p"]
+    tab.move("spread", 20)
+    settle(lambda: tab.layer("aug")[0]["p"] != small, "larger rings")
+    assert tab.number("acceptance index") == ""  # no answer was asked for
+
+
+def test_stop_ends_a_run_and_it_stays_ended(tab):
+    tab.press("Slow")
+    tab.press("Merge")
+    settle(lambda: "candidate" in tab.state, "the candidates")
+    tab.press("Stop")
+    tab.wait_for("stopped")
+    assert "unfinished" in tab.state
+    drawn = tab.page.evaluate("() => window.mapmeld.applied")
+    tab.page.wait_for_timeout(400)
+    assert tab.page.evaluate("() => window.mapmeld.applied") == drawn
+    tab.press("Fast")
+    tab.press("Merge")
+    tab.wait_for("accepted")
+
+
+def test_a_broken_upload_is_told_by_name_and_the_page_lives_on(tab, tmp_path):
+    text, image = tmp_path / "mine.yaml", tmp_path / "mine.pgm"
+    text.write_text(
+        "image: mine.pgm\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
+    )
+    image.write_bytes(b"P5\n2 2\n255\n\0\1\2\3")
+    tab.unfold("Upload your own")
+    tab.upload(0, text)
+    settle(lambda: "mine.yaml" in tab.text, "the name of the file")
+    tab.upload(1, image)
+    tab.wait_for("failed")
+    assert "mine.yaml" in tab.state
+    assert "resolution" in tab.state
+    assert tab.page.get_by_text("resolution").count() >= 2  # the sentence, and a notification
+    tab.press("Instant")
+    tab.press("Merge")
+    tab.wait_for("accepted")
+
+
+def test_a_file_name_is_shown_as_words_and_never_run(tab, tmp_path):
+    nasty = tmp_path / "<img src=x onerror=window.hit=1>.yaml"
+    nasty.write_text("nonsense: [")
+    tab.unfold("Upload your own")
+    tab.upload(4, nasty)
+    tab.wait_for("failed")
+    assert "<img" in tab.state
+    assert tab.page.evaluate("() => window.hit") is None
+
+
+def test_two_tabs_do_not_disturb_each_other(open_tab):
+    first, second = open_tab(), open_tab()
+    first.press("Instant")
+    first.press("Merge")
+    first.wait_for("accepted")
+    assert second.state == "Ready. Press Merge."
+    gamma = settle(lambda: first.number("Γ, eq. (17)"), "Γ")
+    second.move("spread", 5)
+    settle(lambda: "Candidates" in second.state, "the other tab's candidates")
+    assert first.number("Γ, eq. (17)") == gamma
+    assert first.mood == "accepted"
+    second.close()
+    first.move("intensity", 5)
+    settle(lambda: first.number("Γ, eq. (17)") not in ("", gamma), "Γ after the other tab has gone")
+
+
+def test_the_downloaded_map_reads_back_to_the_merged_cells(tab, tmp_path, sample: Case):
+    tab.press("Instant")
+    tab.press("Merge")
+    tab.wait_for("accepted")
+    with tab.page.expect_download() as download:
+        tab.press("Download merged map")
+    assert download.value.suggested_filename == "merged.zip"
+    with zipfile.ZipFile(download.value.path()) as packed:
+        packed.extractall(tmp_path)
+        assert {"merged.yaml", "merged.pgm"} <= set(packed.namelist())
+    back = read_map(tmp_path / "merged.yaml")
+    expected = merge(sample.ref, sample.mov, sample.observation).fusion.merged
+    assert np.array_equal(back.cells, expected.cells)
+    assert (back.resolution, back.origin) == (expected.resolution, expected.origin)
+
+
+def test_another_sample_is_loaded_from_the_menu(tab):
+    tab.choose("Sample", "apartment_r2_r1")
+    settle(lambda: "apartment_r2_r1" in tab.page.locator(".mm-title").inner_text(), "the sample's name")
+    assert tab.state == "Ready. Press Merge."
+
+
+def test_the_optimiser_can_be_changed(tab):
+    tab.press("Instant")
+    tab.press("Merge")
+    tab.wait_for("accepted")
+    before = settle(lambda: tab.number("Γ, eq. (17)"), "Γ")
+    tab.choose("optimiser", "MCO")
+    settle(lambda: tab.number("Γ, eq. (17)") not in ("", before), "Γ of the Monte-Carlo search")
+
+
+def l_room() -> GridMap:
+    """A room of 6 m x 4 m with a thick wall at its left and at its foot."""
+    cells = np.full((40, 60), FREE, dtype=np.int8)
+    cells[:, :5] = OCCUPIED
+    cells[:5, :] = OCCUPIED
+    cells[-5:, -5:] = UNKNOWN
+    return GridMap(cells, 0.1)
+
+
+def write_case(folder: Path, ref: GridMap, mov: GridMap, observation: Observation) -> list[Path]:
+    """The five files in the order of the upload buttons."""
+    paths = []
+    for stem, grid in (("map1", ref), ("map2", mov)):
+        files = map_to_bytes(grid, stem)
+        for name in (f"{stem}.yaml", f"{stem}.pgm"):
+            (folder / name).write_bytes(files[name])
+            paths.append(folder / name)
+    (folder / "observation.yaml").write_bytes(observation_to_bytes(observation))
+    return [*paths, folder / "observation.yaml"]
+
+
+def test_uploads_one_by_one_say_what_is_missing_and_then_merge(tab, tmp_path):
+    room = l_room()
+    seen = Observation(Pose2(2.0, 2.0, 0.0), 3.0, 2.0, 1.0, 0.0)
+    tab.unfold("Upload your own")
+    for slot, path in enumerate(write_case(tmp_path, room, room, seen)):
+        tab.upload(slot, path)
+        settle(lambda path=path: path.name in tab.text, f"the name {path.name}")
+        if slot == 1:
+            settle(lambda: "Load map 2" in tab.state, "the next step in words")
+        if slot == 3:
+            settle(lambda: "Load the observation" in tab.state, "the next step in words")
+    settle(lambda: tab.state == "Ready. Press Merge.", "all five files")
+    tab.press("Instant")
+    tab.press("Merge")
+    settle(lambda: tab.mood in ("accepted", "refused"), "a verdict")
+
+
+def test_the_map_is_the_right_way_up_and_stays_so(open_tab, tmp_path):
+    room = l_room()
+    seen = Observation(Pose2(2.0, 2.0, 0.0), 3.0, 2.0, 1.0, 0.0)
+    own = make_server(port=0, initial=Case("rooms", room, room, seen, "observation.yaml", None))
+    try:
+        tab = open_tab(at=own)
+
+        def reads_like_an_l() -> bool:  # the scene's origin is x̂1, (3, 2) in the map
+            return (
+                tab.colour_at((-2.75, 0.5)) == LIGHT.ref  # stem of the L
+                and tab.colour_at((0.5, -1.75)) == LIGHT.ref  # its foot
+                and tab.colour_at((2.0, 0.5)) == LIGHT.free
+                and tab.colour_at((2.75, 1.75)) == LIGHT.unknown
+            )
+
+        settle(reads_like_an_l, "an L the right way up")
+        box = tab.page.locator("#mapmeld-ink").bounding_box()
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        tab.page.mouse.move(x, y)
+        tab.page.mouse.down()
+        tab.page.mouse.move(x + 40, y - 20, steps=5)
+        tab.page.mouse.up()
+        tab.page.mouse.wheel(0, 120)
+        tab.move("spread", 2)  # arrow keys turn viser's camera where it is not locked
+        tab.page.keyboard.press("ArrowUp")
+        angles = (
+            "() => { const k = window.__viserMutable.cameraControl; return [k.polarAngle, k.azimuthAngle]; }"
+        )
+        assert tab.page.evaluate(angles) == pytest.approx([np.pi / 2, 0.0], abs=1e-6)
+    finally:
+        own.stop()
+
+
+def test_a_refused_map_is_downloaded_only_after_a_warning(open_tab, sample: Case):
+    o = sample.observation
+    wrong = Observation(o.observer, o.observed_x + 6.0, o.observed_y - 5.0, o.range, o.bearing)
+    own = make_server(port=0, initial=Case("wrong", sample.ref, sample.mov, wrong, "observation.yaml", None))
+    try:
+        tab = open_tab(at=own)
+        tab.press("Instant")
+        tab.press("Merge")
+        tab.wait_for("refused")
+        tab.press("Download merged map")
+        with tab.page.expect_download() as download:
+            tab.press("Download the refused map anyway")
+        assert download.value.suggested_filename == "merged.zip"
+    finally:
+        own.stop()
+
+
+def test_heights_and_swarm_space_are_shown_in_three_dimensions(tab):
+    tab.press("Fast")
+    tab.press("Merge")
+    tab.press("Swarm space")
+    settle(tab.swarm, "a swarm in its box")
+    assert len(tab.layer("axes")) > 12  # the edges of the box, and their names
+    tab.wait_for("accepted")
+    tab.press("Heights")
+    settle(lambda: tab.layer("floor"), "the floor under the heights")
+    tab.press("Map")
+    settle(lambda: tab.layer("robots"), "the robots on the map")
+    assert tab.layer("axes") == []
