@@ -21,9 +21,16 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
+def _compiled(function: Callable[P, R], fastmath: set[str] | bool) -> Callable[P, R]:
+    try:
+        return cast("Callable[P, R]", njit(nogil=True, cache=True, fastmath=fastmath)(function))
+    except RuntimeError:  # nowhere to keep the compiled code: a read-only installation without a home
+        return cast("Callable[P, R]", njit(nogil=True, fastmath=fastmath)(function))
+
+
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a loop in strict IEEE arithmetic; cached on disk, so that only the first use waits."""
-    return cast("Callable[P, R]", njit(nogil=True, cache=True)(function))
+    return _compiled(function, fastmath=False)
 
 
 def fast_kernel(function: Callable[P, R]) -> Callable[P, R]:
@@ -32,8 +39,7 @@ def fast_kernel(function: Callable[P, R]) -> Callable[P, R]:
     The order is fixed when it is compiled: one machine gives one answer. Without NaN in it: their
     absence is what lets min and max become one instruction.
     """
-    flags = {"reassoc", "contract", "nsz", "arcp", "nnan"}
-    return cast("Callable[P, R]", njit(nogil=True, cache=True, fastmath=flags)(function))
+    return _compiled(function, fastmath={"reassoc", "contract", "nsz", "arcp", "nnan"})
 
 
 @cache

@@ -1,0 +1,54 @@
+import threading
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from algorithms import kernels
+
+
+@given(st.integers(0, 200), st.integers(1, 300))
+def test_the_work_is_covered_once_whatever_the_number_of_items(n, at_least):
+    done = [0] * n
+
+    def work(start, stop):
+        for item in range(start, stop):
+            done[item] += 1
+
+    kernels.spread(work, n, at_least)
+    assert done == [1] * n
+
+
+def test_a_mistake_in_a_part_of_the_work_is_not_swallowed(monkeypatch):
+    monkeypatch.setattr(kernels, "cores", lambda: 4)
+
+    def work(start, stop):
+        if start > 0:
+            raise ValueError("in a thread")
+
+    with pytest.raises(ValueError, match="in a thread"):
+        kernels.spread(work, 100)
+
+
+def test_two_threads_may_share_the_cores_at_once():
+    totals = []
+
+    def caller():
+        counts = []
+        for _ in range(200):
+            kernels.spread(lambda start, stop: counts.append(stop - start), 50)
+        totals.append(sum(counts))
+
+    callers = [threading.Thread(target=caller) for _ in range(4)]
+    for thread in callers:
+        thread.start()
+    for thread in callers:
+        thread.join(timeout=60)
+    assert totals == [200 * 50] * 4
+
+
+@pytest.mark.parametrize("compiler", [kernels.kernel, kernels.fast_kernel])
+def test_a_loop_whose_code_cannot_be_kept_on_disk_is_compiled_all_the_same(compiler):
+    namespace = {}
+    exec("def twice(x):\n    return x + x\n", namespace)  # without a file there is no place to keep it
+    assert compiler(namespace["twice"])(21) == 42
