@@ -1,5 +1,6 @@
 """The command line: what it takes, what it leaves, what it says and with which exit status."""
 
+import io
 import json
 import os
 import signal
@@ -189,16 +190,29 @@ def test_a_refused_merge_takes_an_earlier_map_away_and_says_so(
     assert "removed" in capsys.readouterr().out
 
 
-def test_a_merge_never_overwrites_its_own_inputs(case_folder, tmp_path, capsys):
-    for name in ("pgm", "yaml"):
-        text = (case_folder / f"map1.{name}").read_bytes().replace(b"map1.pgm", b"merged.pgm")
-        (tmp_path / f"merged.{name}").write_bytes(text)
-    before = (tmp_path / "merged.pgm").read_bytes()
-    words = inputs(case_folder)
-    words[0] = str(tmp_path / "merged.yaml")
-    assert main(["merge", *words, "--out", str(tmp_path)]) == 2
-    assert "would overwrite the input" in capsys.readouterr().err
-    assert (tmp_path / "merged.pgm").read_bytes() == before
+@pytest.mark.parametrize("named", ["merged.yaml", "left.yaml"])
+def test_a_merge_never_overwrites_its_own_inputs(named, case_folder, tmp_path, capsys):
+    (tmp_path / "merged.pgm").write_bytes((case_folder / "map1.pgm").read_bytes())
+    (tmp_path / named).write_bytes(
+        (case_folder / "map1.yaml").read_bytes().replace(b"map1.pgm", b"merged.pgm")
+    )
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    _, *others = inputs(case_folder)
+    assert main(["merge", str(tmp_path / named), *others, "--out", str(tmp_path)]) == 2
+    assert "is an input of this merge; choose another --out" in capsys.readouterr().err
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_bar_names_the_stage_at_work_where_a_person_looks(case_folder, tmp_path, monkeypatch):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    seen = Terminal()
+    monkeypatch.setattr(sys, "stderr", seen)
+    assert main(["merge", *inputs(case_folder), "--out", str(tmp_path)]) == 0
+    assert "refine" in seen.getvalue()
+    assert "%" in seen.getvalue()
 
 
 def test_plain_images_merge_where_their_resolution_is_given(case_folder, tmp_path, capsys):

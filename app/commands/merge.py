@@ -73,10 +73,10 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     from app.report import MERGED_FILES, TRANSFORM_FILE, report_json, report_of, result_files
 
     config = config_from(args)
-    _refuse_to_overwrite([args.map1, args.map2, args.observation], args.out)
     began = perf_counter()
     ref, mov, observation = read_inputs(args)
     load_s = perf_counter() - began
+    _refuse_to_overwrite(args)
     result = result_of(methods.run(args.method, ref, mov, observation, config, args.seed))
     named = {"map1": args.map1, "map2": args.map2, "observation": args.observation}
     report = report_of(result, config, load_s, {key: str(path) for key, path in named.items()})
@@ -125,16 +125,21 @@ def _leave(folder: Path, files: Mapping[str, bytes], stale: Sequence[str]) -> li
     return removed
 
 
-def _refuse_to_overwrite(inputs: Sequence[Path], out: Path) -> None:
+def _refuse_to_overwrite(args: argparse.Namespace) -> None:
     """Raise OutputError where a file of the result would take the place of an input."""
+    from algorithms.mapio import YAML_SUFFIXES, parse_meta, read_bytes
     from app.report import MERGED_FILES, OVERLAY_FILE, REPORT_FILE, TRANSFORM_FILE
 
-    names = [*MERGED_FILES, TRANSFORM_FILE, OVERLAY_FILE, REPORT_FILE]
+    inputs = [args.map1, args.map2, args.observation]
+    for path in (args.map1, args.map2):
+        if path.suffix.lower() in YAML_SUFFIXES:
+            inputs.append(path.parent / parse_meta(str(path), read_bytes(path, "a map")).image)
+    names = (*MERGED_FILES, TRANSFORM_FILE, OVERLAY_FILE, REPORT_FILE)
+    places = {os.path.realpath(args.out / name): args.out / name for name in names}
     for path in inputs:
-        stem_mates = {path, path.with_suffix(".pgm")}
-        for name in names:
-            if os.path.realpath(out / name) in {os.path.realpath(mate) for mate in stem_mates}:
-                raise OutputError(out / name, f"would overwrite the input {path}", "choose another --out")
+        place = places.get(os.path.realpath(path))
+        if place is not None:
+            raise OutputError(place, "is an input of this merge", "choose another --out")
 
 
 def _summary(result: MergeResult, out: Path, files: Mapping[str, bytes], removed: list[str]) -> list[str]:
