@@ -7,6 +7,7 @@ import zipfile
 
 from algorithms.mapio import map_to_bytes
 from algorithms.steps import MergeResult
+from app.report import transform_yaml
 
 STEM = "merged"
 
@@ -14,13 +15,7 @@ STEM = "merged"
 def archive(result: MergeResult) -> bytes:
     """A zip with the merged map and its transform, as ``mapmeld merge`` leaves them in a folder."""
     files = map_to_bytes(result.fusion.merged, STEM)
-    try:
-        from app.report import transform_yaml
-    except ImportError:
-        pass
-    else:
-        text = transform_yaml(result)
-        files["transform.yaml"] = text.encode() if isinstance(text, str) else text
+    files["transform.yaml"] = transform_yaml(result)
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as target:
         for name, content in files.items():

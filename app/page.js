@@ -8,7 +8,7 @@
   if (window.mapmeld) { window.mapmeld.reset(); return; }
   const viewer = () => window.__viserMutable;
   const FOV = 4 * Math.PI / 180; // far and narrow: as good as parallel
-  const ORDER = ["floor", "window", "aug", "box", "trail", "swarm", "sight", "robots", "best", "axes"];
+  const ORDER = ["floor", "window", "aug", "box", "trail", "swarm", "sight", "robots", "best", "axes", "readout"];
   const lerp = (a, b, u) => a + (b - a) * u;
   const LIGHTER = { "#0072b2": "#56b4e9", "#009e73": "#34d399", "#d55e00": "#fb923c" }; // words on dark ground
   const smooth = (u) => u * u * (3 - 2 * u);
@@ -172,6 +172,7 @@
     g.beginPath(); g.moveTo(nx, y - 16); g.lineTo(nx + 5, y); g.lineTo(nx, y - 4); g.lineTo(nx - 5, y); g.closePath();
     g.lineWidth = 4; g.strokeStyle = S.dark ? "#111827" : "#fff"; g.stroke(); g.fillStyle = colour; g.fill();
     words(g, "N", nx, y - 24, colour, 11, "center");
+    if (S.hud.readout) words(g, S.hud.readout, x, y - 46, colour, 12);
     if (pointer && S.hud.anchor) {
       const x1 = (pointer[0] - ink.clientWidth / 2) / px + camera.position.x + S.hud.anchor[0];
       const y1 = (ink.clientHeight / 2 - pointer[1]) / px + camera.position.y + S.hud.anchor[1];

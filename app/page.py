@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from typing import Any
 
+import numpy as np
 import viser
 
 from algorithms.casefiles import Case
@@ -23,7 +24,7 @@ from app.panels.result import result_html
 from app.panels.tuning import TuningPanel
 from app.player import PACES
 from app.session import Job, Session
-from app.stage import Stage
+from app.stage import Stage, mark
 from app.story import Story
 from app.views.heights import HeightsView
 from app.views.maps import MapView
@@ -110,6 +111,7 @@ class Page:
                 hint="A zip: merged.yaml, merged.pgm, transform.yaml.",
             )
             self._download_button.on_click(lambda _: self._download())
+        self._client.scene.on_click()(self._read_out)
         self._plots = PlotDock(self._client, self._turned_page)
 
     def _theme(self, gui: viser.GuiApi) -> None:
@@ -140,6 +142,7 @@ class Page:
             self._view.value = MAP
         self._turn_view()
         self._maps.apart(follow=True)
+        self._stage.layer("readout", None)
         grids = [grid for grid in (inputs.ref, inputs.mov) if grid is not None]
         self._tuning.resolutions(*(grid.resolution for grid in grids))
         self._merge_button.disabled = not inputs.complete
@@ -150,6 +153,7 @@ class Page:
             state=inputs.missing() or doubt or words.READY,
             mood="refused" if doubt else "idle",
             progress=None,
+            readout="",
             anchor=layout.anchor_ref.tolist(),
             legend=legend(self._palette, MAP, self._story),
         )
@@ -214,6 +218,7 @@ class Page:
 
     def _set_speed(self) -> None:
         self._pace = self._speed.value
+        self.session.set_pace(PACES[self._pace] or 0.01)
         self._press()
         self._stage.flush()
 
@@ -224,6 +229,18 @@ class Page:
     def _press(self) -> None:
         """Let the page show which button of each group is the chosen one."""
         self._stage.hud(pressed=[self._pace, self._view.value, self._plots.page])
+
+    def _read_out(self, event: viser.SceneClickEvent) -> None:
+        """What is known of the place under a click."""
+        if self._view.value != MAP:
+            return
+        start, along = np.array(event.ray_origin), np.array(event.ray_direction)
+        x, y, _ = start - along * start[2] / along[2]
+        # viser's own frame is turned half round the y axis: see views/maps.py
+        place = np.array([-x, y])
+        self._stage.hud(readout=self._maps.read_out(place, self._story))
+        self._stage.layer("readout", [mark("cross", place, self._palette.text, r=6)])
+        self._stage.flush()
 
     def _fit(self) -> None:
         if self._view.value != MAP:
@@ -306,8 +323,7 @@ class Page:
     def stopped(self, job: Job, story: Story) -> None:
         """Someone pressed Stop."""
         self._stop_button.disabled = True
-        at = words.sentence(story).rstrip(".")
-        self._stage.hud(state=f"Stopped. {at}: unfinished.", mood="stopped", progress=None)
+        self._stage.hud(state=f"Stopped, unfinished. {words.sentence(story)}", mood="stopped", progress=None)
         self._stage.flush()
 
     def failed(self, job: Job, error: Exception) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import exp
 from threading import Condition
 
 from algorithms.fuse import Fusion
@@ -32,7 +33,9 @@ DWELL: dict[type, float] = {
     AnswersDetail: 0.4,
     Fusion: 0.9,
 }
-FIRST_SWARM = 0.033  # per iteration of the best candidate's swarm
+FIRST_SWARM = 0.03  # per iteration of the best candidate's swarm
+FIRST_MOVES = 0.17  # more than that on its first iterations, where most of it happens
+CALM_AFTER = 5.0  # iterations in which that extra time falls to a third
 LATER_SWARMS = 0.006  # the rest look alike: a glimpse of each is enough
 
 
@@ -45,7 +48,9 @@ def dwell(step: Step, pace: float, again: bool) -> float:
     if pace <= 0 or (step.reused and not again):
         return 0.0
     if isinstance(step.detail, RefineDetail):
-        return pace * (FIRST_SWARM if step.detail.index == 0 else LATER_SWARMS)
+        if step.detail.index > 0:
+            return pace * LATER_SWARMS
+        return pace * (FIRST_SWARM + FIRST_MOVES * exp(-step.detail.state.iteration / CALM_AFTER))
     return pace * DWELL.get(type(step.detail), 0.0)
 
 

@@ -17,6 +17,9 @@ from app.page import Page
 log = logging.getLogger(__name__)
 
 
+MOST_TABS = 16  # each holds its own maps and results
+
+
 class PortError(MapMergeError):
     """The address cannot be listened at."""
 
@@ -41,6 +44,9 @@ def make_server(host: str = "127.0.0.1", port: int = 8080, initial: Case | None 
 
     @server.on_client_connect
     def _(client: viser.ClientHandle) -> None:
+        if len(pages) >= MOST_TABS:
+            client.gui.add_markdown(f"{MOST_TABS} tabs are open already. Close one, then reload this page.")
+            return
         pages[client.client_id] = Page(client, initial)
 
     @server.on_client_disconnect

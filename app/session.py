@@ -83,6 +83,7 @@ class Session:
         self._wanted: Job | None = None
         self._running: Job | None = None
         self._story = Story()
+        self._pace = 0.0
         self._closed = False
         # held while a picture is drawn, so that nothing of a run is drawn after Stop has returned
         self.drawing = RLock()
@@ -102,6 +103,12 @@ class Session:
             self._wanted = job
             self._wake.notify()
         self._waiting.cut()
+
+    def set_pace(self, pace: float) -> None:
+        """Tell a run that is being told at a pace at another one, from the step at hand on."""
+        if self._pace > 0 and pace > 0:
+            self._pace = pace
+            self._waiting.cut()
 
     def stop(self) -> None:
         """Leave the run that is going on; nothing of it is drawn once this has returned."""
@@ -128,7 +135,7 @@ class Session:
                     return
                 job, self._wanted = self._wanted, None
                 assert job is not None
-                self._running, self._story = job, Story()
+                self._running, self._story, self._pace = job, Story(), job.pace
             try:
                 self._tell(job)
             except MapMergeError as error:
@@ -149,11 +156,11 @@ class Session:
         if not self._deliver(job, lambda: self._listener.begun(job)):
             return
         drawn_at = -FRAME
-        mark = self._waiting.mark
         steps = self._run(job.method, job.ref, job.mov, job.observation, job.config, job.seed, self._memo)
         for step in steps:
             story.tell(step)
-            stay = dwell(step, job.pace, job.again)
+            mark = self._waiting.mark
+            stay = dwell(step, self._pace, job.again)
             if not self._wants(job):
                 return
             if stay >= FRAME or self._clock() - drawn_at >= FRAME:

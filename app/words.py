@@ -54,11 +54,11 @@ def sentence(story: Story) -> str:
         return f"{len(detail.candidates)} candidates, ranked by Γ."
     if isinstance(detail, RefineDetail):
         return (
-            f"Swarm on candidate {detail.index + 1} of {detail.total}, "
-            f"iteration {detail.state.iteration + 1}: Γ = {detail.state.best_value:.4g}."
+            f"Searching around candidate {detail.index + 1} of {detail.total}: "
+            f"iteration {detail.state.iteration + 1}, Γ = {detail.state.best_value:.4g}."
         )
     if isinstance(detail, AnswersDetail):
-        return f"The swarm is done: {detail.answers[0].stopped}."
+        return f"The search is done: {detail.answers[0].stopped}."
     if isinstance(detail, Fusion):
         return "Merging the cells: what agrees, what contradicts."
     if isinstance(detail, MergeResult):

@@ -12,8 +12,10 @@ from algorithms.errors import MapMergeError
 from algorithms.gridmap import FREE, GridMap
 from algorithms.observation import Encounter, Observation
 from algorithms.pose import Pose2
-from algorithms.steps import ObservationDetail, Step
-from app.player import DWELL, FIRST_SWARM, FRAME, LATER_SWARMS, Waiting, dwell
+from algorithms.search import SearchState
+from algorithms.steps import ObservationDetail, RefineDetail, Step
+from algorithms.window import Box
+from app.player import DWELL, FRAME, Waiting, dwell
 from app.session import Job, Session
 
 PATIENCE = 10.0  # seconds until a test gives up
@@ -190,12 +192,27 @@ def test_known_steps_are_played_again_only_when_asked_for():
     assert dwell(known, 0.0, again=True) == 0
 
 
-def test_the_first_swarm_is_told_slower_than_the_rest():
-    assert FIRST_SWARM > LATER_SWARMS > 0
-
-
 def test_a_cut_before_the_wait_is_not_missed():
     waiting = Waiting()
     mark = waiting.mark
     waiting.cut()
     waiting.wait(1e6, mark)  # returns at once, or this test never ends
+
+
+def test_the_first_iterations_of_the_swarm_are_told_slowest():
+    def stay(index: int, iteration: int) -> float:
+        zero = np.zeros((1, 3))
+        state = SearchState(iteration, zero, zero[0, :1], zero, zero[0, :1], zero[0], 0.0)
+        box = Box(zero[0], zero[0], np.zeros(2))
+        return dwell(Step("refine", RefineDetail(index, 4, box, state), 0.0), 1.0, again=False)
+
+    assert stay(0, 0) > stay(0, 5) > stay(0, 50) > stay(1, 0) > 0
+
+
+def test_a_new_speed_holds_from_the_step_at_hand_on(start, ear):
+    session = start(steps(1, 2, 3))
+    session.request(job("a", pace=1000.0))
+    assert ear.shown.wait(PATIENCE)
+    session.set_pace(1e-6)
+    assert ear.done.wait(PATIENCE)
+    assert ear.heard[-1] == ("ended", "a")

@@ -111,6 +111,8 @@ class FilesPanel:
             self._report(error)
             return
         self._status.content = self._table()
+        if inputs.ref is None and inputs.mov is None and inputs.observation is None:
+            return  # half a map: what is on the page stays there
         self._taken = NONE
         if self._sample.value != NONE:
             self._sample.value = NONE

@@ -12,6 +12,7 @@ from algorithms.steps import MergeResult
 from app import words
 from app.inputs import Inputs
 from app.panels.tables import box, table
+from app.report import performance_index_at_estimate
 
 STAGES = {
     "observe": "observation",
@@ -55,14 +56,16 @@ def numbers(result: MergeResult, inputs: Inputs) -> list[tuple[str, ...]]:
         apart, turned = pose_error(result.T_ref_mov, truth, result.encounter.x_mov)
         rows.append(("error to the truth", f"{apart:.3f} m, {degrees(turned):.2f}°"))
     else:
-        rows.append(("eq. (23), at the estimated T", f"{verdict.acceptance_index:.1%}"))
+        index = performance_index_at_estimate(result)
+        rows.append(("eq. (23), at the estimated T", "–" if index is None else f"{index:.1%}"))
     rows += [
         ("acceptance index", f"{verdict.acceptance_index:.1%}"),
+        ("walls that coincide", f"{verdict.wall_support:.0%}"),
         ("area known to both", f"{verdict.overlap_area:.1f} m²"),
         ("contradicting cells", f"{verdict.conflicting_cells}"),
         ("next best Γ", f"{verdict.ambiguity:.0%} of the best"),
         ("robot 2 off its sighting", f"{verdict.deviation:.1f} σ"),
-        ("optimum", "proven" if result.proven_optimal else "best found"),
+        *([("optimum", "proven")] if result.proven_optimal else []),
         ("seed", f"{result.seed}"),
     ]
     return rows

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import viser
+from numpy.typing import NDArray
 
 from algorithms.augment import AugmentedMap
 from algorithms.pose import FloatArray
@@ -23,6 +24,11 @@ def bars(augmented: AugmentedMap, most: int = MOST_BARS) -> tuple[FloatArray, Fl
     keep = np.flatnonzero(share >= VISIBLE)
     keep = keep[:: max(1, -(-len(keep) // most))]
     return augmented.points[keep] - augmented.x_hat, share[keep]
+
+
+def linear(colours: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """sRGB colours as the renderer wants them at a line's ends: it brightens what it is given."""
+    return np.asarray(np.round(255 * (colours / 255.0) ** 2.2), dtype=np.uint8)
 
 
 class HeightsView:
@@ -70,7 +76,7 @@ class HeightsView:
         foot = np.column_stack([where[:, 0], np.zeros(len(share)), away - where[:, 1]])
         top = foot.copy()
         top[:, 1] = share * TALLEST * 2 * radius
-        colours = viridis(np.stack([0.55 * share, share], axis=1))
+        colours = linear(viridis(np.stack([0.55 * share, share], axis=1)))
         self._handles.append(
             self._scene.add_line_segments(
                 f"/world/heights/{name}",

@@ -9,7 +9,7 @@ import numpy as np
 import viser
 
 from algorithms.fuse import Fusion
-from algorithms.gridmap import GridMap
+from algorithms.gridmap import FREE, OCCUPIED_FROM, GridMap
 from algorithms.observation import Encounter, Observation
 from algorithms.pose import FloatArray, Pose2
 from algorithms.steps import (
@@ -302,6 +302,25 @@ class MapView:
         if camera:
             self._stage.look_down(layout.view(layout.placed(T)))
 
+    def read_out(self, place: FloatArray, story: Story) -> str:
+        """What both maps know of a place in the scene: coordinates, occupancy, level."""
+        point = place + self.layout.anchor_ref
+        parts = [f"x {point[0]:.2f} m, y {point[1]:.2f} m"]
+        augmented = story.get(AugmentDetail)
+        levels = (augmented.ref, augmented.mov) if augmented else (None, None)
+        there = self._mov_at.inverse().apply(place) + self.layout.anchor_mov
+        for number, grid, at, lifted in ((1, self._ref, point, levels[0]), (2, self._mov, there, levels[1])):
+            if grid is None:
+                continue
+            value = grid.value_at(at)
+            word = "unknown" if value < FREE else "wall" if value >= OCCUPIED_FROM else "free"
+            if value >= OCCUPIED_FROM and lifted is not None:
+                nearest = np.hypot(*(lifted.points - at).T) if len(lifted.levels) else np.array([np.inf])
+                level = lifted.levels[nearest.argmin()] if nearest.min() < grid.resolution else 0.0
+                word += f", level {level:.3g}"
+            parts.append(f"map {number}: {word}")
+        return " · ".join(parts)
+
     # --- parts ------------------------------------------------------------------------------------
 
     def seen_robot(self, poses: FloatArray) -> FloatArray:
@@ -324,7 +343,7 @@ class MapView:
         )
         at = self.seen_robot(box.transforms(corners))[:, :2]
         middle = (at.min(axis=0) + at.max(axis=0)) / 2
-        half = max(1.4, 0.9 * float((at.max(axis=0) - at.min(axis=0)).max()))
+        half = max(0.8, 0.85 * float((at.max(axis=0) - at.min(axis=0)).max()))
         return (*(middle - half).tolist(), *(middle + half).tolist())  # type: ignore[return-value]
 
     def _swept(self) -> Rect:

@@ -30,7 +30,7 @@ LINES = 4  # courses of Γ that are drawn
 # colours that read on light and on dark panels alike
 REF, MOV, MARK, BEST = css(LIGHT.ref), css(LIGHT.mov), css(LIGHT.particle), css(LIGHT.best)
 GREY = css(LIGHT.margin)
-TWO = (np.array([0.0, 1.0]), np.zeros(2))
+NOTHING = (np.array([0.0, 1.0]), np.full(2, np.nan))
 
 
 def _dots(label: str, colour: str, size: float) -> uplot.Series:
@@ -118,7 +118,7 @@ class PlotDock:
     ) -> Any:
         small = "11px system-ui, sans-serif"
         return gui.add_uplot(
-            (TWO[0], *(TWO[1] for _ in series)),
+            (NOTHING[0], *(NOTHING[1] for _ in series)),
             (uplot.Series(label=label), *series),
             title=title,
             scales={
@@ -173,7 +173,7 @@ class PlotDock:
         self._shown.clear()
         self._candidates.content = self.result.content = ""
         for plot in (self._hough, self._turns, self._gamma, *(p for pair in self._shifts for p in pair)):
-            plot.data = (TWO[0], *(TWO[1] for _ in plot.data[1:]))
+            plot.data = (NOTHING[0], *(NOTHING[1] for _ in plot.data[1:]))
 
     def show(self, story: Story) -> None:
         """Draw what has changed since the last call."""

@@ -24,6 +24,7 @@ pytestmark = pytest.mark.browser
 def test_a_sample_merges_before_the_eyes(tab):
     assert tab.page.title() == "mapmeld"
     assert tab.state == "Ready. Press Merge."
+    tab.press("Fast")
     tab.press("Merge")
     first = settle(tab.swarm, "a swarm")
     later = settle(lambda: (now := tab.swarm()) != first and now, "the swarm to move")
@@ -65,7 +66,7 @@ def test_stop_ends_a_run_and_it_stays_ended(tab):
     drawn = tab.page.evaluate("() => window.mapmeld.applied")
     tab.page.wait_for_timeout(400)
     assert tab.page.evaluate("() => window.mapmeld.applied") == drawn
-    tab.press("Fast")
+    tab.press("Instant")
     tab.press("Merge")
     tab.wait_for("accepted")
 
