@@ -70,6 +70,14 @@ class Layout:
             return -5.0, -5.0, 5.0, 5.0
         return rect_of(np.concatenate(points))
 
+    def swept(self) -> Rect:
+        """Rectangle that holds map 1 and map 2 at any turn about the meeting place."""
+        rects = [rect_of(self.ref_corners)] if self.ref_corners is not None else []
+        if self.mov_corners is not None:
+            reach = float(np.hypot(*self.mov_corners.T).max())
+            rects.append((-reach, -reach, reach, reach))
+        return union(*rects) if rects else self.view()
+
 
 def lay_out(ref: GridMap | None, mov: GridMap | None, at: Encounter | None, aspect: float = 0.9) -> Layout:
     """Choose anchors and the place of map 2 beside map 1.

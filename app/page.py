@@ -10,19 +10,18 @@ import viser
 
 from algorithms.casefiles import Case
 from algorithms.errors import MapMergeError, TooLargeError
-from algorithms.methods import METHODS
 from algorithms.steps import AugmentDetail, MergeResult, RefineDetail
 from app import words
-from app.export import STEM, archive
 from app.inputs import Inputs
 from app.layout import lay_out
 from app.legend import legend
 from app.palette import DARK, LIGHT, Palette
+from app.panels.export import ExportPanel
 from app.panels.files import FilesPanel
 from app.panels.observation import ObservationPanel
 from app.panels.result import result_html
+from app.panels.run import HEIGHTS, MAP, SWARM, RunPanel, Wishes
 from app.panels.tuning import TuningPanel
-from app.player import PACES
 from app.session import Job, Session
 from app.stage import Stage, mark
 from app.story import Story
@@ -32,8 +31,6 @@ from app.views.plots import PlotDock
 from app.views.swarm_space import SwarmSpaceView
 
 log = logging.getLogger(__name__)
-
-MAP, HEIGHTS, SWARM = "Map", "Heights", "Swarm space"
 
 
 class Page:
@@ -50,10 +47,10 @@ class Page:
         self._story = Story()
         self._result: MergeResult | None = None  # of the last run that came to its end
         self._merged = False  # from the first Merge on, a moved slider runs the whole method again
-        self._pace = "Normal"
         self.session = Session(self)
-        self._build(client.gui, Inputs.of(initial) if initial else Inputs())
-        self._load(Inputs.of(initial) if initial else Inputs())
+        inputs = Inputs.of(initial) if initial else Inputs()
+        self._build(inputs.name)
+        self._load(inputs)
 
     def close(self) -> None:
         """The tab is gone."""
@@ -61,66 +58,38 @@ class Page:
 
     # --- widgets ----------------------------------------------------------------------------------
 
-    def _build(self, gui: viser.GuiApi, inputs: Inputs) -> None:
-        self._theme(gui)
+    def _build(self, chosen: str) -> None:
+        client, gui = self._client, self._client.gui
+        self._theme()
         gui.set_panel_label("mapmeld")
         gui.main_panel.dock_right()
-        self._merge_button = gui.add_button(
-            "Merge", color=(0, 114, 178), icon=viser.Icon.ARROWS_JOIN, order=1
+        self._run = RunPanel(
+            gui,
+            Wishes(
+                merge=self._merge,
+                stop=self.session.stop,
+                speed=self._set_speed,
+                view=self._turn_view,
+                method=lambda name: self._tuning.choose(name),
+                changed=self._changed,
+                fit=self._fit,
+                dark=self._switch,
+            ),
         )
-        self._merge_button.on_click(lambda _: self._merge())
-        self._stop_button = gui.add_button(
-            "Stop", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, disabled=True, order=2
-        )
-        self._stop_button.on_click(lambda _: self.session.stop())
-        self._speed = gui.add_button_group(
-            "Speed",
-            tuple(PACES),
-            order=3,
-            hint="How long each step stays. Instant: as fast as it is computed.",
-        )
-        self._speed.value = self._pace
-        self._speed.on_click(lambda _: self._set_speed())
-        self._view = gui.add_button_group("View", (MAP, HEIGHTS, SWARM), order=4)
-        self._view.on_click(lambda _: self._turn_view())
-        self._files = FilesPanel(gui, self._load, self._report, inputs.name)
+        self._files = FilesPanel(gui, self._load, self._report, chosen)
         self._observation = ObservationPanel(gui)
-        with gui.add_folder("Run", order=50):
-            titles = {method.title: name for name, method in METHODS.items()}
-            method = gui.add_dropdown(
-                "Method", tuple(titles), hint="The way to merge; takes its own defaults."
-            )
-            method.on_update(lambda _: self._tuning.choose(titles[method.value]))
-            self._seed = gui.add_number(
-                "Seed", 0, min=0, max=2**31 - 1, step=1, hint="The same seed gives the same swarm."
-            )
-            self._seed.on_update(lambda _: self._changed())
-            self._follow = gui.add_checkbox(
-                "Camera follows", True, hint="The camera goes along with the run."
-            )
-            gui.add_button("Show everything", color=(226, 232, 240)).on_click(lambda _: self._fit())
-            dark = gui.add_checkbox("Dark", False, hint="Light writing on a dark page.")
-            dark.on_update(lambda _: self._switch(dark.value))
         self._tuning = TuningPanel(gui, self._changed, self._report)
-        with gui.add_folder("Export", order=70):
-            self._download_button = gui.add_button(
-                "Download merged map",
-                icon=viser.Icon.DOWNLOAD,
-                color=(226, 232, 240),
-                disabled=True,
-                hint="A zip: merged.yaml, merged.pgm, transform.yaml.",
-            )
-            self._download_button.on_click(lambda _: self._download())
-        self._client.scene.on_click()(self._read_out)
-        self._plots = PlotDock(self._client, self._turned_page)
+        self._export = ExportPanel(client)
+        self._plots = PlotDock(client, self._press)
+        client.scene.on_click()(self._read_out)
 
-    def _theme(self, gui: viser.GuiApi) -> None:
-        gui.configure_theme(
+    def _theme(self) -> None:
+        self._client.gui.configure_theme(
             show_logo=False,
             show_share_button=False,
             control_width="medium",
             dark_mode=self._palette.dark,
-            brand_color=(0, 114, 178),
+            brand_color=LIGHT.ref,
         )
         self._stage.theme(self._palette)
 
@@ -129,7 +98,7 @@ class Page:
     def _load(self, inputs: Inputs) -> None:
         self.session.stop()
         try:
-            at, layout = inputs.at, lay_out(inputs.ref, inputs.mov, inputs.at)
+            layout = lay_out(inputs.ref, inputs.mov, inputs.at)
         except MapMergeError as error:
             self._report(error)
             return
@@ -137,16 +106,15 @@ class Page:
         self._observation.show(inputs)
         self._plots.clear()
         self._heights.hide()
-        self._maps.load(inputs.ref, inputs.mov, inputs.observation, at, layout, self._palette)
-        if self._view.value != MAP:
-            self._view.value = MAP
+        self._maps.load(inputs, layout, self._palette)
+        self._run.view = MAP
         self._turn_view()
-        self._maps.apart(follow=True)
+        self._maps.apart()
         self._stage.layer("readout", None)
         grids = [grid for grid in (inputs.ref, inputs.mov) if grid is not None]
         self._tuning.resolutions(*(grid.resolution for grid in grids))
-        self._merge_button.disabled = not inputs.complete
-        self._download_button.disabled = True
+        self._run.merge.disabled = not inputs.complete
+        self._export.offer(None)
         doubt = inputs.doubt()
         self._stage.hud(
             case=inputs.name,
@@ -169,18 +137,18 @@ class Page:
             i.observation,
             self._tuning.config,
             self._tuning.method,
-            int(self._seed.value),
+            self._run.seed,
             **how,
         )
 
     def _merge(self) -> None:
         self._tuning.sync()
-        job = self._job(pace=PACES[self._pace], again=True)
+        job = self._job(pace=self._run.pace, again=True)
         if job is not None:
             self._merged = True
             self._plots.follow()
             self._stage.look_down(self._maps.layout.view(), follow=True)
-            if self._view.value != MAP:
+            if self._run.view != MAP:
                 self._turn_view()
             self.session.request(job)
 
@@ -188,51 +156,26 @@ class Page:
         """A setting was moved: what is on the screen is out of date."""
         live = self.session.busy and self._merged
         goal = "merge" if self._merged else "candidates"
-        job = self._job(goal=goal, pace=PACES[self._pace] if live else 0.0)
+        job = self._job(goal=goal, pace=self._run.pace if live else 0.0)
         if job is None:
             return
         if self._result is not None:
             self._plots.result.content = result_html(self._result, self._inputs, faded=True)
-            self._download_button.disabled = True
+            self._export.offer(None)
         self.session.request(job)
 
-    def _download(self) -> None:
-        result = self._result
-        if result is None:
-            return
-        if result.verdict.accepted:
-            self._send(result)
-            return
-        modal = self._client.gui.add_modal("This merge was refused")
-        with modal:
-            self._client.gui.add_markdown(
-                f"{result.verdict.reason}\n\nA robot that trusts this map may get lost."
-            )
-            yes = self._client.gui.add_button("Download the refused map anyway", color="orange")
-            no = self._client.gui.add_button("Cancel", color=(226, 232, 240))
-        yes.on_click(lambda _: (self._send(result), modal.close()))
-        no.on_click(lambda _: modal.close())
-
-    def _send(self, result: MergeResult) -> None:
-        self._client.send_file_download(f"{STEM}.zip", archive(result), save_immediately=True)
-
     def _set_speed(self) -> None:
-        self._pace = self._speed.value
-        self.session.set_pace(PACES[self._pace] or 0.01)
+        self.session.set_pace(self._run.pace or 0.01)  # a run that is told at a pace comes to its end so
         self._press()
-        self._stage.flush()
-
-    def _turned_page(self) -> None:
-        self._press()
-        self._stage.flush()
 
     def _press(self) -> None:
         """Let the page show which button of each group is the chosen one."""
-        self._stage.hud(pressed=[self._pace, self._view.value, self._plots.page])
+        self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
+        self._stage.flush()
 
     def _read_out(self, event: viser.SceneClickEvent) -> None:
         """What is known of the place under a click."""
-        if self._view.value != MAP:
+        if self._run.view != MAP:
             return
         start, along = np.array(event.ray_origin), np.array(event.ray_direction)
         x, y, _ = start - along * start[2] / along[2]
@@ -243,7 +186,7 @@ class Page:
         self._stage.flush()
 
     def _fit(self) -> None:
-        if self._view.value != MAP:
+        if self._run.view != MAP:
             self._turn_view()
         else:
             placed = self._result is not None or self._story.reached(RefineDetail)
@@ -253,21 +196,19 @@ class Page:
     def _switch(self, dark: bool) -> None:
         with self.session.drawing:
             self._palette = DARK if dark else LIGHT
-            self._theme(self._client.gui)
-            self._maps.recolour(self._palette)
+            self._theme()
+            self._maps.recolour(self._palette, self._story)
             self._turn_view()
 
     def _turn_view(self) -> None:
         """Show the chosen view of the newest state."""
         with self.session.drawing:
-            view = self._view.value
+            view = self._run.view
             self._maps.visible(view == MAP)
             if view != HEIGHTS:
                 self._heights.hide()
             if view != SWARM:
                 self._swarm.hide()
-            if view == MAP:
-                self._maps.redraw(self._story)
             self._draw(self._story, live=False, look=True)
             self._stage.flush()
 
@@ -282,7 +223,7 @@ class Page:
 
     def begun(self, job: Job) -> None:
         """A run starts."""
-        self._stop_button.disabled = False
+        self._run.stop.disabled = False
         self._stage.hud(state="Starting.", mood="running", progress=0.0)
         self._stage.flush()
 
@@ -292,17 +233,17 @@ class Page:
         with self._client.atomic():
             if job.pace > 0:
                 self._draw(story, live=True)
-            elif self._view.value == SWARM:
+            elif self._run.view == SWARM:
                 self._draw(story, live=False)
             self._plots.show(story)
-            self._press()
+            self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
             self._stage.hud(state=words.sentence(story), mood="running", progress=words.progress(story))
             self._stage.flush()
 
     def ended(self, job: Job, story: Story) -> None:
         """The run came to its goal."""
         self._story = story
-        self._stop_button.disabled = True
+        self._run.stop.disabled = True
         result = story.get(MergeResult)
         with self._client.atomic():
             self._plots.show(story)
@@ -312,7 +253,7 @@ class Page:
             else:
                 self._result = result
                 self._plots.result.content = result_html(result, self._inputs)
-                self._download_button.disabled = False
+                self._export.offer(result)
                 accepted = result.verdict.accepted
                 self._draw(story, live=job.pace > 0)
                 self._stage.hud(
@@ -322,13 +263,13 @@ class Page:
 
     def stopped(self, job: Job, story: Story) -> None:
         """Someone pressed Stop."""
-        self._stop_button.disabled = True
+        self._run.stop.disabled = True
         self._stage.hud(state=f"Stopped, unfinished. {words.sentence(story)}", mood="stopped", progress=None)
         self._stage.flush()
 
     def failed(self, job: Job, error: Exception) -> None:
         """The run could not go on."""
-        self._stop_button.disabled = True
+        self._run.stop.disabled = True
         if isinstance(error, MapMergeError):
             self._report(error)
             return
@@ -340,21 +281,19 @@ class Page:
     # --- drawing ----------------------------------------------------------------------------------
 
     def _draw(self, story: Story, live: bool, look: bool = False) -> None:
-        view, camera = self._view.value, self._follow.value
+        view, camera = self._run.view, self._run.follow
         if view == MAP:
-            self._maps.show(story, camera or look, live)
-            self._maps.rings(self._tuning.config, story)
+            self._maps.show(story, self._tuning.config, camera or look, live)
         elif view == HEIGHTS:
             self._heights.show(story.get(AugmentDetail), self._palette, look)
         else:
             self._swarm.show(story.get(RefineDetail), self._palette, look)
-        self._press()
+        self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
         self._stage.hud(legend=legend(self._palette, view, story))
 
     def _maps_preview(self, job: Job) -> None:
-        if self._view.value == MAP:
+        if self._run.view == MAP:
             self._maps.preview(self._story, job.config)
-            self._maps.rings(job.config, self._story)
             self._stage.hud(legend=legend(self._palette, MAP, self._story))
-        elif self._view.value == HEIGHTS:
+        elif self._run.view == HEIGHTS:
             self._draw(self._story, live=False)

@@ -53,6 +53,8 @@ DARK = replace(
     text=(0xF9, 0xFA, 0xFB),
 )
 
+QUIET: Rgb = (226, 232, 240)  # buttons that are not the point of the page
+
 # (256, 3) uint8: even steps of level look like even steps, also in grey
 VIRIDIS: NDArray[np.uint8] = np.ascontiguousarray(
     cv2.applyColorMap(np.arange(256, dtype=np.uint8)[:, None], cv2.COLORMAP_VIRIDIS)[:, 0, ::-1]

@@ -14,6 +14,7 @@ from algorithms.errors import MapMergeError
 from algorithms.mapio import map_from_bytes
 from app import paths
 from app.inputs import Inputs
+from app.palette import QUIET
 
 NONE = "(choose)"
 Report = Callable[[MapMergeError], None]
@@ -79,9 +80,9 @@ class FilesPanel:
             with gui.add_folder("Upload your own", expand_by_default=False):
                 self._status = gui.add_html(self._table())
                 for key, (label, kinds) in SLOTS.items():
-                    button = gui.add_upload_button(label, mime_type=kinds, color=(226, 232, 240))
+                    button = gui.add_upload_button(label, mime_type=kinds, color=QUIET)
                     button.on_upload(lambda _, key=key, button=button: self._take_upload(key, button.value))
-                gui.add_button("Forget uploads", color=(226, 232, 240)).on_click(lambda _: self._forget())
+                gui.add_button("Forget uploads", color=QUIET).on_click(lambda _: self._forget())
         self._taken = chosen or NONE
 
     def _take_sample(self) -> None:

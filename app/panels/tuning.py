@@ -10,6 +10,7 @@ import viser
 from algorithms.errors import MapMergeError, SettingError
 from algorithms.methods import DEFAULT_METHOD, METHODS
 from app.controls import Path, Setting, in_cells, settings_of, value_at, with_value, word_for
+from app.palette import QUIET
 
 # Group of the config -> folder; what is not named goes to "Search".
 FOLDERS = {"augment": "Augmentation", "verdict": "Result", "conflict": "Result"}
@@ -90,7 +91,7 @@ class TuningPanel:
                 elif more:
                     for path in more:
                         self._add(self._settings[path])
-                reset = self._gui.add_button(f"Reset {title.lower()}", color=(226, 232, 240))
+                reset = self._gui.add_button(f"Reset {title.lower()}", color=QUIET)
                 reset.on_click(lambda _, mine=tuple(mine): self._reset(mine))
         self._show_cells()
 

@@ -1,0 +1,90 @@
+"""The buttons on top, and folder "Run": what runs, how fast, how it is looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import viser
+
+from algorithms.methods import METHODS
+from app.palette import LIGHT, QUIET
+from app.player import PACES
+
+MAP, HEIGHTS, SWARM = "Map", "Heights", "Swarm space"
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What a person can ask for here."""
+
+    merge: Callable[[], None]
+    stop: Callable[[], None]
+    speed: Callable[[], None]
+    view: Callable[[], None]
+    method: Callable[[str], None]
+    changed: Callable[[], None]
+    fit: Callable[[], None]
+    dark: Callable[[bool], None]
+
+
+class RunPanel:
+    """Widgets; they know nothing of a run."""
+
+    def __init__(self, gui: viser.GuiApi, wishes: Wishes) -> None:
+        self.merge = gui.add_button("Merge", color=LIGHT.ref, icon=viser.Icon.ARROWS_JOIN, order=1)
+        self.merge.on_click(lambda _: wishes.merge())
+        self.stop = gui.add_button(
+            "Stop", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, disabled=True, order=2
+        )
+        self.stop.on_click(lambda _: wishes.stop())
+        hint = "How long each step stays. Instant: as fast as it is computed."
+        self._speed = gui.add_button_group("Speed", tuple(PACES), order=3, hint=hint)
+        self._speed.value = "Normal"
+        self._speed.on_click(lambda _: wishes.speed())
+        self._view = gui.add_button_group("View", (MAP, HEIGHTS, SWARM), order=4)
+        self._view.on_click(lambda _: wishes.view())
+        with gui.add_folder("Run", order=50):
+            titles = {method.title: name for name, method in METHODS.items()}
+            method = gui.add_dropdown(
+                "Method", tuple(titles), hint="The way to merge; each has its own defaults."
+            )
+            method.on_update(lambda _: wishes.method(titles[method.value]))
+            self._seed = gui.add_number(
+                "Seed", 0, min=0, max=2**31 - 1, step=1, hint="The same seed gives the same swarm."
+            )
+            self._seed.on_update(lambda _: wishes.changed())
+            self._follow = gui.add_checkbox("Camera follows", True, hint="The camera goes with the run.")
+            gui.add_button("Show everything", color=QUIET).on_click(lambda _: wishes.fit())
+            dark = gui.add_checkbox("Dark", False, hint="Light writing on a dark page.")
+            dark.on_update(lambda _: wishes.dark(dark.value))
+
+    @property
+    def view(self) -> str:
+        """Map, Heights or Swarm space."""
+        return self._view.value
+
+    @view.setter
+    def view(self, view: str) -> None:
+        if self._view.value != view:
+            self._view.value = view
+
+    @property
+    def pace(self) -> float:
+        """Factor on how long each step stays; 0: not at all."""
+        return PACES[self._speed.value]
+
+    @property
+    def seed(self) -> int:
+        """Where the luck of the swarm comes from."""
+        return int(self._seed.value)
+
+    @property
+    def follow(self) -> bool:
+        """Whether the camera goes along."""
+        return self._follow.value
+
+    @property
+    def pressed(self) -> list[str]:
+        """The chosen button of each group."""
+        return [self._speed.value, self._view.value]

@@ -1,0 +1,101 @@
+"""The flat pictures that the map view stands on: both maps, their levels, the merged map."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import viser
+
+from algorithms.fuse import Fusion
+from algorithms.gridmap import GridMap
+from algorithms.steps import AugmentDetail
+from app import render
+from app.layout import Layout
+from app.palette import Palette
+from app.views.images import GridImage
+
+Which = Literal["sources", "levels", "merged"]
+
+# Heights in the order they lie on each other; all floors are below all walls, so that a map that
+# slides over the other hides none of its walls.
+FREE_1, FREE_2, WALLS_1, WALLS_2, MERGED_FREE, MERGED_WALLS = 0.0, 0.1, 0.2, 0.3, 0.4, 0.5
+
+
+class Ground:
+    """Map 1 lies still; map 2 hangs on the frame /world/mov, which the page turns and slides."""
+
+    def __init__(self, scene: viser.SceneApi) -> None:
+        # viser turns a y-up scene half round its y axis; undone here, scene and page agree
+        scene.add_frame("/world", show_axes=False, wxyz=(0.0, 0.0, 1.0, 0.0))
+        scene.add_frame("/world/ref", show_axes=False)
+        scene.add_frame("/world/mov", show_axes=False)
+        self._free = (
+            GridImage(scene, "/world/ref/free", FREE_1),
+            GridImage(scene, "/world/mov/free", FREE_2),
+        )
+        self._walls = (
+            GridImage(scene, "/world/ref/walls", WALLS_1),
+            GridImage(scene, "/world/mov/walls", WALLS_2),
+        )
+        self._levels = (
+            GridImage(scene, "/world/ref/levels", WALLS_1),
+            GridImage(scene, "/world/mov/levels", WALLS_2),
+        )
+        self._merged = (
+            GridImage(scene, "/world/ref/merged_free", MERGED_FREE),
+            GridImage(scene, "/world/ref/merged_walls", MERGED_WALLS),
+        )
+        self._all = (*self._free, *self._walls, *self._levels, *self._merged)
+        self._layout: Layout | None = None
+        self._palette: Palette | None = None
+        self._lifted: AugmentDetail | None = None
+        self._fused: Fusion | None = None
+        self.which: Which = "sources"
+
+    def load(self, ref: GridMap | None, mov: GridMap | None, layout: Layout, palette: Palette) -> None:
+        """Draw two maps; what was there before is gone."""
+        for image in self._all:
+            image.remove()
+        self._layout, self._palette, self._lifted, self._fused = layout, palette, None, None
+        colours, anchors = (palette.ref, palette.mov), (layout.anchor_ref, layout.anchor_mov)
+        for k, grid in enumerate((ref, mov)):
+            if grid is not None:
+                self._free[k].show(render.floor(grid.cells, palette), grid, anchors[k])
+                self._walls[k].show(render.walls(grid.cells, colours[k]), grid, anchors[k])
+        self.show("sources")
+
+    def lift(self, detail: AugmentDetail | None) -> None:
+        """Have the pictures of these levels at hand."""
+        if detail is None or detail is self._lifted or self._layout is None or self._palette is None:
+            return
+        self._lifted = detail
+        anchors = (self._layout.anchor_ref, self._layout.anchor_mov)
+        for image, augmented, anchor in zip(self._levels, (detail.ref, detail.mov), anchors, strict=True):
+            image.show(render.levels(augmented, self._palette), augmented.grid, anchor)
+        self.show(self.which)
+
+    def merge(self, fusion: Fusion) -> None:
+        """Show this merged map."""
+        if fusion is not self._fused and self._layout is not None and self._palette is not None:
+            self._fused = fusion
+            floor, walls = self._merged
+            floor.show(render.merged_floor(fusion, self._palette), fusion.merged, self._layout.anchor_ref)
+            walls.show(render.merged_walls(fusion, self._palette), fusion.merged, self._layout.anchor_ref)
+        self.show("merged")
+
+    def show(self, which: Which) -> None:
+        """Show one set of pictures and hide the others."""
+        self.which = which
+        for images, among in (
+            (self._free, ("sources", "levels")),
+            (self._walls, ("sources",)),
+            (self._levels, ("levels",)),
+            (self._merged, ("merged",)),
+        ):
+            for image in images:
+                image.visible(which in among)
+
+    def hide(self) -> None:
+        """Hide everything; ``show(self.which)`` brings it back."""
+        for image in self._all:
+            image.visible(False)
