@@ -37,7 +37,7 @@ samples: $(VENV)/ready
 
 screenshots: $(VENV)/ready-to-test
 	@chromium="$$($(BIN)/python tests/chromium.py)" && \
-	  CHROMIUM="$$chromium" $(BIN)/python tests/browser/screenshots.py $(ARGS)
+	  CHROMIUM="$$chromium" $(BIN)/python tests/browser/screenshots.py $(or $(ARGS),static/screenshots swarm merged)
 
 clean:
 	rm -rf $(VENV) build dist out *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis .benchmarks
