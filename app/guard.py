@@ -7,7 +7,9 @@ memory with uploads. The patches below close that; a test checks that their hook
 
 from __future__ import annotations
 
+import contextlib
 import http
+import io
 import ipaddress
 import math
 import urllib.parse
@@ -61,7 +63,8 @@ def guarded_server(host: str, port: int) -> viser.ViserServer:
     real = infra.websockets
     infra.websockets = shim  # viser's own name for the library; it is looked up once, in the constructor
     try:
-        server = viser.ViserServer(host=host, port=port, verbose=False)
+        with contextlib.redirect_stdout(io.StringIO()):  # a box with viser's name, even where not verbose
+            server = viser.ViserServer(host=host, port=port, verbose=False)
     finally:
         infra.websockets = real
     for kind in (messages.ShareUrlRequest, messages.ShareUrlDisconnect):

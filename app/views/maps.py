@@ -205,7 +205,7 @@ class MapView:
             return
         here, colours = self.layout, self._palette
         self._stage.layer("robots", signs.robots(o, here, colours, mov, together, seen))
-        self._stage.layer("sight", signs.sight(o, at, here, colours, mov, together))
+        self._stage.layer("sight", signs.sight(o, at, here, colours, mov, together, close=not seen))
 
     def _place(self, at: Pose2, milliseconds: float) -> None:
         if at != self._mov_at or milliseconds == 0:

@@ -12,7 +12,7 @@ from driver import settle
 from algorithms.casefiles import Case, observation_to_bytes
 from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.mapio import map_to_bytes, read_map
-from algorithms.methods import merge
+from algorithms.methods import METHODS, merge
 from algorithms.observation import Observation
 from algorithms.pose import Pose2
 from app.palette import LIGHT
@@ -145,6 +145,26 @@ def test_the_optimiser_can_be_changed(tab):
     before = settle(lambda: tab.number("Γ, eq. (17)"), "Γ")
     tab.choose("optimiser", "MCO")
     settle(lambda: tab.number("Γ, eq. (17)") not in ("", before), "Γ of the Monte-Carlo search")
+
+
+def test_a_click_reads_out_the_map(tab):
+    def click() -> str:
+        x, y = tab.page.evaluate("() => window.mapmeld.pixel([0, 0])")
+        tab.page.mouse.click(x, y)
+        return tab.page.evaluate("() => window.mapmeld.hud.readout")
+
+    readout = settle(click, "what is there")
+    assert "map 1: free" in readout  # robot 2 stood there
+    assert "map 2: unknown" in readout  # it lies beside map 1 still
+
+
+def test_the_bilateral_method_has_its_own_settings_and_answers(tab):
+    tab.press("Instant")
+    tab.choose("Method", METHODS["bilateral"].title)
+    settle(lambda: "N_p particles" not in tab.text, "the swarm's sliders to go")
+    tab.press("Merge")
+    settle(lambda: tab.mood in ("accepted", "refused"), "a verdict")
+    assert tab.number("error to the truth").endswith("°")
 
 
 def l_room() -> GridMap:
