@@ -22,7 +22,7 @@ COMMANDS = {
     "serve": "watch a merge in the browser",
     "merge": "merge two maps into a folder of files",
     "evaluate": "run a method on every case in a folder and count what came out right",
-    "samples": "make the sample maps again",
+    "samples": "simulate pairs of maps with known truth",
 }
 """Every command, a module of ``app.commands`` each."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import logging
 import socket
 import threading
@@ -89,6 +90,6 @@ def _probe(host: str, port: int) -> None:
         try:
             probe.bind((host, port))
         except OSError as error:
-            if error.errno in (98, 48, 10048):  # EADDRINUSE on Linux, macOS, Windows
+            if error.errno == errno.EADDRINUSE:
                 raise PortError(_taken(port)) from error
             raise PortError(f"cannot listen at {host}, port {port}: {error.strerror or error}") from error

@@ -1,0 +1,42 @@
+import pytest
+
+from algorithms.casefiles import case_folders, read_case
+from algorithms.observation import encounter
+from app.cli import main
+
+
+def refused(capsys, *words):
+    with pytest.raises(SystemExit) as left:
+        main(["samples", *words])
+    assert left.value.code == 2
+    return capsys.readouterr().err
+
+
+def test_any_number_of_other_buildings_can_be_simulated(tmp_path, capsys):
+    assert main(["samples", str(tmp_path), "--building", "apartment", "--seeds", "3-4"]) == 0
+    made = [folder.name for folder in case_folders(tmp_path)]
+    assert made == [
+        f"apartment_{seed}_{robots}" for seed in ("0003", "0004") for robots in ("r2_r1", "r3_r2")
+    ]
+    said = capsys.readouterr().out
+    assert all(name in said for name in made)
+    for folder in case_folders(tmp_path):
+        case = read_case(folder)
+        at = encounter(case.observation)
+        off = case.truth.T_ref_mov.apply(at.x_mov) - at.x_ref
+        assert abs(off).max() < 0.6
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--building", "castle"], "there is no building 'castle', but office"),
+        (["--building", "office", "--seeds", "9-2"], "--seeds is '9-2'"),
+        (["--building", "office", "--seeds", "many"], "--seeds is 'many'"),
+        (["--building", "office", "--overlap", "0.9"], "--overlap is 0.9"),
+        (["--seeds", "3"], "need --building"),
+    ],
+)
+def test_what_cannot_be_simulated_is_told(tmp_path, capsys, words, said):
+    assert said in refused(capsys, str(tmp_path), *words)
+    assert not any(tmp_path.iterdir())
