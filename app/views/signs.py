@@ -48,18 +48,15 @@ def sight(
 ) -> list[Item]:
     """The line of sight, the doubt of its far end, and which two places of the maps are one.
 
-    close : seen from so near that the doubt has room for a name
+    close : seen from so near that the doubt is more than a dot
     """
     first = o.observer.xy - layout.anchor_ref
-    name: Item = {}
-    doubt = ellipse(ZERO, at.covariance + 1e-9 * np.eye(2), 3)
+    items = [path(np.array([first, ZERO]), colours.text, w=1.6, d=[5, 4], halo=True)]
     if close:
+        doubt = ellipse(ZERO, at.covariance + 1e-9 * np.eye(2), 3)
         lowest = doubt[int(doubt[:, 1].argmin())]
         name = {"t": "3 σ of the sighting", "tp": lowest, "dy": 11, "align": "center"}
-    items = [
-        path(np.array([first, ZERO]), colours.text, w=1.6, d=[5, 4], halo=True),
-        path(doubt, colours.text, w=1, close=True, halo=True, **name),
-    ]
+        items.append(path(doubt, colours.text, w=1, close=True, halo=True, **name))
     if mov and not together:
         items.append(path(np.array([ZERO, layout.apart.xy]), colours.margin, w=1, d=[1, 5]))
     return items

@@ -1,0 +1,126 @@
+"""What the panels say about inputs and results, without a browser."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from algorithms.casefiles import Truth, observation_to_bytes
+from algorithms.errors import InputFileError
+from algorithms.mapio import map_to_bytes
+from algorithms.methods import merge, run
+from algorithms.steps import CandidatesDetail, HoughDetail, MergeResult
+from app import charts
+from app.export import archive
+from app.inputs import Inputs
+from app.panels.files import Upload, inputs_from
+from app.panels.result import numbers, result_html
+from app.panels.tables import box, table
+from app.story import Story
+from app.words import progress, sentence
+
+
+@pytest.fixture(scope="module")
+def inputs(small_case) -> Inputs:
+    return Inputs.of(small_case)
+
+
+@pytest.fixture(scope="module")
+def result(inputs) -> MergeResult:
+    return merge(inputs.ref, inputs.mov, inputs.observation)
+
+
+def test_what_is_missing_is_said_in_the_order_of_the_work(inputs):
+    assert Inputs().missing().startswith("Choose a sample")
+    assert "Load map 2" in Inputs(ref=inputs.ref).missing()
+    assert "Load map 1" in Inputs(mov=inputs.mov).missing()
+    assert "Load the observation" in Inputs(inputs.ref, inputs.mov).missing()
+    assert "two maps" in Inputs(observation=inputs.observation).missing()
+    assert inputs.missing() == ""
+    assert inputs.complete
+
+
+def test_a_robot_outside_its_map_is_told_with_the_key_to_check(inputs):
+    assert inputs.doubt() == ""
+    lost = replace(inputs, observation=replace(inputs.observation, observed_x=1e4))
+    assert "Robot 2" in lost.doubt()
+    assert "outside map 2" in lost.doubt()
+    assert "observed.pose" in lost.doubt()
+
+
+def test_uploads_become_inputs_as_far_as_they_go(inputs):
+    files = map_to_bytes(inputs.ref, "m")
+    uploads = {"yaml1": Upload("m.yaml", files["m.yaml"])}
+    assert inputs_from(uploads).ref is None
+    uploads["image1"] = Upload("m.pgm", files["m.pgm"])
+    assert np.array_equal(inputs_from(uploads).ref.cells, inputs.ref.cells)
+    uploads["observation"] = Upload("o.yaml", observation_to_bytes(inputs.observation))
+    assert inputs_from(uploads).observation == inputs.observation
+
+
+def test_a_bad_upload_is_named(inputs):
+    with pytest.raises(InputFileError, match=r"o\.yaml: .*; "):
+        inputs_from({"observation": Upload("o.yaml", b"range: 3")})
+
+
+def test_the_sentence_comes_before_the_numbers(result, inputs):
+    page = result_html(result, inputs)
+    assert page.index(result.verdict.reason) < page.index("T: Δx") < page.index("time per stage")
+    assert "opacity:.4" not in page
+    assert "Out of date" in result_html(result, inputs, faded=True)
+
+
+def test_eq_23_says_which_overlap_it_is_over(result, inputs):
+    with_truth = dict(numbers(result, replace(inputs, truth=Truth(result.T_ref_mov))))
+    assert "eq. (23), over the true overlap" in with_truth
+    assert with_truth["error to the truth"] == "0.000 m, 0.00°"
+    without = dict(numbers(result, replace(inputs, truth=None)))
+    assert "eq. (23), at the estimated T" in without
+    assert "error to the truth" not in without
+
+
+def test_words_in_tables_are_never_html():
+    assert "<img" not in table([("<img src=x>", "<b>")]) + box("<img src=x>", "plain", "<img>")
+
+
+def test_the_archive_holds_the_map_and_its_transform(result):
+    with zipfile.ZipFile(io.BytesIO(archive(result))) as packed:
+        assert set(packed.namelist()) == {"merged.yaml", "merged.pgm", "transform.yaml"}
+        assert packed.read("merged.pgm") == map_to_bytes(result.fusion.merged, "merged")["merged.pgm"]
+
+
+def test_every_step_of_a_run_has_a_sentence_and_progress_never_falls(inputs):
+    story, shares = Story(), []
+    for step in run("spectra-swarm", inputs.ref, inputs.mov, inputs.observation):
+        story.tell(step)
+        assert sentence(story) != "Starting."
+        shares.append(progress(story))
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+
+
+def test_the_curves_share_one_axis_and_mark_what_was_chosen(inputs):
+    story = Story()
+    for step in run("spectra-swarm", inputs.ref, inputs.mov, inputs.observation):
+        story.tell(step)
+    match, best = story.get(HoughDetail).match, story.get(CandidatesDetail).candidates[0]
+    angles, correlation, marks, chosen = charts.turn_correlation(match, best.T_ref_mov.theta)
+    assert len(angles) == len(correlation) == len(marks) == len(chosen)
+    assert np.isfinite(marks).sum() == len(set(np.round(np.mod(match.turns, np.pi), 6)))
+    assert np.isfinite(chosen).sum() == 1
+    for axis in (best.x, best.y):
+        x, window, curve, mark = charts.shift_correlation(axis)
+        assert (np.diff(x) >= 0).all()
+        inside = window > 0
+        assert inside.any()
+        assert x[inside].min() == pytest.approx(axis.low)
+        assert x[inside].max() == pytest.approx(axis.high)
+        assert axis.low - 0.1 <= x[np.isfinite(mark)][0] <= axis.high + 0.1
+        assert np.isfinite(curve).all()
+        x, ref, mov = charts.shift_spectra(axis)
+        assert len(x) == len(ref) == len(mov)
+        assert max(ref.max(), mov.max()) <= 1.0
