@@ -69,7 +69,7 @@ def shift_correlation(match: ShiftMatch) -> Columns:
     extra[1] -= 1e-6
     extra[4] += 1e-6
     x = np.concatenate([shifts, extra])
-    y = np.concatenate([correlation, np.interp(extra, shifts, correlation, left=0.0, right=0.0)])
+    y = np.concatenate([correlation, np.interp(extra, match.shifts, match.correlation, left=0.0, right=0.0)])
     order = np.argsort(x, kind="stable")
     x, y = x[order], y[order]
     window = np.where((x >= match.low) & (x <= match.high), 1.05, 0.0)

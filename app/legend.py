@@ -29,13 +29,18 @@ def level_scale(detail: AugmentDetail) -> Entry:
     return {"s": "scale", "c": stops, "low": "0", "high": f"{detail.ref.peak:.3g}", "t": "level, eq. (4)"}
 
 
-def legend(palette: Palette, view: str, story: Story) -> list[Entry]:
-    """Entries for the view and for what the run has come to."""
+def legend(palette: Palette, view: str, story: Story, preview: bool = False) -> list[Entry]:
+    """Entries for the view and for what the run has come to.
+
+    preview : the map shows levels, not candidates
+    """
     detail = story.last.detail if story.last else None
     augmented = story.get(AugmentDetail)
     maps = [_chip("square", palette.ref, "map 1"), _chip("square", palette.mov, "map 2")]
     particle = _chip("dot", palette.particle, "particle")
     best = _chip("diamond", palette.best, "swarm best")
+    if preview and augmented and view == "Map":
+        return [level_scale(augmented), _chip("line", palette.margin, "Σ_aug, box")]
     if view == "Heights":
         return [level_scale(augmented)] if augmented else []
     if view == "Swarm space":

@@ -235,7 +235,7 @@ class Page:
                 self._draw(story, live=True)
             elif self._run.view == SWARM:
                 self._draw(story, live=False)
-            self._plots.show(story)
+            self._plots.show(story, follow=job.goal == "merge")
             self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
             self._stage.hud(state=words.sentence(story), mood="running", progress=words.progress(story))
             self._stage.flush()
@@ -246,7 +246,7 @@ class Page:
         self._run.stop.disabled = True
         result = story.get(MergeResult)
         with self._client.atomic():
-            self._plots.show(story)
+            self._plots.show(story, follow=job.goal == "merge")
             if result is None:
                 self._maps_preview(job)
                 self._stage.hud(state="Candidates are up to date. Press Merge.", mood="idle", progress=None)
@@ -259,6 +259,7 @@ class Page:
                 self._stage.hud(
                     state=result.verdict.reason, mood="accepted" if accepted else "refused", progress=None
                 )
+            self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
             self._stage.flush()
 
     def stopped(self, job: Job, story: Story) -> None:
@@ -294,6 +295,6 @@ class Page:
     def _maps_preview(self, job: Job) -> None:
         if self._run.view == MAP:
             self._maps.preview(self._story, job.config)
-            self._stage.hud(legend=legend(self._palette, MAP, self._story))
+            self._stage.hud(legend=legend(self._palette, MAP, self._story, preview=True))
         elif self._run.view == HEIGHTS:
             self._draw(self._story, live=False)

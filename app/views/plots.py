@@ -175,8 +175,8 @@ class PlotDock:
         for plot in (self._hough, self._turns, self._gamma, *(p for pair in self._shifts for p in pair)):
             plot.data = (NOTHING[0], *(NOTHING[1] for _ in plot.data[1:]))
 
-    def show(self, story: Story) -> None:
-        """Draw what has changed since the last call."""
+    def show(self, story: Story, follow: bool) -> None:
+        """Draw what has changed since the last call; ``follow`` turns to the page of the stage at hand."""
         detail = story.last.detail if story.last else None
         hough, refine = story.get(HoughDetail), story.get(RefineDetail)
         shift = story.shifts[-1] if story.shifts else None
@@ -197,6 +197,8 @@ class PlotDock:
             rows = charts.candidate_rows(found.candidates, story.gammas)
             head = ("candidate", "Δθ", "Δx (m)", "Δy (m)", "Γ, look", "Γ, swarm")
             self._candidates.content = table(rows, head)
+        if not follow:
+            return
         if isinstance(detail, (AugmentDetail, HoughDetail)):
             self.turn_to(TURN)
         elif isinstance(detail, (WindowDetail, ShiftDetail, CandidatesDetail)):

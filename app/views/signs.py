@@ -86,7 +86,7 @@ def window(w: Window, x_mov: FloatArray, layout: Layout, colours: Palette) -> li
 def margins(sigma_x: float, sigma_y: float, colours: Palette) -> list[Item]:
     """The size of the optimiser's box, before there is a candidate to put it on."""
     half = np.array([sigma_x, sigma_y])
-    label = {"t": "± σ_x, ± σ_y", "tp": half * (-1, 1), "dy": -9, "align": "right"}
+    label = {"t": "± σ_x, ± σ_y", "tp": half * (0, -1), "dy": 10, "align": "center"}
     return [path(rectangle(-half, half), colours.margin, **DASHED, **label)]
 
 
