@@ -249,7 +249,7 @@ class Page:
             self._plots.show(story, follow=job.goal == "merge")
             if result is None:
                 self._maps_preview(job)
-                self._stage.hud(state="Candidates are up to date. Press Merge.", mood="idle", progress=None)
+                self._stage.hud(state=words.UP_TO_DATE, mood="idle", progress=None)
             else:
                 self._result = result
                 self._plots.result.content = result_html(result, self._inputs)

@@ -17,7 +17,7 @@ from algorithms.chain import Memo
 from algorithms.errors import MapMergeError
 from algorithms.gridmap import GridMap
 from algorithms.observation import Observation
-from algorithms.steps import CandidatesDetail, MergeResult, Step
+from algorithms.steps import AnswersDetail, CandidatesDetail, MergeResult, Step
 from app.player import FRAME, Waiting, dwell
 from app.story import Story
 
@@ -171,7 +171,7 @@ class Session:
             self._waiting.wait(stay, mark)
             if not self._wants(job):
                 return
-            if job.goal == "candidates" and isinstance(step.detail, CandidatesDetail):
+            if job.goal == "candidates" and isinstance(step.detail, (CandidatesDetail, AnswersDetail)):
                 break
             if isinstance(step.detail, MergeResult):
                 break

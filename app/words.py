@@ -32,8 +32,8 @@ _SHARE: dict[type, float] = {
     MergeResult: 1.0,
 }
 
-EMPTY = "Choose a sample, or load two maps and an observation."
 READY = "Ready. Press Merge."
+UP_TO_DATE = "Everything up to the candidates is up to date. Press Merge."
 
 
 def sentence(story: Story) -> str:

@@ -13,7 +13,7 @@ from algorithms.gridmap import FREE, GridMap
 from algorithms.observation import Encounter, Observation
 from algorithms.pose import Pose2
 from algorithms.search import SearchState
-from algorithms.steps import ObservationDetail, RefineDetail, Step
+from algorithms.steps import AnswersDetail, ObservationDetail, RefineDetail, Step
 from algorithms.window import Box
 from app.player import DWELL, FRAME, Waiting, dwell
 from app.session import Job, Session
@@ -214,5 +214,16 @@ def test_a_new_speed_holds_from_the_step_at_hand_on(start, ear):
     session.request(job("a", pace=1000.0))
     assert ear.shown.wait(PATIENCE)
     session.set_pace(1e-6)
+    assert ear.done.wait(PATIENCE)
+    assert ear.heard[-1] == ("ended", "a")
+
+
+def test_before_the_first_merge_a_run_ends_at_the_candidates(start, ear):
+    def run(*_) -> Iterator[Step]:
+        yield Step("observe", detail(), 0.0)
+        yield Step("search", AnswersDetail(()), 0.0)
+        raise AssertionError("nobody asked for more")
+
+    start(run).request(job("a", goal="candidates"))
     assert ear.done.wait(PATIENCE)
     assert ear.heard[-1] == ("ended", "a")

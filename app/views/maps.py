@@ -110,6 +110,8 @@ class MapView:
         """Draw what a moved slider does before there is a merge: levels, Σ_aug, the box's size."""
         self._ground.lift(story.get(AugmentDetail))
         self._lifted(0.0, 0.0)
+        if not story.reached(AugmentDetail):  # a method without levels
+            self._ground.show("sources")
         self._rings(config)
         box = getattr(config, "box", None)
         if box is not None:
