@@ -14,7 +14,7 @@ from algorithms.pose import FloatArray, wrap_angles
 from algorithms.search import SearchState, Value, keep_inside
 from algorithms.window import Box
 
-SETTLED_CELLS = 0.2  # a swarm that stays within a fifth of a cell cannot tell two answers apart
+SETTLED_CELLS = 0.1  # a swarm that stays within a tenth of a cell cannot tell two answers apart
 SETTLED_ANGLE = 0.05 * pi / 180
 
 
@@ -45,8 +45,8 @@ def swarm(
 ) -> Iterator[SearchState]:
     """Yield the swarm once per iteration; the caller may leave the loop at any time.
 
-    settled : (3,) root mean square distance from the swarm's best below which it has settled;
-              metres, metres, radians
+    settled : (3,) metres, metres, radians; the swarm has settled once half of it is this near to its
+              best. Stragglers are left out: a few roam long after nothing better can be found
     """
     whole_turn = box.high[2] - box.low[2] >= 2 * pi
     shape = (config.particles, 3)
@@ -61,7 +61,7 @@ def swarm(
         to_best, to_own = best - poses, own - poses
         if whole_turn:
             to_best[:, 2], to_own[:, 2] = wrap_angles(to_best[:, 2]), wrap_angles(to_own[:, 2])
-        spread = np.sqrt(np.mean(to_best**2, axis=0))
+        spread = np.median(np.abs(to_best), axis=0)
         stopped = None
         if np.all(spread <= settled):
             stopped = f"the swarm settled after {iteration + 1} iterations"
@@ -76,4 +76,8 @@ def swarm(
         kappa_best, kappa_own = rng.random((2, *shape))
         pull = kappa_best * config.tau * to_best + kappa_own * config.tau * to_own
         velocity = config.omega * (velocity + pull)  # eq. (21)
-        poses = keep_inside(poses + velocity, box)  # eq. (22)
+        moved = poses + velocity  # eq. (22)
+        poses = keep_inside(moved, box)
+        at_border = (moved < box.low) | (moved > box.high)
+        at_border[:, 2] &= not whole_turn
+        velocity[at_border] = 0.0  # who runs into the border stands there, and can turn round at once

@@ -68,8 +68,8 @@ def test_a_swarm_settles_before_its_iterations_are_used_up():
     states = search(swarm, iterations=300)
     assert len(states) < 300
     assert "settled" in states[-1].stopped
-    spread = np.sqrt(np.mean((states[-1].poses - states[-1].best) ** 2, axis=0))
-    assert np.all(spread <= SETTLED)
+    near = np.abs(states[-1].poses - states[-1].best) <= SETTLED
+    assert np.all(near.mean(axis=0) >= 0.5)
 
 
 def test_a_personal_best_is_a_place_its_particle_has_been():
