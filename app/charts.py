@@ -78,9 +78,11 @@ def shift_correlation(match: ShiftMatch) -> Columns:
 
 
 def gammas(courses: list[list[float]], lines: int) -> Columns:
-    """Iteration, then best Γ so far for each refined candidate; one that has ended stays where it was."""
+    """Iteration, then best Γ so far for each refined candidate: NaN for one that has not begun; one that
+    has ended stays where it was.
+    """
     longest = max(2, max((len(course) for course in courses), default=0))
-    table = np.zeros((lines, longest))
+    table = np.full((lines, longest), np.nan)
     for row, course in zip(table, courses, strict=False):
         if course:
             row[: len(course)], row[len(course) :] = course, course[-1]

@@ -67,6 +67,7 @@ class PlotDock:
                 "turn Δθ (°), or that + 180°",
                 (_line("CC", GREY), _dots("candidates", MARK, 8), _dots("at hand", BEST, 10)),
                 190,
+                None,  # every direction has some lines: from zero the peaks would be ripples
             )
             window = uplot.Series(
                 label="window", width=0, fill="rgba(107,114,128,.20)", points={"show": False}
