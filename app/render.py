@@ -1,4 +1,4 @@
-"""Grids in, pixels out: numpy only, so that every picture is tested without a browser.
+"""Grids in, pixels out: no server and no scene, so that every picture is tested without a browser.
 
 Row 0 of every picture is the bottom, as in a GridMap: that is also how the scene lays an image down.
 ``upright`` turns a picture over for a screen, where row 0 is the top.
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from skimage.measure import block_reduce
 
 from algorithms.augment import AugmentedMap
 from algorithms.fuse import Fusion
@@ -42,11 +43,7 @@ def pool(cells: CellArray, factor: int) -> CellArray:
     """Cells of ``factor`` x ``factor`` cells each; the highest value wins, so that no thin wall is lost."""
     if factor == 1:
         return cells
-    height, width = (-(-side // factor) * factor for side in cells.shape)
-    padded = np.full((height, width), UNKNOWN, dtype=np.int8)
-    padded[: cells.shape[0], : cells.shape[1]] = cells
-    blocks = padded.reshape(height // factor, factor, width // factor, factor)
-    return np.asarray(blocks.max(axis=(1, 3)), dtype=np.int8)
+    return np.asarray(block_reduce(cells, (factor, factor), np.max, cval=UNKNOWN), dtype=np.int8)
 
 
 def _tinted(mask: NDArray[np.bool_], colour: Rgb, alpha: int = 255) -> Pixels:
