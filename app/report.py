@@ -12,9 +12,9 @@ from typing import Any
 import cv2
 import numpy as np
 
-from algorithms.gridmap import UNKNOWN
 from algorithms.mapio import map_to_bytes
 from algorithms.mapio.fields import number_text
+from algorithms.merit import performance_index
 from algorithms.steps import MergeResult
 from app import render
 from app.palette import LIGHT
@@ -46,7 +46,7 @@ def report_of(
         "method": result.method,
         "seed": result.seed,
         "timings_s": {"load": load_s, **result.timings_s},
-        "performance_index_at_estimate": performance_index_at_estimate(result),
+        "performance_index_at_estimate": performance_index(result.fusion),
         "settings": config,
         "inputs": dict(inputs or {}),
         "versions": versions(),
@@ -58,17 +58,6 @@ def report_json(report: Mapping[str, Any]) -> bytes:
     """The content of report.json, a line per key."""
     lines = (f"  {json.dumps(key)}: {_json(value)}" for key, value in report.items())
     return ("{\n" + ",\n".join(lines) + "\n}\n").encode()
-
-
-def performance_index_at_estimate(result: MergeResult) -> float | None:
-    """agr / N_overlap of eq. (23), the overlap taken at the estimated T; None without overlap.
-
-    The paper takes the true overlap, which nobody knows of maps of one's own: a merge in a wrong
-    place can reach a high index here.
-    """
-    fusion = result.fusion
-    overlap = int(np.count_nonzero((fusion.ref_cells != UNKNOWN) & (fusion.mov_cells != UNKNOWN)))
-    return fusion.agreed / overlap if overlap else None  # eq. (23)
 
 
 def publish_command(result: MergeResult) -> str:

@@ -63,7 +63,7 @@ def test_the_performance_index_counts_agreement_in_the_area_known_to_both(result
     fusion = result.fusion
     known = (fusion.ref_cells != UNKNOWN) & (fusion.mov_cells != UNKNOWN)
     same = (fusion.ref_cells == fusion.mov_cells) & known
-    index = report.performance_index_at_estimate(result)
+    index = report.report_of(result)["performance_index_at_estimate"]
     assert index == pytest.approx(same.sum() / known.sum())  # the drawn maps are free or wall, no more
 
 

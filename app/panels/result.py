@@ -7,12 +7,12 @@ from math import degrees, sqrt
 import numpy as np
 
 from algorithms.fuse import fuse
+from algorithms.merit import performance_index
 from algorithms.pose import pose_error
 from algorithms.steps import MergeResult
 from app import words
 from app.inputs import Inputs
 from app.panels.tables import box, table
-from app.report import performance_index_at_estimate
 
 STAGES = {
     "observe": "observation",
@@ -37,6 +37,10 @@ def result_html(result: MergeResult, inputs: Inputs, faded: bool = False) -> str
     )
 
 
+def _share(index: float | None) -> str:
+    return "–" if index is None else f"{index:.1%}"
+
+
 def numbers(result: MergeResult, inputs: Inputs) -> list[tuple[str, ...]]:
     """The transform with its standard deviations, Γ, and the figures of merit."""
     T, verdict = result.T_ref_mov, result.verdict
@@ -50,14 +54,12 @@ def numbers(result: MergeResult, inputs: Inputs) -> list[tuple[str, ...]]:
     ]
     truth = inputs.truth.T_ref_mov if inputs.truth else None
     if truth is not None and inputs.ref is not None and inputs.mov is not None:
-        true_overlap = fuse(inputs.ref, inputs.mov, truth).overlap
-        share = min(1.0, result.fusion.agreed / true_overlap) if true_overlap else 0.0
-        rows.append(("eq. (23), over the true overlap", f"{share:.1%}"))
+        index = performance_index(result.fusion, fuse(inputs.ref, inputs.mov, truth))
+        rows.append(("eq. (23), over the true overlap", _share(index)))
         apart, turned = pose_error(result.T_ref_mov, truth, result.encounter.x_mov)
         rows.append(("error to the truth", f"{apart:.3f} m, {degrees(turned):.2f}°"))
     else:
-        index = performance_index_at_estimate(result)
-        rows.append(("eq. (23), at the estimated T", "–" if index is None else f"{index:.1%}"))
+        rows.append(("eq. (23), at the estimated T", _share(performance_index(result.fusion))))
     rows += [
         ("acceptance index", f"{verdict.acceptance_index:.1%}"),
         ("walls that coincide", f"{verdict.wall_support:.0%}"),
