@@ -40,7 +40,7 @@ def _laid_on(mask: BoolArray, of: Fusion, onto: Fusion) -> BoolArray:
     out = np.zeros(onto.ref_cells.shape, dtype=np.bool_)
     height, width = of.merged.height, of.merged.width
     top, left = max(0, row), max(0, col)
-    bottom, right = min(out.shape[0], row + height), min(out.shape[1], col + width)
+    bottom, right = min(onto.merged.height, row + height), min(onto.merged.width, col + width)
     if bottom > top and right > left:
         out[top:bottom, left:right] = mask[top - row : bottom - row, left - col : right - col]
     return out
