@@ -58,10 +58,10 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     server = _listen(args.host, args.port, case)
     shown = LOCAL if args.host in ("0.0.0.0", "::", "") else args.host
     url = f"http://{f'[{shown}]' if ':' in shown else shown}:{server.get_port()}"
-    print(f"mapmeld is at {url}   (Ctrl-C ends it)", flush=True)
-    if not args.no_browser and _has_display():
-        webbrowser.open(url)
     try:
+        print(f"mapmeld is at {url}   (Ctrl-C ends it)", flush=True)
+        if not args.no_browser and _has_display():
+            webbrowser.open(url)
         threading.Event().wait()
     except KeyboardInterrupt:
         server.stop()
