@@ -273,9 +273,17 @@ def test_python_m_app_is_the_same_command(strangers_folder, tmp_path):
 # ---- serve
 
 
-def test_serve_answers_on_this_machine_alone_until_it_is_interrupted():
+def as_in_a_terminal():
+    """A shell without job control lets what it starts in the background ignore Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM])
+def test_serve_answers_on_this_machine_alone_until_it_is_told_to_end(end):
     command = [sys.executable, "-m", "app", "serve", "--no-browser", "--port", "0"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT) as page:
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, text=True, cwd=ROOT, preexec_fn=as_in_a_terminal
+    ) as page:
         try:
             said = next(line for line in page.stdout if line.startswith("mapmeld is at "))
             url = said.split()[3]
@@ -283,7 +291,7 @@ def test_serve_answers_on_this_machine_alone_until_it_is_interrupted():
             with urllib.request.urlopen(url, timeout=20) as answer:
                 assert answer.status == 200
             time.sleep(0.2)
-            page.send_signal(signal.SIGINT)
+            page.send_signal(end)
             assert page.wait(timeout=20) == 0
         finally:
             if page.poll() is None:

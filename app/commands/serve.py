@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
 import threading
 import webbrowser
@@ -58,6 +59,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     server = _listen(args.host, args.port, case)
     shown = LOCAL if args.host in ("0.0.0.0", "::", "") else args.host
     url = f"http://{f'[{shown}]' if ':' in shown else shown}:{server.get_port()}"
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # whoever asks it to end, it ends whole
     try:
         print(f"mapmeld is at {url}   (Ctrl-C ends it)", flush=True)
         if not args.no_browser and _has_display():
