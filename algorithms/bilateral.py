@@ -61,8 +61,8 @@ def run(
             MergeResult(
                 T_ref_mov=best,
                 covariance=bilateral_covariance(observation),
-                value=0.0,
-                verdict=judge(fusion, best, at, 0.0, config.verdict),
+                value=None,
+                verdict=judge(fusion, best, at, None, config.verdict),
                 fusion=fusion,
                 encounter=at,
                 answers=found.answers,

@@ -9,7 +9,7 @@ from typing import Any
 from algorithms import bilateral, pipeline
 from algorithms.chain import Memo
 from algorithms.gridmap import GridMap
-from algorithms.observation import Observation
+from algorithms.observation import Observation, check_standing
 from algorithms.pipeline import PipelineConfig, RefineConfig
 from algorithms.smm import CandidateConfig
 from algorithms.steps import MergeResult, Step
@@ -34,7 +34,7 @@ class Method:
 DEFAULT_METHOD = "spectra-swarm"
 
 METHODS: dict[str, Method] = {
-    "spectra-swarm": Method(pipeline.run, "Spectra, all candidates, particle swarm", PipelineConfig()),
+    "spectra-swarm": Method(pipeline.run, "Spectra, all candidates, swarm", PipelineConfig()),
     "spectra-montecarlo": Method(
         pipeline.run,
         "Spectra, all candidates, Monte-Carlo",
@@ -42,7 +42,7 @@ METHODS: dict[str, Method] = {
     ),
     "paper-argmax": Method(
         pipeline.run,
-        "The paper's bare argmax: one peak, no twin, particle swarm",
+        "The paper's bare argmax",
         PipelineConfig(
             candidates=CandidateConfig(peaks=1, twins=False),
             window=WindowConfig(pivot="origin"),
@@ -51,7 +51,7 @@ METHODS: dict[str, Method] = {
     ),
     "bilateral": Method(
         bilateral.run,
-        "Both robots saw each other: eqs. (2), (3) alone",
+        "Bilateral, eqs. (2), (3) alone",
         bilateral.BilateralConfig(),
     ),
 }
@@ -66,7 +66,11 @@ def run(
     seed: int = 0,
     memo: Memo | None = None,
 ) -> Iterator[Step]:
-    """Yield the steps of one method of the table, at its defaults unless ``config`` is given."""
+    """Yield the steps of one method of the table, at its defaults unless ``config`` is given.
+
+    raises SettingError, at once, where a robot stands far off its own map
+    """
+    check_standing(observation, ref, mov)
     method = METHODS[name]
     return method.run(ref, mov, observation, method.defaults if config is None else config, seed, memo, name)
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, isfinite, pi, sin
+from math import cos, hypot, isfinite, pi, sin
 
 import numpy as np
 
 from algorithms.errors import SettingError
+from algorithms.gridmap import GridMap
 from algorithms.pose import FloatArray, Pose2, rotation, wrap_angle
 
 SIGMA_RANGE = 0.05  # metres; a laser range taken from the mean of a few salient points
 SIGMA_BEARING = 0.034907  # radians, 2°
+OFF_THE_MAP = 5.0  # metres
 
 
 @dataclass(frozen=True)
@@ -46,10 +48,36 @@ class Observation:
                 raise SettingError(f"observation: {name} is {values}; it must be finite numbers")
         if self.range < 0:
             raise SettingError(f"observation: range is {self.range} m; it must not be negative")
+        for name, bearing in (("bearing", self.bearing), ("bearing_back", self.bearing_back or 0.0)):
+            if abs(bearing) > 2 * pi:
+                raise SettingError(
+                    f"observation: {name} is {bearing:g} rad, more than a whole turn; "
+                    "it looks like degrees: give radians"
+                )
         if self.sigma_range <= 0 or self.sigma_bearing <= 0:
             raise SettingError(
                 f"observation: sigma_range is {self.sigma_range} m and sigma_bearing "
                 f"{self.sigma_bearing} rad; both must be positive"
+            )
+
+
+def check_standing(observation: Observation, ref: GridMap, mov: GridMap) -> None:
+    """Raise SettingError where a robot stands far off the map it has made itself.
+
+    A map may have been cropped, so some metres are let pass; more is a mix-up of files or of units.
+    """
+    o = observation
+    for who, key, point, grid in (
+        ("robot 1", "observer.pose", o.observer.xy, ref),
+        ("robot 2", "observed.pose", np.array([o.observed_x, o.observed_y]), mov),
+    ):
+        col, row = grid.grid_coordinates(point).tolist()
+        off = grid.resolution * hypot(max(0.0, -col, col - grid.width), max(0.0, -row, row - grid.height))
+        if off > OFF_THE_MAP:
+            raise SettingError(
+                f"the observation puts {who} at ({point[0]:g}, {point[1]:g}) m, {off:.1f} m outside its "
+                f"own map {grid.name!r}; check {key}, the map's origin and resolution, "
+                "and whether the two maps are swapped"
             )
 
 

@@ -100,14 +100,14 @@ class MergeResult:
 
     T_ref_mov     : best transform found, also where the merge is refused
     covariance    : (3, 3) of x, y, theta; metres and radians
-    value         : Γ(T_ref_mov), eq. (17)
+    value         : Γ(T_ref_mov), eq. (17); None for a method without an objective
     answers       : everything the search ended on, best first; the first is T_ref_mov
     timings_s     : seconds per stage
     """
 
     T_ref_mov: Pose2
     covariance: FloatArray
-    value: float
+    value: float | None
     verdict: Verdict
     fusion: Fusion
     encounter: Encounter

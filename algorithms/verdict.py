@@ -43,7 +43,8 @@ class Verdict:
     overlap_cells    : cells known to both maps
     overlap_area     : the same; m²
     wall_support     : share of the walls in the area known to both that the other map confirms
-    ambiguity        : Γ of the best answer elsewhere over Γ of this one, 0 … 1
+    ambiguity        : Γ of the best answer elsewhere over Γ of this one, 0 … 1; None for a method
+                       that knows no other answers
     deviation        : distance of R2 from where it was seen, in standard deviations
     """
 
@@ -54,16 +55,17 @@ class Verdict:
     overlap_area: float
     conflicting_cells: int
     wall_support: float
-    ambiguity: float
+    ambiguity: float | None
     deviation: float
 
 
 def judge(
-    fusion: Fusion, T_ref_mov: Pose2, at: Encounter, ambiguity: float, config: VerdictConfig
+    fusion: Fusion, T_ref_mov: Pose2, at: Encounter, ambiguity: float | None, config: VerdictConfig
 ) -> Verdict:
     """Accept or refuse a merge; every number that speaks against it is named in the reason.
 
-    ambiguity : Γ of the best answer elsewhere over Γ of this one; ``ambiguity_of`` computes it
+    ambiguity : Γ of the best answer elsewhere over Γ of this one, from ``ambiguity_of``; None for a
+                method that knows no other answers
     """
     cell = fusion.merged.resolution
     area = fusion.overlap * cell**2
@@ -80,7 +82,7 @@ def judge(
         doubts.append(
             f"only {fusion.wall_support:.0%} of the walls that both robots should have seen coincide"
         )
-    if ambiguity > config.ambiguity:
+    if ambiguity is not None and ambiguity > config.ambiguity:
         doubts.append(f"another answer fits almost as well ({ambiguity:.0%} of the best Γ)")
     if deviation > config.deviations:
         doubts.append(f"it puts the seen robot {deviation:.1f} standard deviations from where it was seen")
@@ -89,8 +91,8 @@ def judge(
     else:
         reason = (
             f"Merged: {fusion.acceptance_index:.0%} of the {area:.0f} m² known to both agrees, "
-            f"{fusion.wall_support:.0%} of the walls coincide; "
-            f"the next best answer reaches {ambiguity:.0%} of its Γ."
+            f"{fusion.wall_support:.0%} of the walls coincide"
+            + (f"; the next best answer reaches {ambiguity:.0%} of its Γ." if ambiguity is not None else ".")
         )
     return Verdict(
         accepted=not doubts,

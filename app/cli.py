@@ -59,6 +59,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _complain("this is a bug of mapmeld; please report the lines above", EXIT_BUG)
 
 
+def entry() -> None:
+    """The command of the terminal: ``main``, and out."""
+    status = main()
+    if status == EXIT_INTERRUPTED:
+        # not by the ordinary way out, which waits for threads that the interrupt may have caught
+        # half-way; every file is written whole or not at all, so there is nothing to clear up
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+    sys.exit(status)
+
+
 def _run(words: list[str]) -> int:
     top = Parser(prog=PROG, usage=f"{PROG} {{{','.join(COMMANDS)}}} …", description=DESCRIPTION)
     top.add_argument("--version", action="store_true", help="print the version and end")

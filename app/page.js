@@ -172,11 +172,11 @@
     g.beginPath(); g.moveTo(nx, y - 16); g.lineTo(nx + 5, y); g.lineTo(nx, y - 4); g.lineTo(nx - 5, y); g.closePath();
     g.lineWidth = 4; g.strokeStyle = S.dark ? "#111827" : "#fff"; g.stroke(); g.fillStyle = colour; g.fill();
     words(g, "N", nx, y - 24, colour, 11, "center");
-    if (S.hud.readout) words(g, S.hud.readout, x, y - 46, colour, 12);
+    if (S.hud.readout) words(g, S.hud.readout, x, y - 54, colour, 12);
     if (pointer && S.hud.anchor) {
       const x1 = (pointer[0] - ink.clientWidth / 2) / px + camera.position.x + S.hud.anchor[0];
       const y1 = (ink.clientHeight / 2 - pointer[1]) / px + camera.position.y + S.hud.anchor[1];
-      words(g, `x ${x1.toFixed(2)} m   y ${y1.toFixed(2)} m   in map 1`, nx + 20, y - 4, colour, 11);
+      words(g, `x ${x1.toFixed(2)} m   y ${y1.toFixed(2)} m   in map 1`, x, y - 34, colour, 11);
     }
   }
   function paint(time) {
@@ -263,6 +263,7 @@
     #mapmeld-hud{position:absolute;inset:0;pointer-events:none;z-index:2;font:13px/1.35 system-ui,"Segoe UI",sans-serif;color:#111827}
     button.mantine-Button-root[aria-pressed=true]{background:#0072B2!important;color:#fff!important;border-color:#0072B2!important}
     *:has(> p > label:empty){display:none}
+    .mantine-Notifications-root{top:auto!important;bottom:84px!important}
     #mapmeld-hud[data-theme=dark]{color:#F9FAFB}
     .mm-head{position:absolute;left:12px;right:12px;top:10px;padding:7px 12px 8px;border-radius:8px;background:rgba(255,255,255,.92);box-shadow:0 1px 4px rgba(17,24,39,.16)}
     [data-theme=dark] .mm-head{background:rgba(31,41,55,.94)}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import viser
@@ -45,6 +45,7 @@ class Page:
         self._swarm = SwarmSpaceView(self._stage)
         self._inputs = Inputs()
         self._story = Story()
+        self._notice: viser.NotificationHandle | None = None
         self._result: MergeResult | None = None  # of the last run that came to its end
         self._merged = False  # from the first Merge on, a moved slider runs the whole method again
         self.session = Session(self)
@@ -102,6 +103,9 @@ class Page:
         except MapMergeError as error:
             self._report(error)
             return
+        if self._notice is not None:
+            self._notice.remove()
+            self._notice = None
         self._inputs, self._result, self._story, self._merged = inputs, None, Story(), False
         self._observation.show(inputs)
         self._plots.clear()
@@ -215,9 +219,15 @@ class Page:
     def _report(self, error: MapMergeError) -> None:
         """Tell the person what is wrong with an input, in this tab."""
         title = "Too large" if isinstance(error, TooLargeError) else "This cannot be used"
-        self._client.add_notification(title, str(error), auto_close_seconds=12.0, color="orange")
+        self._notify(title, str(error), "orange")
         self._stage.hud(state=str(error), mood="failed", progress=None)
         self._stage.flush()
+
+    def _notify(self, title: str, text: str, colour: Literal["orange", "red"]) -> None:
+        """Show a notice in place of the last one: what it said has been mended or overtaken."""
+        if self._notice is not None:
+            self._notice.remove()
+        self._notice = self._client.add_notification(title, text, auto_close_seconds=12.0, color=colour)
 
     # --- what the session tells -------------------------------------------------------------------
 
@@ -275,7 +285,7 @@ class Page:
             self._report(error)
             return
         text = f"A bug of mapmeld's ended the run ({type(error).__name__}); the server's log has the details."
-        self._client.add_notification("The run ended", text, auto_close_seconds=12.0, color="red")
+        self._notify("The run ended", text, "red")
         self._stage.hud(state=text, mood="failed", progress=None)
         self._stage.flush()
 

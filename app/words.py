@@ -84,7 +84,7 @@ def remedy(result: MergeResult) -> str:
         return ""
     if verdict.overlap_area < 2:
         return "Let one of the robots drive on, so that the maps share more, and merge again."
-    if verdict.ambiguity > 0.9:
+    if verdict.ambiguity is not None and verdict.ambiguity > 0.8:
         return "A second observation would tell the two places apart; a larger Σ_aug takes in more walls."
     if verdict.deviation > 4:
         return "Check the observation's numbers; or widen σ_x, σ_y, or try more peaks."

@@ -29,6 +29,7 @@ from algorithms.pose import Pose2
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 positive = st.floats(min_value=0, exclude_min=True, allow_nan=False, allow_infinity=False)
+bearings = st.floats(-6.28, 6.28)
 maybe = st.one_of(st.none(), finite)
 poses = st.builds(Pose2, finite, finite, finite)
 observations = st.builds(
@@ -37,11 +38,11 @@ observations = st.builds(
     observed_x=finite,
     observed_y=finite,
     range=st.floats(min_value=0, allow_infinity=False),
-    bearing=finite,
+    bearing=bearings,
     observed_heading=maybe,
     sigma_range=positive,
     sigma_bearing=positive,
-    bearing_back=maybe,
+    bearing_back=st.one_of(st.none(), bearings),
 )
 texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=30).map(str.strip)
 truths = st.builds(

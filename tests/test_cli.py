@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 import urllib.request
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -15,8 +16,10 @@ import yaml
 
 from algorithms import methods
 from algorithms.bounds import Bounds
+from algorithms.casefiles import read_case, write_observation
 from algorithms.mapio import read_map
 from algorithms.methods import METHODS
+from algorithms.pose import Pose2
 from app.cli import COMMANDS, main
 from app.controls import settings_of
 
@@ -216,14 +219,26 @@ def test_a_bar_names_the_stage_at_work_where_a_person_looks(case_folder, tmp_pat
 
 
 def test_plain_images_merge_where_their_resolution_is_given(case_folder, tmp_path, capsys):
+    case = read_case(case_folder)
+    o, first, second = case.observation, case.ref.origin.inverse(), case.mov.origin.inverse()
+    seen = second @ Pose2(o.observed_x, o.observed_y)  # without a YAML file the corner is the origin
+    write_observation(
+        tmp_path / "o.yaml", replace(o, observer=first @ o.observer, observed_x=seen.x, observed_y=seen.y)
+    )
     for name in ("map1.pgm", "map2.pgm"):
         (tmp_path / name).write_bytes((case_folder / name).read_bytes())
     words = ["merge", str(tmp_path / "map1.pgm"), str(tmp_path / "map2.pgm"), "--out", str(tmp_path / "out")]
-    words += ["--observation", str(case_folder / "observation.yaml")]
+    words += ["--observation", str(tmp_path / "o.yaml")]
     assert main(words) == 2
     assert "resolution of the image" in capsys.readouterr().err
-    assert main([*words, "--resolution", "0.05,0.04"]) in (0, 1)  # the origins are lost with the YAML files
-    assert (tmp_path / "out" / "report.json").exists()
+    assert main([*words, "--resolution", f"{case.ref.resolution},{case.mov.resolution}"]) == 0
+    assert read_map(tmp_path / "out" / "merged.yaml").resolution == case.ref.resolution
+
+
+def test_swapped_maps_end_with_2_and_say_so(case_folder, tmp_path, capsys):
+    one, two, seen = inputs(case_folder)
+    assert main(["merge", two, one, seen, "--out", str(tmp_path / "out")]) == 2
+    assert "whether the two maps are swapped" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("missing", ["map1.yaml", "map2.yaml", "observation.yaml"])
@@ -239,7 +254,7 @@ def test_a_missing_file_ends_with_2_and_one_line_that_names_it(missing, case_fol
 def test_a_folder_that_cannot_be_written_ends_with_2(case_folder, tmp_path, capsys):
     (tmp_path / "file").write_text("in the way")
     assert main(["merge", *inputs(case_folder), "--out", str(tmp_path / "file")]) == 2
-    assert "cannot be written" in capsys.readouterr().err
+    assert "file: is a file, not a folder; choose another --out" in capsys.readouterr().err
 
 
 def test_a_bug_is_told_apart_from_a_refusal(case_folder, tmp_path, monkeypatch, capsys):

@@ -81,7 +81,7 @@ def test_two_maps_of_different_flats_are_refused():
 
 
 def test_maps_without_a_wall_in_common_are_refused_with_a_reason():
-    empty = GridMap(np.full((50, 50), -1, dtype=np.int8), 0.05)
+    empty = GridMap(np.full(MOV.cells.shape, -1, dtype=np.int8), MOV.resolution, MOV.origin)
     result = merge(REF, empty, SEEN)
     assert not result.verdict.accepted
     assert result.verdict.reason.startswith("Refused: ")

@@ -76,7 +76,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     began = perf_counter()
     ref, mov, observation = read_inputs(args)
     load_s = perf_counter() - began
-    _refuse_to_overwrite(args)
+    _check_folder(args)
     result = result_of(methods.run(args.method, ref, mov, observation, config, args.seed))
     named = {"map1": args.map1, "map2": args.map2, "observation": args.observation}
     report = report_of(result, config, load_s, {key: str(path) for key, path in named.items()})
@@ -125,11 +125,13 @@ def _leave(folder: Path, files: Mapping[str, bytes], stale: Sequence[str]) -> li
     return removed
 
 
-def _refuse_to_overwrite(args: argparse.Namespace) -> None:
-    """Raise OutputError where a file of the result would take the place of an input."""
+def _check_folder(args: argparse.Namespace) -> None:
+    """Raise OutputError where the result could not be left, or would take the place of an input."""
     from algorithms.mapio import YAML_SUFFIXES, parse_meta, read_bytes
     from app.report import MERGED_FILES, OVERLAY_FILE, REPORT_FILE, TRANSFORM_FILE
 
+    if args.out.exists() and not args.out.is_dir():
+        raise OutputError(args.out, "is a file, not a folder", "choose another --out")
     inputs = [args.map1, args.map2, args.observation]
     for path in (args.map1, args.map2):
         if path.suffix.lower() in YAML_SUFFIXES:
@@ -144,10 +146,11 @@ def _refuse_to_overwrite(args: argparse.Namespace) -> None:
 
 def _summary(result: MergeResult, out: Path, files: Mapping[str, bytes], removed: list[str]) -> list[str]:
     T, verdict = result.T_ref_mov, result.verdict
+    gamma = "" if result.value is None else f"Γ {result.value:.4g}, "
     lines = [
         verdict.reason,
         f"map 2 in map 1: x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°",
-        f"Γ {result.value:.4g}, acceptance index {verdict.acceptance_index:.3f} "
+        f"{gamma}acceptance index {verdict.acceptance_index:.3f} "
         f"over {verdict.overlap_cells} cells ({verdict.overlap_area:.1f} m²)",
         f"written to {out}: {', '.join(files)}",
     ]

@@ -55,7 +55,7 @@ def inputs_from(uploads: dict[str, Upload]) -> Inputs:
         ref=grid(1),
         mov=grid(2),
         observation=observation_from_bytes(seen.name, seen.content) if seen else None,
-        name="uploaded: " + ", ".join(upload.name for upload in uploads.values()),
+        name="your files" if uploads else "",
     )
 
 
@@ -108,20 +108,22 @@ class FilesPanel:
             del self._uploads[key]
             if before is not None:
                 self._uploads[key] = before
-            self._status.content = self._table(bad=key)
+            self._show(inputs_from(self._uploads), bad=key)
             self._report(error)
             return
-        self._status.content = self._table()
-        if inputs.ref is None and inputs.mov is None and inputs.observation is None:
-            return  # half a map: what is on the page stays there
+        self._show(inputs)
+
+    def _forget(self) -> None:
+        self._uploads.clear()
+        self._show(Inputs())
+
+    def _show(self, inputs: Inputs, bad: str = "") -> None:
+        """What was on the page gives way to the uploads: nobody merges other maps than they think."""
+        self._status.content = self._table(bad)
         self._taken = NONE
         if self._sample.value != NONE:
             self._sample.value = NONE
         self._load(inputs)
-
-    def _forget(self) -> None:
-        self._uploads.clear()
-        self._status.content = self._table()
 
     def _table(self, bad: str = "") -> str:
         rows = []

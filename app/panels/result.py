@@ -50,14 +50,21 @@ def numbers(result: MergeResult, inputs: Inputs) -> list[tuple[str, ...]]:
         ("T: Δy", f"{T.y:.3f} m"),
         ("T: Δθ", f"{degrees(T.theta):.2f} ± {degrees(turn):.2f}°"),
         ("robot 2 known to", f"± {at_robot:.3f} m"),
-        ("Γ, eq. (17)", f"{result.value:.5g}"),
     ]
+    if result.value is not None:
+        rows.append(("Γ, eq. (17)", f"{result.value:.5g}"))
     truth = inputs.truth.T_ref_mov if inputs.truth else None
     if truth is not None and inputs.ref is not None and inputs.mov is not None:
         index = performance_index(result.fusion, fuse(inputs.ref, inputs.mov, truth))
         rows.append(("eq. (23), over the true overlap", _share(index)))
         apart, turned = pose_error(result.T_ref_mov, truth, result.encounter.x_mov)
-        rows.append(("error to the truth", f"{apart:.3f} m, {degrees(turned):.2f}°"))
+        right = apart <= inputs.truth.tolerance_m and turned <= inputs.truth.tolerance_rad
+        rows.append(
+            (
+                "error to the truth" if right else "✗ WRONG: error to the truth",
+                f"{apart:.3f} m, {degrees(turned):.2f}°",
+            )
+        )
     else:
         rows.append(("eq. (23), at the estimated T", _share(performance_index(result.fusion))))
     rows += [
@@ -65,7 +72,7 @@ def numbers(result: MergeResult, inputs: Inputs) -> list[tuple[str, ...]]:
         ("walls that coincide", f"{verdict.wall_support:.0%}"),
         ("area known to both", f"{verdict.overlap_area:.1f} m²"),
         ("contradicting cells", f"{verdict.conflicting_cells}"),
-        ("next best Γ", f"{verdict.ambiguity:.0%} of the best"),
+        *([("next best Γ", f"{verdict.ambiguity:.0%} of the best")] if verdict.ambiguity is not None else []),
         ("robot 2 off its sighting", f"{verdict.deviation:.1f} σ"),
         *([("optimum", "proven")] if result.proven_optimal else []),
         ("seed", f"{result.seed}"),

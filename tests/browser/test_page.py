@@ -84,9 +84,24 @@ def test_a_broken_upload_is_told_by_name_and_the_page_lives_on(tab, tmp_path):
     assert "mine.yaml" in tab.state
     assert "resolution" in tab.state
     assert tab.page.get_by_text("resolution").count() >= 2  # the sentence, and a notification
+    merge = tab.page.get_by_role("button", name="Merge", exact=True)
+    assert merge.is_disabled()  # what was loaded before is not what the person means to merge now
+    tab.choose("Sample", "apartment_r2_r1")
+    tab.wait_for("idle")
+    settle(lambda: tab.page.get_by_text("This cannot be used").count() == 0, "the notice to go")
     tab.press("Instant")
     tab.press("Merge")
     tab.wait_for("accepted")
+
+
+def test_forgotten_uploads_are_gone_from_the_page(tab, tmp_path, sample: Case):
+    (tmp_path / "o.yaml").write_bytes(observation_to_bytes(sample.observation))
+    tab.unfold("Upload your own")
+    tab.upload(4, tmp_path / "o.yaml")
+    settle(lambda: "load the two maps" in tab.state, "what to load next")
+    tab.press("Forget uploads")
+    settle(lambda: tab.state.startswith("Choose a sample"), "the empty page")
+    assert tab.page.get_by_role("button", name="Merge", exact=True).is_disabled()
 
 
 def test_a_file_name_is_shown_as_words_and_never_run(tab, tmp_path):
