@@ -78,11 +78,11 @@ def shift_correlation(match: ShiftMatch) -> Columns:
 
 
 def gammas(courses: list[list[float]], lines: int) -> Columns:
-    """Iteration, then best Γ so far for each refined candidate: NaN for one that has not begun; one that
-    has ended stays where it was.
+    """Iteration, then best Γ so far for each refined candidate; one that has ended stays where it was, one
+    that has not begun lies on the axis (NaN would keep the chart from finding its own scale).
     """
     longest = max(2, max((len(course) for course in courses), default=0))
-    table = np.full((lines, longest), np.nan)
+    table = np.zeros((lines, longest))
     for row, course in zip(table, courses, strict=False):
         if course:
             row[: len(course)], row[len(course) :] = course, course[-1]

@@ -164,7 +164,7 @@ class Page:
         if job is None:
             return
         if self._result is not None:
-            self._plots.result.content = result_html(self._result, self._inputs, faded=True)
+            self._plots.tell(result_html(self._result, self._inputs, faded=True))
             self._export.offer(None)
         self.session.request(job)
 
@@ -262,7 +262,7 @@ class Page:
                 self._stage.hud(state=words.UP_TO_DATE, mood="idle", progress=None)
             else:
                 self._result = result
-                self._plots.result.content = result_html(result, self._inputs)
+                self._plots.tell(result_html(result, self._inputs))
                 self._export.offer(result)
                 accepted = result.verdict.accepted
                 self._draw(story, live=job.pace > 0)

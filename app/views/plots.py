@@ -21,7 +21,7 @@ from algorithms.steps import (
 )
 from app import charts
 from app.palette import LIGHT, css
-from app.panels.tables import table
+from app.panels.tables import box, table
 from app.story import Story
 
 TURN, SHIFT, SWARM, RESULT = "Turn", "Shift", "Swarm", "Result"
@@ -30,6 +30,14 @@ LINES = 4  # courses of Γ that are drawn
 # colours that read on light and on dark panels alike
 REF, MOV, MARK, BEST = css(LIGHT.ref), css(LIGHT.mov), css(LIGHT.particle), css(LIGHT.best)
 GREY = css(LIGHT.margin)
+# what a page says while there is nothing on it
+HINTS = {
+    TURN: "Which way do the walls run? Press Merge, or move a slider: the Hough spectra of both maps, and "
+    "the turns in which they coincide, appear here.",
+    SHIFT: "How far is map 2 off? The X and Y spectra of every turn that is tried appear here.",
+    SWARM: "The climb of Γ, candidate by candidate, appears here during a merge.",
+    RESULT: "The verdict and its numbers appear here after a merge.",
+}
 NOTHING = (np.array([0.0, 1.0]), np.full(2, np.nan))
 
 
@@ -54,6 +62,7 @@ class PlotDock:
         with self._panel.add_tab("Stages", icon=viser.Icon.CHART_LINE):
             self._pages = gui.add_button_group("", (TURN, SHIFT, SWARM, RESULT))
             self._pages.on_click(lambda _: self._choose())
+            self._hint = gui.add_html("")
             self._hough = self._plot(
                 gui,
                 "Hough spectra, eq. (11)",
@@ -67,7 +76,6 @@ class PlotDock:
                 "turn Δθ (°), or that + 180°",
                 (_line("CC", GREY), _dots("candidates", MARK, 8), _dots("at hand", BEST, 10)),
                 190,
-                None,  # every direction has some lines: from zero the peaks would be ripples
             )
             window = uplot.Series(
                 label="window", width=0, fill="rgba(107,114,128,.20)", points={"show": False}
@@ -163,9 +171,26 @@ class PlotDock:
             ((self._gamma, self._candidates), SWARM),
             ((self.result,), RESULT),
         ):
+            shown = self.page == page and self._filled(page)
             for handle in handles:
-                if handle.visible != (self.page == page):
-                    handle.visible = self.page == page
+                if handle.visible != shown:
+                    handle.visible = shown
+        empty = not self._filled(self.page)
+        if self._hint.visible != empty:
+            self._hint.visible = empty
+        if empty and HINTS[self.page] not in self._hint.content:
+            self._hint.content = box(HINTS[self.page], "plain")
+
+    def _filled(self, page: str) -> bool:
+        """Whether there is anything to show on a page."""
+        if page == RESULT:
+            return bool(self.result.content)
+        return {TURN: "turn", SHIFT: "shift", SWARM: "candidates"}[page] in self._shown
+
+    def tell(self, answer: str) -> None:
+        """Put the answer, as HTML, on its page."""
+        self.result.content = answer
+        self._show_page()
 
     # --- a run ------------------------------------------------------------------------------------
 
@@ -175,6 +200,7 @@ class PlotDock:
         self._candidates.content = self.result.content = ""
         for plot in (self._hough, self._turns, self._gamma, *(p for pair in self._shifts for p in pair)):
             plot.data = (NOTHING[0], *(NOTHING[1] for _ in plot.data[1:]))
+        self._show_page()
 
     def show(self, story: Story, follow: bool) -> None:
         """Draw what has changed since the last call; ``follow`` turns to the page of the stage at hand."""
@@ -188,6 +214,11 @@ class PlotDock:
             self._hough.data = charts.hough_spectra(hough.match)
             chosen = at_hand.T_ref_mov.theta if at_hand else None
             self._turns.data = charts.turn_correlation(hough.match, chosen)
+            # every direction has some lines: drawn from zero the peaks would be ripples
+            low = float(hough.match.correlation.min())
+            around = (low - 0.05 * (1 - low), 1 + 0.1 * (1 - low)) if low < 0.99 else (0.0, 1.1)
+            if self._new("turn scale", around):
+                self._turns.scales = {"x": uplot.Scale(time=False), "y": uplot.Scale(range=around)}
         if at_hand is not None and self._new("shift", at_hand):
             for (spectra, correlation), match in zip(self._shifts, (at_hand.x, at_hand.y), strict=True):
                 spectra.data = charts.shift_spectra(match)
@@ -198,6 +229,7 @@ class PlotDock:
             rows = charts.candidate_rows(found.candidates, story.gammas)
             head = ("candidate", "Δθ", "Δx (m)", "Δy (m)", "Γ, look", "Γ, swarm")
             self._candidates.content = table(rows, head)
+        self._show_page()
         if not follow:
             return
         if isinstance(detail, (AugmentDetail, HoughDetail)):
