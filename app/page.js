@@ -262,8 +262,10 @@
   style.textContent = `
     #mapmeld-hud{position:absolute;inset:0;pointer-events:none;z-index:2;font:13px/1.35 system-ui,"Segoe UI",sans-serif;color:#111827}
     button.mantine-Button-root[aria-pressed=true]{background:#0072B2!important;color:#fff!important;border-color:#0072B2!important}
+    button.mantine-Button-root[aria-pressed]{padding-left:3px!important;padding-right:3px!important;min-width:0}
     *:has(> p > label:empty){display:none}
     .mantine-Notifications-root{top:auto!important;bottom:84px!important}
+    .mantine-ScrollArea-viewport>div{padding-right:8px} /* the scroll bar lies over what it scrolls */
     #mapmeld-hud[data-theme=dark]{color:#F9FAFB}
     .mm-head{position:absolute;left:12px;right:12px;top:10px;padding:7px 12px 8px;border-radius:8px;background:rgba(255,255,255,.92);box-shadow:0 1px 4px rgba(17,24,39,.16)}
     [data-theme=dark] .mm-head{background:rgba(31,41,55,.94)}
