@@ -16,12 +16,14 @@ STEPS_FORMAT = "{desc:<9}|{bar}| {percentage:3.0f}% {elapsed}"
 
 def result_of(steps: Iterator[Step]) -> MergeResult:
     """Run a method to its end with a bar that names the stage at work."""
-    story = Story()
+    story, stage = Story(), ""
     with bar(total=1.0, bar_format=STEPS_FORMAT) as shown:
         for step in steps:
             story.tell(step)
-            shown.set_description_str(step.stage, refresh=False)
             shown.update(max(0.0, words.progress(story) - shown.n))
+            if step.stage != stage:  # a new stage is named at once, however short it is
+                stage = step.stage
+                shown.set_description_str(stage)
     result = story.get(MergeResult)
     assert result is not None
     return result
