@@ -54,7 +54,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # whoever read our stdout has gone: not our mistake, and not theirs
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_INTERRUPTED
-    except Exception:
+    except Exception:  # a bug of ours: told whole, and with a status that nobody takes for a refusal
         traceback.print_exc()
         return _complain("this is a bug of mapmeld; please report the lines above", EXIT_BUG)
 
