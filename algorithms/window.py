@@ -33,11 +33,15 @@ class WindowConfig:
 
 @dataclass(frozen=True)
 class BoxConfig:
-    """Half-widths of the optimiser's box around a candidate, eqs. (18)–(20)."""
+    """Half-widths of the optimiser's box around a candidate, eqs. (18)–(20).
 
-    sigma_x: Annotated[float, Bounds(0.05, 5, 0.05, "m", "σ_x", "margin in x")] = 0.5
+    The box never leaves the window, so wide margins cost nothing where the sighting is good; narrow
+    ones shut the truth out where the X and Y spectra pick the wrong end of the window.
+    """
+
+    sigma_x: Annotated[float, Bounds(0.05, 5, 0.05, "m", "σ_x", "margin in x")] = 1.0
     """Half-width of the optimiser's box in x. Wider finds more and takes longer."""
-    sigma_y: Annotated[float, Bounds(0.05, 5, 0.05, "m", "σ_y", "margin in y")] = 0.5
+    sigma_y: Annotated[float, Bounds(0.05, 5, 0.05, "m", "σ_y", "margin in y")] = 1.0
     """Half-width of the optimiser's box in y. Wider finds more and takes longer."""
     sigma_theta: Annotated[float, Bounds(0.5, 45, 0.5, "°", "σ_θ", "margin in angle")] = 5.0
     """Half-width of the optimiser's box in the turn."""
