@@ -31,19 +31,24 @@ class BilateralConfig:
 def run(
     ref: GridMap,
     mov: GridMap,
-    observation: Observation,
+    observations: tuple[Observation, ...],
     config: BilateralConfig,
     seed: int = 0,
     memo: Memo | None = None,
     method: str = "bilateral",
 ) -> Iterator[Step]:
-    """Yield the steps of the bilateral merge; the last one's detail is the MergeResult.
+    """Yield the steps of the bilateral merge of the first sighting; the last one's detail is the MergeResult.
 
     raises SettingError where the observation lacks the bearing back or the observed heading
     """
     chain = Chain({} if memo is None else memo)
+    observation = observations[0]
     at: Encounter = (
-        yield from chain.stage("observe", (observation,), lambda: [ObservationDetail(encounter(observation))])
+        yield from chain.stage(
+            "observe",
+            (observations,),
+            lambda: [ObservationDetail(tuple(encounter(seen) for seen in observations))],
+        )
     ).encounter
     found: AnswersDetail = yield from chain.stage(
         "search",

@@ -1,9 +1,10 @@
-"""The files about a pair of maps: observation, truth of a test case, and the folder of a case."""
+"""The files about a pair of maps: observations, truth of a test case, and the folder of a case."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import radians
+from math import pi, radians
 from pathlib import Path
 from typing import Literal
 
@@ -20,6 +21,8 @@ ROUGH_OBSERVATION_FILE = "observation_rough.yaml"
 TRUTH_FILE = "truth.yaml"
 FIRST_MAP_FILE = "map1.yaml"
 SECOND_MAP_FILE = "map2.yaml"
+
+MOST_OBSERVATIONS = 64  # of one pair; their YAML stays far below what the parser takes
 
 OBSERVER_POSE = "give [x, y, yaw] of robot 1 in map 1; m, m, rad"
 OBSERVED_POSE = "give [x, y] or [x, y, yaw] of robot 2 in map 2; m, m, rad"
@@ -55,35 +58,39 @@ class Truth:
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A folder with two maps, one sighting and, where it is known, the answer.
+    """A folder with two maps, one sighting or several, and, where it is known, the answer.
 
-    observation_file : name of the file that ``observation`` came from
+    observation_file : name of the file that ``observations`` came from
     truth            : None where the folder holds no truth.yaml
     """
 
     name: str
     ref: GridMap
     mov: GridMap
-    observation: Observation
+    observations: tuple[Observation, ...]
     observation_file: str
     truth: Truth | None
 
 
-def read_observation(path: Path) -> Observation:
+def read_observations(path: Path) -> tuple[Observation, ...]:
     """Read an observation file; raises InputFileError."""
     path = Path(path)
-    return observation_from_bytes(str(path), read_bytes(path, "an observation"))
+    return observations_from_bytes(str(path), read_bytes(path, "an observation"))
 
 
-def observation_from_bytes(name: str, data: bytes) -> Observation:
-    """The observation that a file or an upload holds.
+def observations_from_bytes(name: str, data: bytes) -> tuple[Observation, ...]:
+    """What a file or an upload holds: one observation, or a list of them.
 
     A key that is not known is an error: a misspelt sigma_bearing would change the answer unseen.
 
     name   : of the file, as the user knows it
-    raises : InputFileError
+    raises : InputFileError, which names the entry where the file is a list
     """
-    f = fields.parse(name, data, "an observation's YAML file")
+    entries = fields.parse_entries(name, data, "an observation's YAML file", "observation", MOST_OBSERVATIONS)
+    return tuple(_observation(entry) for entry in entries)
+
+
+def _observation(f: Fields) -> Observation:
     f.refuse_unknown("observer", "observed", "measurement")
     observer = f.section("observer", "add observer: {pose: [x, y, yaw]}, robot 1 in map 1")
     observer.refuse_unknown("pose")
@@ -101,21 +108,40 @@ def observation_from_bytes(name: str, data: bytes) -> Observation:
         observed_y=where[1],
         observed_heading=where[2] if len(where) == 3 else None,
         range=distance,
-        bearing=m.number("bearing", "give the direction of robot 2 from robot 1's heading in radians"),
+        bearing=_bearing(m, "bearing", "give the direction of robot 2 from robot 1's heading in radians"),
         sigma_range=_positive(m, "sigma_range", "m", SIGMA_RANGE),
         sigma_bearing=_positive(m, "sigma_bearing", "rad", SIGMA_BEARING),
-        bearing_back=_optional(m, "bearing_back", "give radians, or leave it out"),
+        bearing_back=(
+            _bearing(m, "bearing_back", "give radians, or leave it out")
+            if "bearing_back" in m.values
+            else None
+        ),
     )
 
 
-def write_observation(path: Path, observation: Observation) -> None:
-    """Write an observation file whole or not at all; raises OutputError."""
-    write_file(Path(path), observation_to_bytes(observation))
+def write_observations(path: Path, observations: Sequence[Observation]) -> None:
+    """Write an observation file whole or not at all; raises OutputError, SettingError."""
+    write_file(Path(path), observations_to_bytes(observations))
 
 
-def observation_to_bytes(observation: Observation) -> bytes:
-    """The content of an observation file; it reads back to an equal Observation."""
-    o = observation
+def observations_to_bytes(observations: Sequence[Observation]) -> bytes:
+    """The content of an observation file; it reads back to equal Observations.
+
+    A single one is written as it is, several as a list.
+
+    raises : SettingError where there are none, or more than a file may hold
+    """
+    if not 1 <= len(observations) <= MOST_OBSERVATIONS:
+        raise SettingError(f"a file holds 1 to {MOST_OBSERVATIONS} observations, not {len(observations)}")
+    lines: list[str] = []
+    for o in observations:
+        first, *rest = _lines(o)
+        several = len(observations) > 1
+        lines += [f"- {first}", *(f"  {line}" for line in rest)] if several else [first, *rest]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _lines(o: Observation) -> list[str]:
     where = [o.observed_x, o.observed_y]
     if o.observed_heading is not None:
         where.append(o.observed_heading)
@@ -130,7 +156,7 @@ def observation_to_bytes(observation: Observation) -> bytes:
     ]
     if o.bearing_back is not None:
         lines.append(f"  bearing_back: {number_text(o.bearing_back)}  # rad, robot 1 as robot 2 saw it")
-    return ("\n".join(lines) + "\n").encode()
+    return lines
 
 
 def read_truth(path: Path) -> Truth:
@@ -199,7 +225,7 @@ def truth_to_bytes(truth: Truth) -> bytes:
 def read_case(folder: Path, rough: bool = False) -> Case:
     """Read the case in a folder.
 
-    rough  : take the badly measured observation instead of the good one
+    rough  : take the badly measured observations instead of the good ones
     raises : InputFileError, TooLargeError
     """
     folder = Path(folder)
@@ -209,7 +235,7 @@ def read_case(folder: Path, rough: bool = False) -> Case:
         name=folder.resolve().name,
         ref=read_map(folder / FIRST_MAP_FILE),
         mov=read_map(folder / SECOND_MAP_FILE),
-        observation=read_observation(folder / observation_file),
+        observations=read_observations(folder / observation_file),
         observation_file=observation_file,
         truth=read_truth(truth_path) if truth_path.exists() else None,
     )
@@ -231,6 +257,13 @@ def case_folders(root: Path) -> list[Path]:
             f"a case is a folder of {FIRST_MAP_FILE}, {SECOND_MAP_FILE} and {OBSERVATION_FILE}",
         )
     return folders
+
+
+def _bearing(f: Fields, key: str, remedy: str) -> float:
+    value = f.number(key, remedy)
+    if abs(value) > 2 * pi:
+        raise f.error(key, f"is {value:g} rad, more than a whole turn", "it looks like degrees: give radians")
+    return value
 
 
 def _optional(f: Fields, key: str, remedy: str) -> float | None:

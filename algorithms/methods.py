@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from algorithms import bilateral, pipeline
 from algorithms.chain import Memo
 from algorithms.gridmap import GridMap
-from algorithms.observation import Observation, check_standing
+from algorithms.observation import Observation, as_observations, check_standing
 from algorithms.pipeline import PipelineConfig, RefineConfig
 from algorithms.smm import CandidateConfig
 from algorithms.steps import MergeResult, Step
@@ -20,7 +20,7 @@ Run = Callable[..., Iterator[Step]]
 
 @dataclass(frozen=True)
 class Method:
-    """A way to merge: ``run(ref, mov, observation, config, seed, memo, method)`` yields its steps.
+    """A way to merge: ``run(ref, mov, observations, config, seed, memo, method)`` yields its steps.
 
     title    : what a person reads in a menu
     defaults : its frozen config; panel and flags are made from it
@@ -61,29 +61,31 @@ def run(
     name: str,
     ref: GridMap,
     mov: GridMap,
-    observation: Observation,
+    observations: Observation | Sequence[Observation],
     config: Any = None,
     seed: int = 0,
     memo: Memo | None = None,
 ) -> Iterator[Step]:
     """Yield the steps of one method of the table, at its defaults unless ``config`` is given.
 
-    raises SettingError, at once, where a robot stands far off its own map
+    observations : one sighting, or several between the makers of these two maps
+    raises       : SettingError, at once, where there is none or a robot stands far off its own map
     """
-    check_standing(observation, ref, mov)
+    seen = as_observations(observations)
+    check_standing(seen, ref, mov)
     method = METHODS[name]
-    return method.run(ref, mov, observation, method.defaults if config is None else config, seed, memo, name)
+    return method.run(ref, mov, seen, method.defaults if config is None else config, seed, memo, name)
 
 
 def merge(
     ref: GridMap,
     mov: GridMap,
-    observation: Observation,
+    observations: Observation | Sequence[Observation],
     method: str = DEFAULT_METHOD,
     config: Any = None,
     seed: int = 0,
 ) -> MergeResult:
     """The end of ``run``: the transform, the merged map and the verdict on it."""
-    *_, last = run(method, ref, mov, observation, config, seed)
+    *_, last = run(method, ref, mov, observations, config, seed)
     assert isinstance(last.detail, MergeResult)
     return last.detail

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, hypot, isfinite, pi, sin
 
@@ -61,24 +62,37 @@ class Observation:
             )
 
 
-def check_standing(observation: Observation, ref: GridMap, mov: GridMap) -> None:
+def as_observations(seen: Observation | Sequence[Observation]) -> tuple[Observation, ...]:
+    """One observation, or several of the same two maps, as a tuple; raises SettingError for none."""
+    observations = (seen,) if isinstance(seen, Observation) else tuple(seen)
+    if not observations:
+        raise SettingError("there is no observation; give at least one")
+    return observations
+
+
+def name_of(number: int, observations: Sequence[Observation]) -> str:
+    """What to call an observation before a person: with its number, from 1, where there are several."""
+    return f"observation {number}" if len(observations) > 1 else "the observation"
+
+
+def check_standing(observations: Sequence[Observation], ref: GridMap, mov: GridMap) -> None:
     """Raise SettingError where a robot stands far off the map it has made itself.
 
     A map may have been cropped, so some metres are let pass; more is a mix-up of files or of units.
     """
-    o = observation
-    for who, key, point, grid in (
-        ("robot 1", "observer.pose", o.observer.xy, ref),
-        ("robot 2", "observed.pose", np.array([o.observed_x, o.observed_y]), mov),
-    ):
-        col, row = grid.grid_coordinates(point).tolist()
-        off = grid.resolution * hypot(max(0.0, -col, col - grid.width), max(0.0, -row, row - grid.height))
-        if off > OFF_THE_MAP:
-            raise SettingError(
-                f"the observation puts {who} at ({point[0]:g}, {point[1]:g}) m, {off:.1f} m outside its "
-                f"own map {grid.name!r}; check {key}, the map's origin and resolution, "
-                "and whether the two maps are swapped"
-            )
+    for number, o in enumerate(observations, 1):
+        for who, key, point, grid in (
+            ("robot 1", "observer.pose", o.observer.xy, ref),
+            ("robot 2", "observed.pose", np.array([o.observed_x, o.observed_y]), mov),
+        ):
+            col, row = grid.grid_coordinates(point).tolist()
+            off = grid.resolution * hypot(max(0.0, -col, col - grid.width), max(0.0, -row, row - grid.height))
+            if off > OFF_THE_MAP:
+                raise SettingError(
+                    f"{name_of(number, observations)} puts {who} at ({point[0]:g}, {point[1]:g}) m, "
+                    f"{off:.1f} m outside its own map {grid.name!r}; check {key}, the map's origin and "
+                    "resolution, and whether the two maps are swapped"
+                )
 
 
 @dataclass(frozen=True, eq=False)

@@ -80,7 +80,7 @@ class PipelineConfig:
 def run(
     ref: GridMap,
     mov: GridMap,
-    observation: Observation,
+    observations: tuple[Observation, ...],
     config: PipelineConfig,
     seed: int = 0,
     memo: Memo | None = None,
@@ -95,7 +95,7 @@ def run(
     """
     chain = Chain({} if memo is None else memo)
     at: Encounter = (
-        yield from chain.stage("observe", (observation,), lambda: [_observe(observation)])
+        yield from chain.stage("observe", (observations,), lambda: [_observe(observations)])
     ).encounter
     augmented: AugmentDetail = yield from chain.stage(
         "augment", (ref, mov, at, config.augment), lambda: [_augment(ref, mov, at, config.augment)]
@@ -156,8 +156,8 @@ def run(
     )
 
 
-def _observe(observation: Observation) -> ObservationDetail:
-    return ObservationDetail(encounter(observation))
+def _observe(observations: tuple[Observation, ...]) -> ObservationDetail:
+    return ObservationDetail(tuple(encounter(observation) for observation in observations))
 
 
 def _augment(ref: GridMap, mov: GridMap, at: Encounter, config: AugmentConfig) -> AugmentDetail:

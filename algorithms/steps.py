@@ -19,9 +19,14 @@ from algorithms.window import Box, Window
 
 @dataclass(frozen=True, eq=False)
 class ObservationDetail:
-    """Stage "observe": where the seen robot stood, in both frames."""
+    """Stage "observe": where the seen robot stood, in both frames; a place per sighting, in their order."""
 
-    encounter: Encounter
+    encounters: tuple[Encounter, ...]
+
+    @property
+    def encounter(self) -> Encounter:
+        """The place of the first sighting."""
+        return self.encounters[0]
 
 
 @dataclass(frozen=True, eq=False)

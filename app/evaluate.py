@@ -96,7 +96,7 @@ def run_case(folder: Path, order: Order) -> Entry:
     try:
         case = read_case(folder, order.rough)
         load_s = perf_counter() - began
-        result = methods.merge(case.ref, case.mov, case.observation, order.method, order.config, order.seed)
+        result = methods.merge(case.ref, case.mov, case.observations, order.method, order.config, order.seed)
         entry["report"] = report_of(result, order.config, load_s)
         entry["truth"] = judge_case(case, result)
     except MapMergeError as error:

@@ -6,65 +6,75 @@ from dataclasses import dataclass
 
 from algorithms.casefiles import Case, Truth
 from algorithms.gridmap import GridMap
-from algorithms.observation import Encounter, Observation, encounter
+from algorithms.observation import Encounter, Observation, encounter, name_of
 
 
 @dataclass(frozen=True, eq=False)
 class Inputs:
-    """Two maps and a sighting; None for what is not there yet.
+    """Two maps and what robot 1 saw; None or empty for what is not there yet.
 
-    name  : what to call the pair before a person
-    truth : the known answer of a sample
+    observations : one sighting or several
+    name         : what to call the pair before a person
+    truth        : the known answer of a sample
     """
 
     ref: GridMap | None = None
     mov: GridMap | None = None
-    observation: Observation | None = None
+    observations: tuple[Observation, ...] = ()
     name: str = ""
     truth: Truth | None = None
 
     @property
+    def encounters(self) -> tuple[Encounter, ...]:
+        """Where robot 2 was seen, in both maps; a place per sighting."""
+        return tuple(encounter(observation) for observation in self.observations)
+
+    @property
     def at(self) -> Encounter | None:
-        """Where robot 2 was seen, in both maps."""
-        return encounter(self.observation) if self.observation else None
+        """Where robot 2 was seen first."""
+        return encounter(self.observations[0]) if self.observations else None
 
     @property
     def complete(self) -> bool:
         """Whether there is all that a merge needs."""
-        return self.ref is not None and self.mov is not None and self.observation is not None
+        return self.ref is not None and self.mov is not None and bool(self.observations)
 
     def missing(self) -> str:
         """What to load next, as a sentence; empty where nothing is missing."""
         if self.ref is None and self.mov is None:
-            if self.observation is None:
+            if not self.observations:
                 return "Choose a sample, or load two maps and an observation."
             return "Now load the two maps: a YAML file and an image each."
         if self.ref is None or self.mov is None:
             return (
                 f"Map {1 if self.mov is None else 2} is here. Load map {2 if self.mov is None else 1}, too."
             )
-        if self.observation is None:
+        if not self.observations:
             return "Both maps are here. Load the observation: where robot 1 saw robot 2."
         return ""
 
     def doubt(self) -> str:
-        """What is odd about the inputs, as a sentence; empty where nothing is."""
-        o, at = self.observation, self.at
-        if o is None or at is None:
-            return ""
-        for name, grid, point, key in (
-            ("Robot 1", self.ref, o.observer.xy, "observer.pose"),
-            ("Robot 2", self.mov, at.x_mov, "observed.pose"),
+        """What is odd about the inputs, in sentences; empty where nothing is."""
+        return " ".join(filter(None, self.doubts()))
+
+    def doubts(self) -> tuple[str, ...]:
+        """What is odd about each sighting, as a sentence; empty where nothing is."""
+        return tuple(self._doubt(number) for number in range(1, len(self.observations) + 1))
+
+    def _doubt(self, number: int) -> str:
+        o = self.observations[number - 1]
+        for robot, grid, point, key in (
+            (1, self.ref, o.observer.xy, "observer.pose"),
+            (2, self.mov, encounter(o).x_mov, "observed.pose"),
         ):
             if grid is not None and not grid.contains(point):
-                number = 1 if grid is self.ref else 2
                 return (
-                    f"{name} at ({point[0]:.2f}, {point[1]:.2f}) m is outside map {number}. "
-                    f"Check {key} in the observation."
+                    f"Robot {robot} at ({point[0]:.2f}, {point[1]:.2f}) m is outside map {robot}. "
+                    f"Check {key} in {name_of(number, self.observations)}."
                 )
         return ""
 
     @staticmethod
     def of(case: Case) -> Inputs:
         """The inputs of a case folder."""
-        return Inputs(case.ref, case.mov, case.observation, case.name, case.truth)
+        return Inputs(case.ref, case.mov, case.observations, case.name, case.truth)

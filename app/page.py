@@ -133,12 +133,12 @@ class Page:
 
     def _job(self, **how: Any) -> Job | None:
         i = self._inputs
-        if i.ref is None or i.mov is None or i.observation is None:
+        if i.ref is None or i.mov is None or not i.observations:
             return None
         return Job(
             i.ref,
             i.mov,
-            i.observation,
+            i.observations,
             self._tuning.config,
             self._tuning.method,
             self._run.seed,

@@ -38,7 +38,7 @@ class Job:
 
     ref: GridMap
     mov: GridMap
-    observation: Observation
+    observations: tuple[Observation, ...]
     config: Any
     method: str = methods.DEFAULT_METHOD
     seed: int = 0
@@ -156,7 +156,7 @@ class Session:
         if not self._deliver(job, lambda: self._listener.begun(job)):
             return
         drawn_at = -FRAME
-        steps = self._run(job.method, job.ref, job.mov, job.observation, job.config, job.seed, self._memo)
+        steps = self._run(job.method, job.ref, job.mov, job.observations, job.config, job.seed, self._memo)
         for step in steps:
             story.tell(step)
             mark = self._waiting.mark

@@ -19,7 +19,7 @@ from algorithms.casefiles import (
     TRUTH_FILE,
     Case,
     Truth,
-    observation_to_bytes,
+    observations_to_bytes,
     truth_to_bytes,
 )
 from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
@@ -51,12 +51,12 @@ def round_hall() -> GridMap:
 
 def write_case(case: Case, folder: Path) -> Path:
     """Write a case as the files of its folder."""
-    rough = replace(case.observation, range=case.observation.range + 0.2, sigma_range=0.3)
+    rough = [replace(seen, range=seen.range + 0.2, sigma_range=0.3) for seen in case.observations]
     files = {
         **map_to_bytes(case.ref, "map1"),
         **map_to_bytes(case.mov, "map2"),
-        OBSERVATION_FILE: observation_to_bytes(case.observation),
-        ROUGH_OBSERVATION_FILE: observation_to_bytes(rough),
+        OBSERVATION_FILE: observations_to_bytes(case.observations),
+        ROUGH_OBSERVATION_FILE: observations_to_bytes(rough),
     }
     if case.truth is not None:
         files[TRUTH_FILE] = truth_to_bytes(case.truth)
@@ -68,15 +68,15 @@ def write_case(case: Case, folder: Path) -> Path:
 def small_case() -> Case:
     """Two maps of one flat, seen in part by each robot, and the sighting without error."""
     ref, mov, observation, T_ref_mov = flat_pair()
-    return Case("flat_1", ref, mov, observation, OBSERVATION_FILE, Truth(T_ref_mov))
+    return Case("flat_1", ref, mov, (observation,), OBSERVATION_FILE, Truth(T_ref_mov))
 
 
 @pytest.fixture(scope="session")
 def strangers(small_case: Case) -> Case:
     """Maps of two different buildings, and a sighting that never was."""
-    observation = replace(small_case.observation, observed_x=1.0, observed_y=-1.0, bearing_back=None)
+    seen = replace(small_case.observations[0], observed_x=1.0, observed_y=-1.0, bearing_back=None)
     truth = Truth(None, expected="refuse")
-    return replace(small_case, name="strangers_1", mov=round_hall(), observation=observation, truth=truth)
+    return replace(small_case, name="strangers_1", mov=round_hall(), observations=(seen,), truth=truth)
 
 
 @pytest.fixture(scope="session")

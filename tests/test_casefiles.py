@@ -11,15 +11,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from algorithms.casefiles import (
+    MOST_OBSERVATIONS,
     Truth,
     case_folders,
-    observation_from_bytes,
-    observation_to_bytes,
+    observations_from_bytes,
+    observations_to_bytes,
     read_case,
-    read_observation,
+    read_observations,
     read_truth,
     truth_to_bytes,
-    write_observation,
+    write_observations,
 )
 from algorithms.errors import InputFileError, SettingError
 from algorithms.gridmap import GridMap
@@ -69,27 +70,50 @@ measurement:
 """
 
 
+lists = st.lists(observations, min_size=1, max_size=5)
+
+
 def changed(old: str, new: str) -> bytes:
     assert old in OBSERVATION
     return OBSERVATION.replace(old, new).encode()
 
 
+def as_list(*entries: bytes) -> bytes:
+    """A YAML list of mappings, each given as a file of its own."""
+    return b"".join(b"- " + entry.strip().replace(b"\n", b"\n  ") + b"\n" for entry in entries)
+
+
 # --- observation ---
 
 
+@given(several=lists)
+def test_a_list_of_observations_reads_back_to_the_list_written(several):
+    assert observations_from_bytes("o.yaml", observations_to_bytes(several)) == tuple(several)
+
+
 @given(observation=observations)
-def test_an_observation_reads_back_the_same(observation):
-    assert observation_from_bytes("o.yaml", observation_to_bytes(observation)) == observation
+def test_an_observation_alone_is_a_mapping_and_a_list_of_it_reads_the_same(observation):
+    alone = observations_to_bytes([observation])
+    assert alone.startswith(b"observer: ")
+    assert observations_from_bytes("o.yaml", as_list(alone)) == observations_from_bytes("o.yaml", alone)
 
 
-def test_an_observation_on_disk_reads_back_the_same(tmp_path):
-    observation = Observation(Pose2(1, 2, 3), 4, 5, range=2.5, bearing=-0.5)
-    write_observation(tmp_path / "new" / "o.yaml", observation)
-    assert read_observation(tmp_path / "new" / "o.yaml") == observation
+@pytest.mark.parametrize("number", [1, 2, MOST_OBSERVATIONS])
+def test_observations_on_disk_read_back_the_same(tmp_path, number):
+    several = tuple(Observation(Pose2(k, 2, 3), 4, 5, range=2.5, bearing=-0.5) for k in range(number))
+    write_observations(tmp_path / "new" / "o.yaml", several)
+    assert read_observations(tmp_path / "new" / "o.yaml") == several
+
+
+@pytest.mark.parametrize("number", [0, MOST_OBSERVATIONS + 1])
+def test_as_many_observations_as_no_file_may_hold_are_not_written(number):
+    with pytest.raises(SettingError, match=f"1 to {MOST_OBSERVATIONS} observations, not {number}"):
+        observations_to_bytes([Observation(Pose2(), 4, 5, range=2.5, bearing=-0.5)] * number)
 
 
 def test_every_key_of_an_observation_counts():
-    assert observation_from_bytes("o.yaml", OBSERVATION.encode()) == Observation(
+    (read,) = observations_from_bytes("o.yaml", OBSERVATION.encode())
+    assert read == Observation(
         observer=Pose2(1, 2, 3),
         observed_x=4,
         observed_y=5,
@@ -104,7 +128,7 @@ def test_every_key_of_an_observation_counts():
 
 def test_what_may_be_left_out_has_its_default():
     text = b"observer: {pose: [1, 2, 3]}\nobserved: {pose: [4, 5]}\n"
-    o = observation_from_bytes("o.yaml", text + b"measurement: {range: 1e0, bearing: 0}\n")
+    (o,) = observations_from_bytes("o.yaml", text + b"measurement: {range: 1e0, bearing: 0}\n")
     assert (o.sigma_range, o.sigma_bearing) == (SIGMA_RANGE, SIGMA_BEARING)
     assert o.observed_heading is None
     assert o.bearing_back is None
@@ -113,7 +137,10 @@ def test_what_may_be_left_out_has_its_default():
 BAD_OBSERVATION = {
     "empty": (b"", "is empty"),
     "not YAML": (b"observer: {pose: [1, 2", "not YAML"),
-    "a list": (b"- 1\n", "holds no keys"),
+    "a number": (b"1\n", "holds no keys"),
+    "an empty list": (b"[]\n", "is an empty list; give 1 to 64 observations"),
+    "a list of numbers": (b"- 1\n", "observation 1 is '1', not a mapping"),
+    "a list too long": (b"- 1\n" * 65, "holds 65 observations; give 1 to 64"),
     "no observer": (changed("observer: {pose: [1.0, 2.0, 3.0]}\n", ""), "observer is missing"),
     "no observed": (changed("observed: {pose: [4.0, 5.0, 6.0]}\n", ""), "observed is missing"),
     "no measurement": (OBSERVATION.split("measurement")[0].encode(), "measurement is missing"),
@@ -129,6 +156,11 @@ BAD_OBSERVATION = {
     "range infinite": (changed("2.5", ".inf"), "measurement.range is '.inf'"),
     "range a word": (changed("2.5", "near"), "measurement.range is 'near'"),
     "range empty": (changed("2.5", ""), "measurement.range is empty"),
+    "bearing in degrees": (
+        changed("-0.5", "73.5"),
+        "measurement.bearing is 73.5 rad, more than a whole turn",
+    ),
+    "bearing_back in degrees": (changed("1.2", "-90"), "measurement.bearing_back is -90 rad"),
     "sigma zero": (changed("0.1", "0"), "measurement.sigma_range is 0 m"),
     "sigma negative": (changed("0.2", "-0.2"), "measurement.sigma_bearing is -0.2 rad"),
     "bearing_back a word": (changed("1.2", "left"), "measurement.bearing_back is 'left'"),
@@ -144,7 +176,7 @@ BAD_OBSERVATION = {
 def test_a_bad_observation_is_refused_in_words(case):
     data, words = BAD_OBSERVATION[case]
     with pytest.raises(InputFileError) as caught:
-        observation_from_bytes("o.yaml", data)
+        observations_from_bytes("o.yaml", data)
     message = str(caught.value)
     assert message.startswith("o.yaml: ")
     assert words in message
@@ -152,15 +184,39 @@ def test_a_bad_observation_is_refused_in_words(case):
     assert caught.value.remedy
 
 
+# what is wrong with one entry, and not with the YAML around it
+BAD_ENTRY = {
+    case: data for case, (data, _) in BAD_OBSERVATION.items() if data.startswith((b"obser", b"Obser"))
+}
+del BAD_ENTRY["not YAML"], BAD_ENTRY["twice"]
+
+
+@given(case=st.sampled_from(list(BAD_ENTRY)), before=st.integers(0, 3), after=st.integers(0, 3))
+def test_what_is_wrong_in_a_list_is_told_with_the_number_of_the_entry(case, before, after):
+    good = OBSERVATION.encode()
+    data = as_list(*[good] * before, BAD_ENTRY[case], *[good] * after)
+    with pytest.raises(InputFileError) as alone:
+        observations_from_bytes("o.yaml", BAD_ENTRY[case])
+    with pytest.raises(InputFileError) as caught:
+        observations_from_bytes("o.yaml", data)
+    assert caught.value.found == f"observation {before + 1}: {alone.value.found}"
+    assert caught.value.remedy == alone.value.remedy
+
+
+def test_an_entry_of_a_list_that_is_no_mapping_is_told_with_its_number():
+    with pytest.raises(InputFileError, match="observation 2 is empty, not a mapping"):
+        observations_from_bytes("o.yaml", as_list(OBSERVATION.encode()) + b"-\n")
+
+
 def test_an_unknown_key_is_answered_with_the_known_ones():
     with pytest.raises(InputFileError, match="known are observer, observed, measurement"):
-        observation_from_bytes("o.yaml", OBSERVATION.encode() + b"zzz: hi\n")
+        observations_from_bytes("o.yaml", OBSERVATION.encode() + b"zzz: hi\n")
 
 
 @given(data=st.binary(max_size=200))
 def test_any_bytes_for_an_observation_are_refused_and_nothing_else(data):
     with pytest.raises(InputFileError):
-        observation_from_bytes("o.yaml", data)
+        observations_from_bytes("o.yaml", data)
 
 
 # --- truth ---
@@ -222,7 +278,7 @@ def make_case(folder: Path, truth: bool = True) -> None:
     for i, name in enumerate(("map1.yaml", "map2.yaml")):
         write_map(folder / name, GridMap(np.full((2, 3), 100 * i, dtype=np.int8), 0.05))
     o = Observation(Pose2(1, 2, 3), 4, 5, range=2.5, bearing=-0.5)
-    write_observation(folder / "observation.yaml", o)
+    write_observations(folder / "observation.yaml", [o])
     if truth:
         (folder / "truth.yaml").write_bytes(truth_to_bytes(Truth(Pose2(1, 2, 3))))
 
@@ -233,7 +289,8 @@ def test_a_case_is_its_two_maps_the_sighting_and_the_truth(tmp_path):
     assert case.name == "home_1"
     assert case.ref.cells.tolist() == [[0] * 3] * 2
     assert case.mov.cells.tolist() == [[100] * 3] * 2
-    assert (case.observation.range, case.observation_file) == (2.5, "observation.yaml")
+    assert [observation.range for observation in case.observations] == [2.5]
+    assert case.observation_file == "observation.yaml"
     assert case.truth == Truth(Pose2(1, 2, 3))
 
 
@@ -247,9 +304,9 @@ def test_the_rough_observation_is_read_where_asked_for(tmp_path):
     with pytest.raises(InputFileError, match=r"observation_rough\.yaml: no such file"):
         read_case(tmp_path, rough=True)
     rough = Observation(Pose2(1, 2, 3), 4, 5, range=2.9, bearing=-0.4)
-    write_observation(tmp_path / "observation_rough.yaml", rough)
+    write_observations(tmp_path / "observation_rough.yaml", [rough, rough])
     case = read_case(tmp_path, rough=True)
-    assert (case.observation, case.observation_file) == (rough, "observation_rough.yaml")
+    assert (case.observations, case.observation_file) == ((rough, rough), "observation_rough.yaml")
 
 
 def test_the_cases_under_a_folder_are_found_in_order(tmp_path):

@@ -16,7 +16,7 @@ import yaml
 
 from algorithms import methods
 from algorithms.bounds import Bounds
-from algorithms.casefiles import read_case, write_observation
+from algorithms.casefiles import read_case, write_observations
 from algorithms.mapio import read_map
 from algorithms.methods import METHODS
 from algorithms.pose import Pose2
@@ -142,7 +142,7 @@ def test_a_merge_leaves_its_files_and_ends_with_0(case_folder, tmp_path, capsys)
 def test_the_merged_map_that_is_left_is_the_one_that_the_library_makes(case_folder, small_case, tmp_path):
     main(["merge", *inputs(case_folder), "--out", str(tmp_path), "--seed", "3"])
     left = read_map(tmp_path / "merged.yaml")
-    made = methods.merge(small_case.ref, small_case.mov, small_case.observation, seed=3).fusion.merged
+    made = methods.merge(small_case.ref, small_case.mov, small_case.observations, seed=3).fusion.merged
     assert (left.cells == made.cells).all()
     assert (left.origin, left.resolution) == (made.origin, made.resolution)
 
@@ -220,11 +220,10 @@ def test_a_bar_names_the_stage_at_work_where_a_person_looks(case_folder, tmp_pat
 
 def test_plain_images_merge_where_their_resolution_is_given(case_folder, tmp_path, capsys):
     case = read_case(case_folder)
-    o, first, second = case.observation, case.ref.origin.inverse(), case.mov.origin.inverse()
+    o, first, second = case.observations[0], case.ref.origin.inverse(), case.mov.origin.inverse()
     seen = second @ Pose2(o.observed_x, o.observed_y)  # without a YAML file the corner is the origin
-    write_observation(
-        tmp_path / "o.yaml", replace(o, observer=first @ o.observer, observed_x=seen.x, observed_y=seen.y)
-    )
+    moved = replace(o, observer=first @ o.observer, observed_x=seen.x, observed_y=seen.y)
+    write_observations(tmp_path / "o.yaml", [moved])
     for name in ("map1.pgm", "map2.pgm"):
         (tmp_path / name).write_bytes((case_folder / name).read_bytes())
     words = ["merge", str(tmp_path / "map1.pgm"), str(tmp_path / "map2.pgm"), "--out", str(tmp_path / "out")]

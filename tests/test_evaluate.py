@@ -25,7 +25,7 @@ def order(root, **more):
 
 @pytest.fixture(scope="module")
 def result(small_case):
-    return methods.merge(small_case.ref, small_case.mov, small_case.observation)
+    return methods.merge(small_case.ref, small_case.mov, small_case.observations)
 
 
 def off_by(case, result, metres=0.0, angle=0.0, **truth):

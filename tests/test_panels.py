@@ -9,15 +9,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from algorithms.casefiles import Truth, observation_to_bytes
+from algorithms.casefiles import Truth, observations_to_bytes
 from algorithms.errors import InputFileError
 from algorithms.mapio import map_to_bytes
 from algorithms.methods import merge, run
+from algorithms.pose import Pose2
 from algorithms.steps import CandidatesDetail, HoughDetail, MergeResult
 from app import charts
 from app.export import archive
 from app.inputs import Inputs
 from app.panels.files import Upload, inputs_from
+from app.panels.observation import observations_html
 from app.panels.result import numbers, result_html
 from app.panels.tables import box, table
 from app.story import Story
@@ -31,7 +33,7 @@ def inputs(small_case) -> Inputs:
 
 @pytest.fixture(scope="module")
 def result(inputs) -> MergeResult:
-    return merge(inputs.ref, inputs.mov, inputs.observation)
+    return merge(inputs.ref, inputs.mov, inputs.observations)
 
 
 def test_what_is_missing_is_said_in_the_order_of_the_work(inputs):
@@ -39,17 +41,41 @@ def test_what_is_missing_is_said_in_the_order_of_the_work(inputs):
     assert "Load map 2" in Inputs(ref=inputs.ref).missing()
     assert "Load map 1" in Inputs(mov=inputs.mov).missing()
     assert "Load the observation" in Inputs(inputs.ref, inputs.mov).missing()
-    assert "two maps" in Inputs(observation=inputs.observation).missing()
+    assert "two maps" in Inputs(observations=inputs.observations).missing()
     assert inputs.missing() == ""
     assert inputs.complete
 
 
 def test_a_robot_outside_its_map_is_told_with_the_key_to_check(inputs):
     assert inputs.doubt() == ""
-    lost = replace(inputs, observation=replace(inputs.observation, observed_x=1e4))
+    lost = replace(inputs, observations=(replace(inputs.observations[0], observed_x=1e4),))
     assert "Robot 2" in lost.doubt()
     assert "outside map 2" in lost.doubt()
     assert "observed.pose" in lost.doubt()
+
+
+def test_of_several_sightings_each_odd_one_is_told_with_its_number(inputs):
+    (seen,) = inputs.observations
+    lost, astray = replace(seen, observed_x=1e4), replace(seen, observer=Pose2(1e4, 0.0))
+    several = replace(inputs, observations=(seen, lost, seen, astray))
+    assert several.doubts()[0] == several.doubts()[2] == ""
+    assert "Check observed.pose in observation 2." in several.doubt()
+    assert "Check observer.pose in observation 4." in several.doubt()
+
+
+def test_the_panel_has_a_table_per_sighting_and_counts_them_where_there_are_several(inputs):
+    assert "No observation yet." in observations_html(Inputs())
+    assert "Observation 1" not in observations_html(inputs)
+    near, far = (replace(inputs.observations[0], range=metres) for metres in (1.25, 3.75))
+    page = observations_html(replace(inputs, observations=(near, far)))
+    told = ["Observation 1 of 2", "1.250 ±", "Observation 2 of 2", "3.750 ±"]
+    assert sorted(told, key=page.index) == told
+
+
+def test_an_odd_sighting_is_told_above_its_own_table(inputs):
+    lost = replace(inputs.observations[0], observed_x=1e4)
+    page = observations_html(replace(inputs, observations=(inputs.observations[0], lost)))
+    assert page.index("Observation 1 of 2") < page.index("outside map 2") < page.index("Observation 2 of 2")
 
 
 def test_uploads_become_inputs_as_far_as_they_go(inputs):
@@ -58,8 +84,8 @@ def test_uploads_become_inputs_as_far_as_they_go(inputs):
     assert inputs_from(uploads).ref is None
     uploads["image1"] = Upload("m.pgm", files["m.pgm"])
     assert np.array_equal(inputs_from(uploads).ref.cells, inputs.ref.cells)
-    uploads["observation"] = Upload("o.yaml", observation_to_bytes(inputs.observation))
-    assert inputs_from(uploads).observation == inputs.observation
+    uploads["observation"] = Upload("o.yaml", observations_to_bytes(inputs.observations))
+    assert inputs_from(uploads).observations == inputs.observations
 
 
 def test_a_bad_upload_is_named(inputs):
@@ -95,7 +121,7 @@ def test_the_archive_holds_the_map_and_its_transform(result):
 
 def test_every_step_of_a_run_has_a_sentence_and_progress_never_falls(inputs):
     story, shares = Story(), []
-    for step in run("spectra-swarm", inputs.ref, inputs.mov, inputs.observation):
+    for step in run("spectra-swarm", inputs.ref, inputs.mov, inputs.observations):
         story.tell(step)
         assert sentence(story) != "Starting."
         shares.append(progress(story))
@@ -105,7 +131,7 @@ def test_every_step_of_a_run_has_a_sentence_and_progress_never_falls(inputs):
 
 def test_the_curves_share_one_axis_and_mark_what_was_chosen(inputs):
     story = Story()
-    for step in run("spectra-swarm", inputs.ref, inputs.mov, inputs.observation):
+    for step in run("spectra-swarm", inputs.ref, inputs.mov, inputs.observations):
         story.tell(step)
     match, best = story.get(HoughDetail).match, story.get(CandidatesDetail).candidates[0]
     angles, correlation, marks, chosen = charts.turn_correlation(match, best.T_ref_mov.theta)

@@ -6,6 +6,7 @@ from drawn import OBSERVED, OBSERVER, T_MOV_WORLD, T_REF_WORLD, drawn_map, flat_
 
 from algorithms import kernels
 from algorithms.augment import AugmentConfig
+from algorithms.errors import SettingError
 from algorithms.fuse import Conflict
 from algorithms.gridmap import GridMap
 from algorithms.methods import METHODS, merge, run
@@ -58,6 +59,28 @@ def test_maps_of_different_resolution_are_merged():
 def test_a_map_with_a_yawed_origin_is_merged():
     yawed = drawn_map(T_MOV_WORLD, origin_yaw=0.8, seen=(2.5, -1, 10, 8))
     assert off(merge(REF, yawed, SEEN))[0] < 0.1
+
+
+@pytest.mark.parametrize("method", list(METHODS))
+def test_one_observation_may_be_given_alone_or_in_a_list(method):
+    alone = merge(REF, MOV, SEEN, method)
+    for listed in ([SEEN], (SEEN,)):
+        assert merge(REF, MOV, listed, method).T_ref_mov == alone.T_ref_mov
+
+
+@pytest.mark.parametrize("method", SURE)
+def test_several_observations_are_all_told_and_the_maps_merged(method):
+    there = [Pose2(4.6, 3.2, 2.0), Pose2(3.5, 6.0), Pose2(5.6, 0.8)]
+    several = [sighting(T_REF_WORLD, T_MOV_WORLD, OBSERVER, observed) for observed in there]
+    steps = list(run(method, REF, MOV, several))
+    places = [at.x_mov for at in steps[0].detail.encounters]
+    assert np.allclose(places, [(T_MOV_WORLD @ observed).xy for observed in there])
+    assert off(steps[-1].detail)[0] < 0.1
+
+
+def test_no_observation_at_all_is_refused_at_once():
+    with pytest.raises(SettingError, match="at least one"):
+        run("spectra-swarm", REF, MOV, [])
 
 
 @pytest.mark.parametrize("method", list(METHODS))

@@ -20,7 +20,7 @@ from app.palette import LIGHT
 
 @pytest.fixture(scope="module")
 def result(small_case):
-    return merge(small_case.ref, small_case.mov, small_case.observation)
+    return merge(small_case.ref, small_case.mov, small_case.observations)
 
 
 def test_the_report_has_the_keys_that_other_programs_read(result):

@@ -22,7 +22,7 @@ def test_any_number_of_other_buildings_can_be_simulated(tmp_path, capsys):
     assert all(name in said for name in made)
     for folder in case_folders(tmp_path):
         case = read_case(folder)
-        at = encounter(case.observation)
+        at = encounter(case.observations[0])
         off = case.truth.T_ref_mov.apply(at.x_mov) - at.x_ref
         assert abs(off).max() < 0.6
 

@@ -24,11 +24,11 @@ SEEN = Observation(Pose2(), 0.1, 0.1, 0.1, 0.0)
 
 
 def detail(number: float = 0.0) -> ObservationDetail:
-    return ObservationDetail(Encounter(np.full(2, number), np.zeros(2), np.eye(2)))
+    return ObservationDetail((Encounter(np.full(2, number), np.zeros(2), np.eye(2)),))
 
 
 def job(config: object = None, **how) -> Job:
-    return Job(ROOM, ROOM, SEEN, config, **how)
+    return Job(ROOM, ROOM, (SEEN,), config, **how)
 
 
 class Ear:
@@ -123,7 +123,7 @@ def test_a_newer_request_cuts_the_older_one_short_even_while_it_waits(start, ear
 def test_of_many_requests_the_newest_wins(start, ear):
     held, entered = Event(), Event()
 
-    def run(method, ref, mov, observation, config, *_) -> Iterator[Step]:
+    def run(method, ref, mov, observations, config, *_) -> Iterator[Step]:
         entered.set()
         held.wait(PATIENCE)
         yield Step("observe", detail(), 0.0)
@@ -160,7 +160,7 @@ def test_stop_without_a_run_says_nothing(start, ear):
 
 @pytest.mark.parametrize("error", [MapMergeError("a.yaml: is empty; give a map"), ZeroDivisionError("bug")])
 def test_an_error_is_told_and_the_session_lives_on(start, ear, error, caplog):
-    def run(method, ref, mov, observation, config, *_) -> Iterator[Step]:
+    def run(method, ref, mov, observations, config, *_) -> Iterator[Step]:
         if config == "bad":
             raise error
         yield Step("observe", detail(), 0.0)

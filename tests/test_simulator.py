@@ -222,7 +222,7 @@ def test_walls_are_thicker_than_one_cell_somewhere_and_ragged(flat):
 @pytest.mark.parametrize("name", DESCRIPTIONS)
 def test_truth_puts_the_seen_robot_where_it_was_seen(name, rough):
     case = read_case(SHIPPED / name, rough=rough)
-    at = encounter(case.observation)
+    at = encounter(case.observations[0])
     off = case.truth.T_ref_mov.apply(at.x_mov) - at.x_ref
     covariance = at.covariance + np.eye(2) * 0.08**2  # drift of both robots, which truth averages
     assert off @ np.linalg.solve(covariance, off) < 16  # four standard deviations
@@ -241,7 +241,7 @@ def test_overlap_is_what_was_asked_and_what_the_files_show(name):
 def test_walls_part_when_the_true_transform_is_turned_or_shifted(name):
     case = read_case(SHIPPED / name)
     T = case.truth.T_ref_mov
-    pivot = T.apply(encounter(case.observation).x_mov)
+    pivot = T.apply(encounter(case.observations[0]).x_mov)
 
     def overlap_after(x, y, turn):
         moved = Pose2(*pivot, 0.0) @ Pose2(x, y, turn) @ Pose2(*(-pivot), 0.0) @ T
@@ -257,8 +257,8 @@ def test_walls_part_when_the_true_transform_is_turned_or_shifted(name):
 
 def test_bilateral_sighting_of_the_office_agrees_with_its_truth():
     case = read_case(SHIPPED / "office_r2_r1")
-    at = encounter(case.observation)
-    distance, angle = pose_error(bilateral_transform(case.observation), case.truth.T_ref_mov, at.x_mov)
+    at = encounter(case.observations[0])
+    distance, angle = pose_error(bilateral_transform(case.observations[0]), case.truth.T_ref_mov, at.x_mov)
     assert distance < 0.4
     assert angle < np.deg2rad(9)  # three standard deviations of two bearings
 

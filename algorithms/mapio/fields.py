@@ -45,7 +45,8 @@ class Fields:
 
     source : name of the file as the user knows it
     values : texts, lists and mappings by key
-    prefix : path to this mapping inside the file, with a dot at its end; empty for the file itself
+    prefix : way to this mapping inside the file, as it stands before a key: "tolerance.",
+             "observation 2: "; empty for the file itself
     """
 
     source: str
@@ -130,6 +131,33 @@ def parse(source: str, data: bytes, what: str) -> Fields:
     what   : what the file should be, with its article: "a map's YAML file"
     raises : InputFileError where it is too long, not YAML, or not a mapping
     """
+    return _mapping(source, _load(source, data, what), what)
+
+
+def parse_entries(source: str, data: bytes, what: str, entry: str, most: int) -> list[Fields]:
+    """The fields of a YAML file that holds one mapping or a list of them, 1 … ``most``.
+
+    entry  : what one of them is called; errors in a list then begin with "ENTRY 2: "
+    raises : InputFileError as ``parse`` does, and for a list that is empty, too long, or holds
+             anything but mappings
+    """
+    values = _load(source, data, what)
+    if not isinstance(values, list):
+        return [_mapping(source, values, what)]
+    if not 1 <= len(values) <= most:
+        found = f"holds {len(values)} {entry}s" if values else "is an empty list"
+        raise InputFileError(source, found, f"give 1 to {most} {entry}s")
+    for number, value in enumerate(values, 1):
+        if not isinstance(value, dict):
+            raise InputFileError(
+                source,
+                f"{entry} {number} is {shown(value)}, not a mapping",
+                "give lines of the form key: value",
+            )
+    return [Fields(source, value, f"{entry} {number}: ") for number, value in enumerate(values, 1)]
+
+
+def _load(source: str, data: bytes, what: str) -> Any:
     if len(data) > MAX_YAML_BYTES:
         raise InputFileError(
             source,
@@ -137,11 +165,14 @@ def parse(source: str, data: bytes, what: str) -> Fields:
             "give the small YAML file, not the image",
         )
     try:
-        values = yaml.load(data, Loader=_TextLoader)
+        return yaml.load(data, Loader=_TextLoader)
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise InputFileError(
             source, f"is not YAML ({_cause(error)})", f"give {what}, or mend the line"
         ) from error
+
+
+def _mapping(source: str, values: Any, what: str) -> Fields:
     if not isinstance(values, dict):
         found = "is empty" if values in (None, "") else "holds no keys"
         raise InputFileError(source, found, f"give {what}, with lines of the form key: value")

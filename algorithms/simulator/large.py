@@ -41,7 +41,8 @@ def simulate_large(cells: int = 4000, seed: int = 0) -> Case:
         visits = sorted({whole(rng, 0, n - 1) for _ in range(VISITS)})
         tour = surveyor.tour(visits, visits[0])
         robots.append(drive(building, planner, tour, replace(body, turn=quarter), step=0.4))
-    pair = pair_up(building, planner, *robots)
+    observer, observed = robots
+    pair = pair_up(building, planner, observer, observed)
     if pair is None:
         raise RuntimeError("the two robots never meet")
     source = f"mapmeld simulator, campus of {metres:.0f} m seed {seed}"

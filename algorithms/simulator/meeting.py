@@ -18,6 +18,7 @@ from algorithms.simulator.lidar import sees
 
 NEAREST, FURTHEST = 1.2, 5.5  # metres between two robots that see one another
 SURROUNDINGS = 4.0  # metres around the seen robot that both maps should know
+APART = 3.0  # metres between the places of two meetings, at least: nearer ones tell the same twice
 ROUGH_RANGE, ROUGH_BEARING = 0.3, 0.10472  # metres, radians (6°): the same encounter measured badly
 SAME_WALL = 0.1  # metres; two cells of the usual map
 
@@ -30,12 +31,18 @@ class Meeting:
     observed: int
 
 
-def find_meeting(building: Building, observer: Track, observed: Track, walls: FloatArray) -> Meeting | None:
-    """The pair of poses, in sight of one another, around which both robots know most walls.
+def find_meetings(
+    building: Building, observer: Track, observed: Track, walls: FloatArray, most: int = 1
+) -> tuple[Meeting, ...]:
+    """Pairs of poses in sight of one another, the first where both robots know most walls around.
+
+    Every further one is as far from those before as it can be. Which of them came first is not asked:
+    the drives have no clock.
 
     observer, observed : true drives; world frame
     walls   : (M, 2) walls both have seen; metres, world frame
-    returns : None where the two never come into sight at a fit distance
+    most    : how many; the first ones are the same for any number
+    returns : fewer, or none, where the two do not come into sight at a fit distance that often
     """
     # Every second scan and every wall in small buildings; large ones are thinned out.
     i = np.arange(0, len(observer), max(2, len(observer) // 500))
@@ -44,14 +51,24 @@ def find_meeting(building: Building, observer: Track, observed: Track, walls: Fl
     delta = observed.xy[j][None, :, :] - observer.xy[i][:, None, :]
     squared = delta[..., 0] * delta[..., 0] + delta[..., 1] * delta[..., 1]
     near = np.argwhere((squared >= NEAREST * NEAREST) & (squared <= FURTHEST * FURTHEST))
-    if len(near) == 0:
-        return None
     known = _walls_around(observed.xy[j], walls)
     order = np.lexsort((near[:, 0], near[:, 1], -known[near[:, 1]]))
-    for a, b in near[order][:: max(1, len(near) // 4000)].tolist():
-        if sees(building, observer.xy[i[a]], observed.xy[j[b]]):
-            return Meeting(int(i[a]), int(j[b]))
-    return None
+    near = near[order][:: max(1, len(near) // 4000)]
+    scans = np.column_stack([i[near[:, 0]], j[near[:, 1]]])  # (K, 2) of observer and observed
+    places = observed.xy[scans[:, 1]]
+    apart = np.full(len(scans), np.inf)  # m², of each place from the nearest meeting
+    found: list[Meeting] = []
+    while len(found) < most:
+        far = np.argsort(-apart, kind="stable")  # of equally far ones, most walls first
+        for a, b in scans[far[apart[far] >= APART * APART]].tolist():
+            if sees(building, observer.xy[a], observed.xy[b]):
+                break
+        else:
+            break
+        found.append(Meeting(a, b))
+        dx, dy = (places - observed.xy[b]).T
+        apart = np.minimum(apart, dx * dx + dy * dy)
+    return tuple(found)
 
 
 def _walls_around(xy: FloatArray, walls: FloatArray) -> Ticks:

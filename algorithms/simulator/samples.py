@@ -14,7 +14,7 @@ from algorithms.casefiles import (
     SECOND_MAP_FILE,
     TRUTH_FILE,
     Truth,
-    observation_to_bytes,
+    observations_to_bytes,
     truth_to_bytes,
 )
 from algorithms.mapio import map_to_bytes
@@ -115,8 +115,8 @@ def case_files(case: Case) -> dict[str, bytes]:
     return {
         **map_to_bytes(case.ref, Path(FIRST_MAP_FILE).stem),
         **map_to_bytes(case.mov, Path(SECOND_MAP_FILE).stem),
-        OBSERVATION_FILE: observation_to_bytes(case.observation),
-        ROUGH_OBSERVATION_FILE: observation_to_bytes(case.rough),
+        OBSERVATION_FILE: observations_to_bytes(case.observations),
+        ROUGH_OBSERVATION_FILE: observations_to_bytes(case.rough),
         TRUTH_FILE: truth_to_bytes(truth),
     }
 
@@ -134,11 +134,13 @@ def regenerate(folder: Path) -> list[Case]:
     return cases
 
 
-def generate_cases(kind: str, seeds: Iterable[int], folder: Path, overlap: float | None = None) -> list[Path]:
+def generate_cases(
+    kind: str, seeds: Iterable[int], folder: Path, overlap: float | None = None, sightings: int = 1
+) -> list[Path]:
     """Write two cases per seed, in folders ``kind_SEED_r2_r1`` and ``kind_SEED_r3_r2``."""
     folders = []
     for seed in seeds:
-        for case in simulate(kind, seed, overlap).cases:
+        for case in simulate(kind, seed, overlap, sightings=sightings).cases:
             robots = case.name.split("_", 1)[1]
             folders.append(Path(folder) / f"{kind}_{seed:04d}_{robots}")
             write_case(folders[-1], case)

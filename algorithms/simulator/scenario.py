@@ -18,7 +18,7 @@ from algorithms.simulator.meeting import (
     ROUGH_BEARING,
     ROUGH_RANGE,
     Meeting,
-    find_meeting,
+    find_meetings,
     fit,
     in_belief,
     measured_overlap,
@@ -35,22 +35,22 @@ ROUNDS = 6  # of choosing tours anew where the measured overlap is off
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """Two maps, one sighting, and the truth: all that a case folder holds.
+    """Two maps, one sighting or several, and the truth: all that a case folder holds.
 
-    ref, mov    : maps of observer and observed robot, each in its own frame
-    observation : the sighting; ``rough`` is the same one measured badly (0.3 m, 6°)
-    T_ref_mov   : truth, a least-squares fit over the walls both saw; None where the two maps are
-                  not of one place and the merge is to be refused
-    overlap     : share of the smaller map's occupied cells that the other has too, 0 … 1
-    truth_rms   : what the fit leaves, because each map is bent in its own way; metres
-    source      : which building of which seed
+    ref, mov     : maps of observer and observed robot, each in its own frame
+    observations : the sightings; ``rough`` are the same ones measured badly (0.3 m, 6°)
+    T_ref_mov    : truth, a least-squares fit over the walls both saw; None where the two maps are
+                   not of one place and the merge is to be refused
+    overlap      : share of the smaller map's occupied cells that the other has too, 0 … 1
+    truth_rms    : what the fit leaves, because each map is bent in its own way; metres
+    source       : which building of which seed
     """
 
     name: str
     ref: GridMap
     mov: GridMap
-    observation: Observation
-    rough: Observation
+    observations: tuple[Observation, ...]
+    rough: tuple[Observation, ...]
     T_ref_mov: Pose2 | None
     overlap: float
     truth_rms: float
@@ -61,13 +61,13 @@ class Case:
 class Pair:
     """An observer, the robot it observed, and how their frames lie.
 
-    meeting   : the scans at which they saw one another
+    meetings  : the scans at which they saw one another, at least one
     T_ref_mov, truth_rms, overlap : as in ``Case``
     """
 
     observer: Robot
     observed: Robot
-    meeting: Meeting
+    meetings: tuple[Meeting, ...]
     T_ref_mov: Pose2
     truth_rms: float
     overlap: float
@@ -95,6 +95,7 @@ def simulate(
     both_ways: bool | None = None,
     reach: float | None = None,
     sizes: tuple[int, int] | None = None,
+    sightings: int = 1,
 ) -> Scenario:
     """Simulate three robots in a building: R2 sees R1, R3 sees R2.
 
@@ -112,6 +113,8 @@ def simulate(
         Without it one scenario in four has it.
     reach : range of the lidars in metres. Without it drawn from 6 … 9.
     sizes : fewest and most stops of a tour. Without it, by the building.
+    sightings : how often an observer sees the other robot, at places well apart; less often where the
+        two meet less often. All else is the same for any number, the first sightings included.
 
     Returns
     -------
@@ -145,14 +148,18 @@ def simulate(
         r2, r1 = (drive(building, planner, t, b) for t, b in zip(tours, (b2, b1), strict=True))
         return r2, r1
 
-    pair_1 = _nearest_pair(building, planner, two_robots, aim_1, near_1, stream(seed, kind, "R2 and R1"))
+    pair_1 = _nearest_pair(
+        building, planner, two_robots, aim_1, near_1, stream(seed, kind, "R2 and R1"), sightings
+    )
     r2 = pair_1.observer
 
     def third_robot(aim: float, rng: np.random.Generator) -> tuple[Robot, Robot]:
         tour = surveyor.partner(rng, r2.tour, aim, (fewest, most))
         return drive(building, planner, tour, b3), r2
 
-    pair_2 = _nearest_pair(building, planner, third_robot, aim_2, near_2, stream(seed, kind, "R3 and R2"))
+    pair_2 = _nearest_pair(
+        building, planner, third_robot, aim_2, near_2, stream(seed, kind, "R3 and R2"), sightings
+    )
     source = f"mapmeld simulator, {kind} seed {seed}"
     pairs = (pair_1, pair_2)
     cases = tuple(
@@ -168,6 +175,7 @@ def _nearest_pair(
     target: float,
     tolerance: float,
     rng: np.random.Generator,
+    sightings: int,
 ) -> Pair:
     """Let robots drive until their maps overlap as asked; the nearest of a few rounds.
 
@@ -178,7 +186,7 @@ def _nearest_pair(
     for round_ in range(4 * ROUNDS):
         if best is not None and (round_ >= ROUNDS or abs(best.overlap - target) <= tolerance):
             break
-        pair = pair_up(building, planner, *propose(aim, rng))
+        pair = pair_up(building, planner, *propose(aim, rng), sightings)
         if pair is None:
             aim = min(0.95, aim + 0.03)  # drives that share more are likelier to meet
             continue
@@ -190,20 +198,22 @@ def _nearest_pair(
     return best
 
 
-def pair_up(building: Building, planner: Planner, observer: Robot, observed: Robot) -> Pair | None:
+def pair_up(
+    building: Building, planner: Planner, observer: Robot, observed: Robot, sightings: int = 1
+) -> Pair | None:
     """Let two robots meet and find how their frames truly lie; None where they never do."""
     walls = _walls(planner, observer, observed)
     if len(walls) < 10:
         return None
-    meeting = find_meeting(building, observer.true, observed.true, walls)
-    if meeting is None:
+    meetings = find_meetings(building, observer.true, observed.true, walls, sightings)
+    if not meetings:
         return None
     T_ref_mov, rms = fit(
         in_belief(observer.true, observer.believed, walls),
         in_belief(observed.true, observed.believed, walls),
     )
     overlap = measured_overlap(observer.grid, observed.grid, T_ref_mov)
-    return Pair(observer, observed, meeting, T_ref_mov, round(rms, 4), round(overlap, 3))
+    return Pair(observer, observed, meetings, T_ref_mov, round(rms, 4), round(overlap, 3))
 
 
 def _walls(planner: Planner, a: Robot, b: Robot) -> FloatArray:
@@ -216,12 +226,19 @@ def case_of(pair: Pair, kind: str, source: str, rng: np.random.Generator, both_w
     a, b = pair.observer, pair.observed
     true, believed = (a.true, b.true), (a.believed, b.believed)
     rough = (ROUGH_RANGE, ROUGH_BEARING)
+    sighted = [
+        (
+            observe(true, believed, meeting, rng, both_ways=both_ways),
+            observe(true, believed, meeting, rng, rough, both_ways),
+        )
+        for meeting in pair.meetings
+    ]
     return Case(
         name=f"{kind}_{a.body.name}_{b.body.name}".lower(),
         ref=a.grid,
         mov=b.grid,
-        observation=observe(true, believed, pair.meeting, rng, both_ways=both_ways),
-        rough=observe(true, believed, pair.meeting, rng, rough, both_ways),
+        observations=tuple(well for well, _ in sighted),
+        rough=tuple(badly for _, badly in sighted),
         T_ref_mov=pair.T_ref_mov,
         overlap=pair.overlap,
         truth_rms=pair.truth_rms,
@@ -232,14 +249,14 @@ def case_of(pair: Pair, kind: str, source: str, rng: np.random.Generator, both_w
 def mismatch(a: Case, b: Case) -> Case:
     """A wrong pairing: the observer of one case and the observed robot of another building's.
 
-    The sighting is forged from both halves; the only right answer is to refuse.
+    The sightings, as many as both have, are forged from halves; the only right answer is to refuse.
     """
     return Case(
         name=f"wrong_{a.name}_{b.name}",
         ref=a.ref,
         mov=b.mov,
-        observation=_forged(a.observation, b.observation),
-        rough=_forged(a.rough, b.rough),
+        observations=tuple(map(_forged, a.observations, b.observations)),
+        rough=tuple(map(_forged, a.rough, b.rough)),
         T_ref_mov=None,
         overlap=0.0,
         truth_rms=0.0,

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 USAGE = "MAP1 MAP2 --observation FILE --out DIR [--json] [--force] [options]"
 DESCRIPTION = """\
-Merge two maps from one sighting of robot 2 by robot 1.
+Merge two maps from one sighting of robot 2 by robot 1, or from several in one file.
 
 Examples:
   mapmeld merge map1.yaml map2.yaml --observation observation.yaml --out result
@@ -74,10 +74,10 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
 
     config = config_from(args)
     began = perf_counter()
-    ref, mov, observation = read_inputs(args)
+    ref, mov, observations = read_inputs(args)
     load_s = perf_counter() - began
     _check_folder(args)
-    result = result_of(methods.run(args.method, ref, mov, observation, config, args.seed))
+    result = result_of(methods.run(args.method, ref, mov, observations, config, args.seed))
     named = {"map1": args.map1, "map2": args.map2, "observation": args.observation}
     report = report_of(result, config, load_s, {key: str(path) for key, path in named.items()})
     accepted = result.verdict.accepted
@@ -91,9 +91,9 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     return 0 if accepted else 1
 
 
-def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, Observation]:
-    """Both maps and the observation that the command line names."""
-    from algorithms.casefiles import read_observation
+def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, tuple[Observation, ...]]:
+    """Both maps and the observations that the command line names."""
+    from algorithms.casefiles import read_observations
     from algorithms.mapio import IMAGE_SUFFIXES, read_image, read_map
 
     maps = []
@@ -101,7 +101,7 @@ def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, Observation
         plain = resolution is not None and path.suffix.lower() in IMAGE_SUFFIXES
         maps.append(read_image(path, resolution) if plain else read_map(path))
     ref, mov = maps
-    return ref, mov, read_observation(args.observation)
+    return ref, mov, read_observations(args.observation)
 
 
 def _leave(folder: Path, files: Mapping[str, bytes], stale: Sequence[str]) -> list[str]:

@@ -89,9 +89,9 @@ def _case(args: argparse.Namespace) -> Case | None:
     from app.paths import samples
 
     if args.map1 is not None:
-        ref, mov, observation = read_inputs(args)
+        ref, mov, observations = read_inputs(args)
         return Case(
-            f"{args.map1.stem} + {args.map2.stem}", ref, mov, observation, args.observation.name, None
+            f"{args.map1.stem} + {args.map2.stem}", ref, mov, observations, args.observation.name, None
         )
     known = samples()
     if not known:

@@ -9,7 +9,7 @@ from pathlib import PurePath
 
 import viser
 
-from algorithms.casefiles import observation_from_bytes, read_case
+from algorithms.casefiles import observations_from_bytes, read_case
 from algorithms.errors import MapMergeError
 from algorithms.mapio import map_from_bytes
 from app import paths
@@ -39,7 +39,7 @@ SLOTS = {
 
 
 def inputs_from(uploads: dict[str, Upload]) -> Inputs:
-    """What the files so far make up: a map where both its files are there, an observation.
+    """What the files so far make up: a map where both its files are there, observations.
 
     raises : MapMergeError that names the file, the finding and the remedy
     """
@@ -54,7 +54,7 @@ def inputs_from(uploads: dict[str, Upload]) -> Inputs:
     return Inputs(
         ref=grid(1),
         mov=grid(2),
-        observation=observation_from_bytes(seen.name, seen.content) if seen else None,
+        observations=observations_from_bytes(seen.name, seen.content) if seen else (),
         name="your files" if uploads else "",
     )
 
@@ -96,7 +96,7 @@ class FilesPanel:
         except MapMergeError as error:
             self._report(error)
             return
-        self._load(Inputs(case.ref, case.mov, case.observation, case.name, case.truth))
+        self._load(Inputs.of(case))
 
     def _take_upload(self, key: str, file: viser.UploadedFile) -> None:
         before = self._uploads.get(key)

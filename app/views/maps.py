@@ -201,10 +201,11 @@ class MapView:
         return " · ".join(parts)
 
     def _robots(self, together: bool, seen: bool = True) -> None:
-        o, at, mov = self._inputs.observation, self._inputs.at, self._inputs.mov is not None
-        if o is None or at is None or self._inputs.ref is None:
+        at, mov = self._inputs.at, self._inputs.mov is not None
+        if at is None or self._inputs.ref is None:
             self._clear("robots", "sight")
             return
+        o = self._inputs.observations[0]
         here, colours = self.layout, self._palette
         self._stage.layer("robots", signs.robots(o, here, colours, mov, together, seen))
         self._stage.layer("sight", signs.sight(o, at, here, colours, mov, together, close=not seen))

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from algorithms.augment import augment
-from algorithms.casefiles import write_observation
+from algorithms.casefiles import write_observations
 from algorithms.gridmap import GridMap
 from algorithms.mapio import write_map
 from algorithms.methods import merge
@@ -136,7 +136,7 @@ def bench_whole_merge(pair, benchmark):
     stages = []
 
     def whole() -> None:
-        stages.append(merge(pair.ref, pair.mov, pair.observation).timings_s)
+        stages.append(merge(pair.ref, pair.mov, pair.observations).timings_s)
 
     benchmark.pedantic(whole, rounds=9, warmup_rounds=1)
     benchmark.extra_info.update(
@@ -150,7 +150,7 @@ def bench_huge_pair(tmp_path: Path, benchmark):
     case = simulate_large(4000)
     write_map(tmp_path / "map1.yaml", case.ref)
     write_map(tmp_path / "map2.yaml", case.mov)
-    write_observation(tmp_path / "observation.yaml", case.observation)
+    write_observations(tmp_path / "observation.yaml", case.observations)
     command = [
         sys.executable, "-m", "app", "merge", str(tmp_path / "map1.yaml"), str(tmp_path / "map2.yaml"),
         "--observation", str(tmp_path / "observation.yaml"), "--out", str(tmp_path / "out"),

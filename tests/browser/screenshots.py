@@ -29,13 +29,13 @@ def main(folder: Path, names: list[str]) -> None:
     """Drive the page through a merge and keep a picture of every stage."""
     folder.mkdir(parents=True, exist_ok=True)
     case = read_case(samples()[SAMPLE])
-    o = case.observation
+    o = case.observations[0]
     wrong = Observation(o.observer, o.observed_x + 6.0, o.observed_y - 5.0, o.range, o.bearing)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=find_chromium(), args=ARGUMENTS)
         for name, initial, script in (
             ("", case, a_merge),
-            ("refused", Case("a wrong sighting", case.ref, case.mov, wrong, "", None), a_refusal),
+            ("refused", Case("a wrong sighting", case.ref, case.mov, (wrong,), "", None), a_refusal),
             ("empty", None, an_empty_page),
         ):
             server = make_server(port=0, initial=initial)

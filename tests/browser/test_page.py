@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from driver import settle
 
-from algorithms.casefiles import Case, observation_to_bytes
+from algorithms.casefiles import Case, observations_to_bytes
 from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.mapio import map_to_bytes, read_map
 from algorithms.methods import METHODS, merge
@@ -95,7 +95,7 @@ def test_a_broken_upload_is_told_by_name_and_the_page_lives_on(tab, tmp_path):
 
 
 def test_forgotten_uploads_are_gone_from_the_page(tab, tmp_path, sample: Case):
-    (tmp_path / "o.yaml").write_bytes(observation_to_bytes(sample.observation))
+    (tmp_path / "o.yaml").write_bytes(observations_to_bytes(sample.observations))
     tab.unfold("Upload your own")
     tab.upload(4, tmp_path / "o.yaml")
     settle(lambda: "load the two maps" in tab.state, "what to load next")
@@ -141,7 +141,7 @@ def test_the_downloaded_map_reads_back_to_the_merged_cells(tab, tmp_path, sample
         packed.extractall(tmp_path)
         assert {"merged.yaml", "merged.pgm"} <= set(packed.namelist())
     back = read_map(tmp_path / "merged.yaml")
-    expected = merge(sample.ref, sample.mov, sample.observation).fusion.merged
+    expected = merge(sample.ref, sample.mov, sample.observations).fusion.merged
     assert np.array_equal(back.cells, expected.cells)
     assert (back.resolution, back.origin) == (expected.resolution, expected.origin)
 
@@ -198,7 +198,7 @@ def write_case(folder: Path, ref: GridMap, mov: GridMap, observation: Observatio
         for name in (f"{stem}.yaml", f"{stem}.pgm"):
             (folder / name).write_bytes(files[name])
             paths.append(folder / name)
-    (folder / "observation.yaml").write_bytes(observation_to_bytes(observation))
+    (folder / "observation.yaml").write_bytes(observations_to_bytes([observation]))
     return [*paths, folder / "observation.yaml"]
 
 
@@ -222,7 +222,7 @@ def test_uploads_one_by_one_say_what_is_missing_and_then_merge(tab, tmp_path):
 def test_the_map_is_the_right_way_up_and_stays_so(open_tab, tmp_path):
     room = l_room()
     seen = Observation(Pose2(2.0, 2.0, 0.0), 3.0, 2.0, 1.0, 0.0)
-    own = make_server(port=0, initial=Case("rooms", room, room, seen, "observation.yaml", None))
+    own = make_server(port=0, initial=Case("rooms", room, room, (seen,), "observation.yaml", None))
     try:
         tab = open_tab(at=own)
 
@@ -253,9 +253,11 @@ def test_the_map_is_the_right_way_up_and_stays_so(open_tab, tmp_path):
 
 
 def test_a_refused_map_is_downloaded_only_after_a_warning(open_tab, sample: Case):
-    o = sample.observation
+    o = sample.observations[0]
     wrong = Observation(o.observer, o.observed_x + 6.0, o.observed_y - 5.0, o.range, o.bearing)
-    own = make_server(port=0, initial=Case("wrong", sample.ref, sample.mov, wrong, "observation.yaml", None))
+    own = make_server(
+        port=0, initial=Case("wrong", sample.ref, sample.mov, (wrong,), "observation.yaml", None)
+    )
     try:
         tab = open_tab(at=own)
         tab.press("Instant")
