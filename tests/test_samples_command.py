@@ -27,6 +27,14 @@ def test_any_number_of_other_buildings_can_be_simulated(tmp_path, capsys):
         assert abs(off).max() < 0.6
 
 
+def test_a_building_is_simulated_with_as_many_sightings_as_asked_for(tmp_path, capsys):
+    words = ["--building", "warehouse", "--seeds", "105", "--sightings", "3"]
+    assert main(["samples", str(tmp_path), *words]) == 0
+    for rough in (False, True):
+        case = read_case(tmp_path / "warehouse_0105_r2_r1", rough)
+        assert len(case.observations) == 3
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -34,7 +42,9 @@ def test_any_number_of_other_buildings_can_be_simulated(tmp_path, capsys):
         (["--building", "office", "--seeds", "9-2"], "--seeds is '9-2'"),
         (["--building", "office", "--seeds", "many"], "--seeds is 'many'"),
         (["--building", "office", "--overlap", "0.9"], "--overlap is 0.9"),
+        (["--building", "office", "--sightings", "0"], "--sightings is 0; it must lie in [1, 64]"),
         (["--seeds", "3"], "need --building"),
+        (["--sightings", "3"], "need --building"),
     ],
 )
 def test_what_cannot_be_simulated_is_told(tmp_path, capsys, words, said):

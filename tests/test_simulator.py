@@ -19,8 +19,8 @@ from algorithms.simulator.buildings import BUILDINGS, build
 from algorithms.simulator.canvas import AIR, DARK, WALL, Building, Canvas
 from algorithms.simulator.dice import COSINES, SINES, TRIG_GRID, TURN, normals, radians, stream
 from algorithms.simulator.driving import STEP, Planner
-from algorithms.simulator.lidar import Lidar, first_hit, scan, true_ranges
-from algorithms.simulator.meeting import measured_overlap
+from algorithms.simulator.lidar import Lidar, first_hit, scan, sees, true_ranges
+from algorithms.simulator.meeting import APART, FURTHEST, NEAREST, measured_overlap
 from algorithms.simulator.robot import drive, make_body
 from algorithms.simulator.samples import (
     DESCRIPTIONS,
@@ -52,6 +52,12 @@ def two_rooms() -> Building:
     canvas.outline(5.6, 0.6, 10.6, 5.6, 0.2)
     canvas.stops += [(1.6, 1.6), (4.6, 1.6), (4.6, 4.6), (1.6, 4.6)]
     return canvas.finish("two rooms")
+
+
+@pytest.fixture(scope="module")
+def often() -> Scenario:
+    """Robots that meet at four places, and at two."""
+    return simulate("warehouse", 105, sightings=4)
 
 
 # Bit for bit
@@ -263,6 +269,54 @@ def test_bilateral_sighting_of_the_office_agrees_with_its_truth():
     assert angle < np.deg2rad(9)  # three standard deviations of two bearings
 
 
+# Several sightings
+
+
+def test_more_sightings_leave_the_first_ones_and_all_else_as_they_are(often):
+    for number in (1, 2):
+        for few, many in zip(simulate("warehouse", 105, sightings=number).cases, often.cases, strict=True):
+            assert few.observations == many.observations[:number]
+            assert few.rough == many.rough[:number]
+            files, others = case_files(few), case_files(many)
+            assert {name for name in files if files[name] != others[name]} <= {
+                "observation.yaml",
+                "observation_rough.yaml",
+            }
+
+
+def test_robots_are_seen_as_often_as_they_meet_at_places_of_their_own(often):
+    assert [len(case.observations) for case in often.cases] == [4, 2]
+    for pair in often.pairs:
+        places = pair.observed.true.xy[[meeting.observed for meeting in pair.meetings]]
+        apart = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1))
+        assert apart[~np.eye(len(places), dtype=bool)].min() >= APART
+        for meeting in pair.meetings:
+            here, there = pair.observer.true.xy[meeting.observer], pair.observed.true.xy[meeting.observed]
+            assert NEAREST <= np.hypot(*(there - here)) <= FURTHEST
+            assert sees(often.building, here, there)
+
+
+def test_every_sighting_errs_in_its_own_way(often):
+    for pair, case in zip(often.pairs, often.cases, strict=True):
+        true = [
+            np.hypot(*(pair.observed.true.xy[at.observed] - pair.observer.true.xy[at.observer]))
+            for at in pair.meetings
+        ]
+        for seen in (case.observations, case.rough):
+            errors = [(o.range - metres) / o.sigma_range for o, metres in zip(seen, true, strict=True)]
+            assert np.abs(errors).max() < 4
+            assert np.abs(np.subtract.outer(errors, errors) + np.eye(len(errors))).min() > 1e-3
+
+
+def test_the_truth_fits_every_sighting(often):
+    for case in often.cases:
+        for o in (*case.observations, *case.rough):
+            at = encounter(o)
+            off = case.T_ref_mov.apply(at.x_mov) - at.x_ref
+            covariance = at.covariance + np.eye(2) * 0.08**2  # drift of both robots
+            assert off @ np.linalg.solve(covariance, off) < 16
+
+
 @pytest.mark.parametrize("kind", ["apartment", "corridor"])
 def test_overlap_follows_the_one_asked_for(kind):
     few, many = (simulate(kind, 4, overlap).cases[0].overlap for overlap in (0.1, 0.5))
@@ -289,6 +343,15 @@ def test_wrong_pairing_is_written_as_one_to_refuse(flat, tmp_path):
     truth = read_case(tmp_path / "wrong").truth
     assert truth.expected == "refuse"
     assert truth.T_ref_mov is None
+
+
+def test_a_wrong_pairing_forges_as_many_sightings_as_both_have(often):
+    first, second = often.cases
+    forged = mismatch(first, second)
+    assert len(forged.observations) == len(forged.rough) == 2
+    for lie, half, other in zip(forged.observations, first.observations, second.observations, strict=False):
+        assert (lie.observer, lie.range) == (half.observer, half.range)
+        assert (lie.observed_x, lie.observed_y) == (other.observed_x, other.observed_y)
 
 
 def test_building_that_is_not_there_is_refused_by_name():
