@@ -89,14 +89,22 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} cannot be sent to the page")
 
 
-def path(points: FloatArray, colour: Rgb | None, frame: str = "scene", **more: Any) -> Item:
+def path(
+    points: FloatArray, colour: Rgb | None, frame: str = "scene", alpha: float = 1.0, **more: Any
+) -> Item:
     """A line through (N, 2) or (N, 3) points; d dashes, w width, fill, close, t text, halo."""
-    return {"k": "path", "f": frame, "p": points, "c": css(colour) if colour else None, **more}
+    return {"k": "path", "f": frame, "p": points, "c": css(colour, alpha) if colour else None, **more}
 
 
-def mark(shape: str, point: FloatArray, colour: Rgb, frame: str = "scene", **more: Any) -> Item:
-    """A sign of constant size: robot, cross, ring, dot, diamond or star; a angle, r size, t text."""
-    return {"k": "mark", "s": shape, "f": frame, "p": point, "c": css(colour), **more}
+def mark(
+    shape: str, point: FloatArray, colour: Rgb, frame: str = "scene", alpha: float = 1.0, **more: Any
+) -> Item:
+    """A sign of constant size: robot, cross, ring, dot, diamond or star; a angle, r size, t text.
+
+    alpha : opacity of the sign; its text is never faint
+    """
+    ink = {"c": css(colour, alpha), "tc": css(colour)}
+    return {"k": "mark", "s": shape, "f": frame, "p": point, **ink, **more}
 
 
 def cloud(points: FloatArray, colour: Rgb, **more: Any) -> Item:

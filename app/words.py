@@ -40,6 +40,9 @@ def sentence(story: Story) -> str:
     """What a run is doing right now."""
     detail = story.last.detail if story.last else None
     if isinstance(detail, ObservationDetail):
+        times = len(detail.encounters)
+        if times > 1:
+            return f"Robot 1 saw robot 2 at {times} places: they are in both maps."
         return "Robot 1 saw robot 2: this place is in both maps."
     if isinstance(detail, AugmentDetail):
         return "Augmenting: walls near the meeting place are lifted."

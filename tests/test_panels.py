@@ -129,6 +129,13 @@ def test_every_step_of_a_run_has_a_sentence_and_progress_never_falls(inputs):
     assert shares[-1] == 1.0
 
 
+def test_a_run_with_several_sightings_says_how_many(inputs):
+    several = inputs.observations * 3
+    story = Story()
+    story.tell(next(run("spectra-swarm", inputs.ref, inputs.mov, several)))
+    assert sentence(story) == "Robot 1 saw robot 2 at 3 places: they are in both maps."
+
+
 def test_the_curves_share_one_axis_and_mark_what_was_chosen(inputs):
     story = Story()
     for step in run("spectra-swarm", inputs.ref, inputs.mov, inputs.observations):

@@ -205,10 +205,12 @@ class MapView:
         if at is None or self._inputs.ref is None:
             self._clear("robots", "sight")
             return
-        o = self._inputs.observations[0]
+        o, *_ = told = self._inputs.observations
         here, colours = self.layout, self._palette
         self._stage.layer("robots", signs.robots(o, here, colours, mov, together, seen))
-        self._stage.layer("sight", signs.sight(o, at, here, colours, mov, together, close=not seen))
+        further = signs.further(told, self._inputs.encounters, here, colours, mov, together)
+        sight = signs.sight(o, at, here, colours, mov, together, close=not seen)
+        self._stage.layer("sight", further + sight)
 
     def _place(self, at: Pose2, milliseconds: float) -> None:
         if at != self._mov_at or milliseconds == 0:

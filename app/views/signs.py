@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import cos
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +15,8 @@ from app.layout import Layout, Rect
 from app.palette import Palette
 from app.stage import Item, ellipse, mark, path, rectangle
 
-ZERO = np.zeros(2)  # the meeting place, in both frames
+ZERO = np.zeros(2)  # the meeting place of the first sighting, in both frames
+QUIET = 0.55  # opacity of what is told beside the first sighting
 DASHED = {"close": True, "d": [6, 4], "halo": True}
 
 
@@ -26,10 +29,7 @@ def robots(
     together : map 2 lies on map 1; the meeting place is then marked by robot 2 itself
     seen     : whether robot 2 is drawn
     """
-    direction = o.observer.theta + o.bearing
-    # each name stands on the far side of the line of sight
-    left, right = {"dx": -14, "align": "right"}, {"dx": 14, "align": "left"}
-    near, far = (left, right) if cos(direction) >= 0 else (right, left)
+    near, far = _sides(o, 14)
     first = o.observer.xy - layout.anchor_ref
     items = [mark("robot", first, colours.ref, a=o.observer.theta, r=9, t="robot 1", **near)]
     if mov and seen:
@@ -60,6 +60,43 @@ def sight(
     if mov and not together:
         items.append(path(np.array([ZERO, layout.apart.xy]), colours.margin, w=1, d=[1, 5]))
     return items
+
+
+def further(
+    seen: Sequence[Observation],
+    places: Sequence[Encounter],
+    layout: Layout,
+    colours: Palette,
+    mov: bool,
+    together: bool,
+) -> list[Item]:
+    """Every sighting beyond the first, quieter and with its number: robots, line of sight and its end.
+
+    together : map 2 lies on map 1; robot 2 then stands at the end of the line as far as T fits
+    """
+    items = []
+    for number, (o, at) in enumerate(zip(seen, places, strict=True), 1):
+        if number == 1:
+            continue
+        first, end = o.observer.xy - layout.anchor_ref, at.x_ref - layout.anchor_ref
+        _, far = _sides(o, 9)
+        name = {"t": str(number), "size": 11, **far}
+        items.append(path(np.array([first, end]), colours.text, alpha=QUIET, w=1, d=[2, 5]))
+        items.append(mark("robot", first, colours.ref, alpha=QUIET, a=o.observer.theta, r=6))
+        # once the maps lie together, the number stands beside robot 2 alone
+        items.append(mark("ring", end, colours.conflict, alpha=QUIET, r=4, **({} if together else name)))
+        if mov:
+            known = o.observed_heading is not None
+            shape, how = ("robot", {"a": o.observed_heading, "r": 6}) if known else ("dot", {"r": 4})
+            there = at.x_mov - layout.anchor_mov
+            items.append(mark(shape, there, colours.mov, "mov", alpha=QUIET, **how, **name))
+    return items
+
+
+def _sides(o: Observation, dx: float) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Where names stand at the near and the far end of a line of sight: beyond it."""
+    left, right = {"dx": -dx, "align": "right"}, {"dx": dx, "align": "left"}
+    return (left, right) if cos(o.observer.theta + o.bearing) >= 0 else (right, left)
 
 
 def rings(covariance: FloatArray, colours: Palette, both: bool) -> list[Item]:

@@ -219,6 +219,30 @@ def test_uploads_one_by_one_say_what_is_missing_and_then_merge(tab, tmp_path):
     settle(lambda: tab.mood in ("accepted", "refused"), "a verdict")
 
 
+def test_several_sightings_are_all_shown_and_counted(tab, tmp_path):
+    room = l_room()
+    first = Observation(Pose2(2.0, 2.0, 0.0), 3.0, 2.0, 1.0, 0.0)
+    second = Observation(Pose2(4.0, 3.0, 0.0), 5.0, 3.0, 1.0, 0.0)
+    *maps, seen = write_case(tmp_path, room, room, first)
+    tab.unfold("Observation")
+    tab.unfold("Upload your own")
+    for slot, path in enumerate(maps):
+        tab.upload(slot, path)
+        settle(lambda path=path: path.name in tab.text, f"the name {path.name}")
+    seen.write_bytes(observations_to_bytes([first, second]).replace(b"- observer", b"- obsever"))
+    tab.upload(4, seen)
+    tab.wait_for("failed")
+    assert "observation 1: obsever is not a known key" in tab.state
+    seen = tmp_path / "both.yaml"
+    seen.write_bytes(observations_to_bytes([first, second]))
+    tab.upload(4, seen)
+    settle(lambda: tab.state == "Ready. Press Merge.", "all five files")
+    assert "Observation 1 of 2" in tab.text
+    assert "Observation 2 of 2" in tab.text
+    assert [item["t"] for item in tab.layer("sight") if "t" in item] == ["2", "2"]
+    assert sorted(item["t"] for item in tab.layer("robots") if "t" in item)[:2] == ["robot 1", "robot 2"]
+
+
 def test_the_map_is_the_right_way_up_and_stays_so(open_tab, tmp_path):
     room = l_room()
     seen = Observation(Pose2(2.0, 2.0, 0.0), 3.0, 2.0, 1.0, 0.0)
