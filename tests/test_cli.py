@@ -234,6 +234,20 @@ def test_plain_images_merge_where_their_resolution_is_given(case_folder, tmp_pat
     assert read_map(tmp_path / "out" / "merged.yaml").resolution == case.ref.resolution
 
 
+def test_a_file_of_several_observations_is_merged_and_a_robot_off_its_map_is_told_by_number(
+    case_folder, small_case, tmp_path, capsys
+):
+    (seen,) = small_case.observations
+    lost, several = replace(seen, observed_x=800.0), tmp_path / "several.yaml"
+    one, two, _ = inputs(case_folder)
+    words = ["merge", one, two, "--observation", str(several), "--out", str(tmp_path / "out")]
+    write_observations(several, [seen, seen])
+    assert main(words) == 0
+    write_observations(several, [seen, lost])
+    assert main(words) == 2
+    assert "observation 2 puts robot 2 at (800, " in capsys.readouterr().err
+
+
 def test_swapped_maps_end_with_2_and_say_so(case_folder, tmp_path, capsys):
     one, two, seen = inputs(case_folder)
     assert main(["merge", two, one, seen, "--out", str(tmp_path / "out")]) == 2
