@@ -24,7 +24,7 @@ def peak_covariance(objective: Objective, T_ref_mov: Pose2, box: Box, reach: flo
     reach   : distance over which a turn moves a cell by one cell; metres. The spread Σ_aug is fitting
     returns : (3, 3) of Δx, Δy, Δθ; metres and radians; positive definite
     """
-    cell = objective.ref.grid.resolution
+    cell = objective.cell
     step = np.array([cell, cell, cell / reach])
     centre = np.append(T_ref_mov.apply(box.pivot), T_ref_mov.theta)
     unit = np.eye(3)

@@ -45,7 +45,7 @@ METHODS: dict[str, Method] = {
         "The paper's bare argmax",
         PipelineConfig(
             candidates=CandidateConfig(peaks=1, twins=False),
-            window=WindowConfig(pivot="origin"),
+            window=WindowConfig(kind="origin"),
             refine=RefineConfig(candidates=1),
         ),
     ),

@@ -1,16 +1,22 @@
-"""Γ: how well two augmented maps coincide under a transform, eq. (17), for many transforms at once."""
+"""What is maximised: points of one map looked up in a table over the other, for many transforms at once.
+
+Γ of eq. (17) is one such sum; the agreement of ``algorithms.agreement`` is two, one in each direction.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.augment import AugmentedMap
+from algorithms.gridmap import GridMap
 from algorithms.kernels import fast_kernel, spread
 from algorithms.pose import FloatArray
+from algorithms.window import CoupledWindow
 
 Float32Array = NDArray[np.float32]
 
@@ -29,67 +35,114 @@ class Lookup(str, Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Objective:
-    """Γ(t) = Σ_n Aug2(m_n) · M1aug(T(t) m_n), the dual form of eq. (17).
+class Side:
+    """Points of one map with their weights, and a table over the other map in which they are looked up.
 
-    table     : (H + 2·PAD, W + 2·PAD) float32 levels of the ref map around its encounter, zeros
-                around them
-    corner    : (2,) column and row, in the ref grid, of table cell (PAD, PAD)
+    grid     : the map that the table lies on
+    table    : (H + 2·PAD, W + 2·PAD) float32; its outermost ``PAD`` rows and columns are zeros
+    corner   : (2,) column and row, in the grid, of table cell (PAD, PAD)
+    anchor   : (2,) what the points are relative to, where the encounter is; metres, the points' own frame
+    points   : (N, 2) metres from the anchor, axes of the points' own frame
+    weights  : (N,)
+    backward : False: points of the mov map looked up in the ref map. True: the other way round
     """
 
-    ref: AugmentedMap
-    mov: AugmentedMap
-    lookup: Lookup
+    grid: GridMap
     table: Float32Array
     corner: FloatArray
-    _x: Float32Array
-    _y: Float32Array
-    _levels: Float32Array
+    anchor: FloatArray
+    points: FloatArray
+    weights: FloatArray
+    backward: bool = False
+
+    @cached_property
+    def _cells(self) -> tuple[Float32Array, Float32Array, Float32Array]:
+        # relative to the encounter: small numbers, so that 32 bits hold them to 1/10,000 of a cell
+        x, y = np.ascontiguousarray((self.points / self.grid.resolution).T, dtype=np.float32)
+        return x, y, self.weights.astype(np.float32)
+
+    def motions(self, poses: FloatArray) -> FloatArray:
+        """(P, 4) per pose: cosine and sine of the turn, and the table column and row the anchor goes to.
+
+        poses : (P, 3) x, y, theta of T_ref_mov
+        A table cell (r, c) covers columns c … c + 1 and rows r … r + 1 of these coordinates.
+        """
+        grid, (x, y) = self.grid, self.anchor
+        turn = -poses[:, 2] if self.backward else poses[:, 2]
+        c, s = np.cos(turn), np.sin(turn)
+        if self.backward:  # T⁻¹ p = C(−Δθ) (p − Δ)
+            x, y = x - poses[:, 0], y - poses[:, 1]
+        moved = np.stack([c * x - s * y, s * x + c * y], axis=1)
+        if not self.backward:
+            moved += poses[:, :2]
+        shift = grid.grid_coordinates(moved) - self.corner + PAD
+        turn = turn - grid.origin.theta
+        return np.column_stack([np.cos(turn), np.sin(turn), shift])
+
+    def __call__(self, poses: FloatArray, lookup: Lookup) -> FloatArray:
+        """(P,) float64: Σ_n weight_n · table(point_n under the pose)."""
+        motions = self.motions(poses)
+        if lookup is Lookup.BILINEAR:
+            motions[:, 2:] -= 0.5  # levels sit at cell centres
+        single = motions.astype(np.float32)
+        x, y, weights = self._cells
+        values = np.zeros(len(poses))
+        rows, cols = self.table.shape
+        flat = self.table.ravel()
+        loop = _bilinear if lookup is Lookup.BILINEAR else _nearest
+
+        def work(start: int, stop: int) -> None:
+            loop(flat, rows, cols, x, y, weights, single[start:stop], values[start:stop])
+
+        spread(work, len(poses), at_least=1 + _LOOKUPS_WORTH_A_THREAD // (1 + len(x)))
+        return values
+
+
+@dataclass(frozen=True, eq=False)
+class Objective:
+    """A sum of sides, less what a transform deviates from the sightings.
+
+    sides   : one for Γ, eq. (17); two for the agreement
+    lookup  : how the tables are read
+    window  : the sightings; None: they don't count
+    trust   : what half a squared standard deviation off a sighting costs, in units of the sides
+    """
+
+    sides: tuple[Side, ...]
+    lookup: Lookup = Lookup.BILINEAR
+    window: CoupledWindow | None = None
+    trust: float = 0.0
+
+    @property
+    def cell(self) -> float:
+        """Edge of a cell of the ref map; metres."""
+        return self.sides[0].grid.resolution
 
     @property
     def evaluation_size(self) -> int:
         """Number of look-ups that one pose costs."""
-        return len(self._x)
+        return sum(len(side.points) for side in self.sides)
 
     def __call__(self, poses: FloatArray) -> FloatArray:
-        """Γ of every pose.
+        """The value of every pose.
 
         poses   : (P, 3) x, y, theta of T_ref_mov; metres, metres, radians
-        returns : (P,) float64, >= 0; the same on any number of threads
+        returns : (P,) float64; the same on any number of threads
         """
-        grid = self.ref.grid
         poses = np.asarray(poses, dtype=np.float64).reshape(-1, 3)
-        c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
-        x2, y2 = self.mov.x_hat
-        moved = poses[:, :2] + np.stack([c * x2 - s * y2, s * x2 + c * y2], axis=1)
-        shift = grid.grid_coordinates(moved) - self.corner + PAD
-        if self.lookup is Lookup.BILINEAR:
-            shift -= 0.5  # levels sit at cell centres
-        turn = poses[:, 2] - grid.origin.theta
-        motions = np.column_stack([np.cos(turn), np.sin(turn), shift]).astype(np.float32)
         values = np.zeros(len(poses))
-        rows, cols = self.table.shape
-        flat = self.table.ravel()
-        loop = _bilinear if self.lookup is Lookup.BILINEAR else _nearest
-
-        def work(start: int, stop: int) -> None:
-            loop(
-                flat,
-                rows,
-                cols,
-                self._x,
-                self._y,
-                self._levels,
-                motions[start:stop],
-                values[start:stop],
-            )
-
-        spread(work, len(poses), at_least=1 + _LOOKUPS_WORTH_A_THREAD // (1 + len(self._x)))
+        for side in self.sides:
+            values += side(poses, self.lookup)
+        if self.window is not None:
+            values -= 0.5 * self.trust * (self.window.deviations(poses) ** 2).sum(axis=1)
         return values
 
 
 def make_objective(ref: AugmentedMap, mov: AugmentedMap, lookup: Lookup = Lookup.BILINEAR) -> Objective:
-    """The objective of two augmented maps; they may differ in resolution, origin and size."""
+    """Γ(t) = Σ_n Aug2(m_n) · M1aug(T(t) m_n), the dual form of eq. (17).
+
+    The augmented maps may differ in resolution, origin and size.
+    """
     corner = np.zeros(2)
     table = np.zeros((2 * PAD + 1, 2 * PAD + 1), dtype=np.float32)
     if len(ref.levels):
@@ -101,18 +154,8 @@ def make_objective(ref: AugmentedMap, mov: AugmentedMap, lookup: Lookup = Lookup
         corner = np.array([low_col, low_row], dtype=float)
         table = np.zeros(shape, dtype=np.float32)
         table[ref.rows - low_row + PAD, ref.cols - low_col + PAD] = ref.levels
-    offset = (mov.points - mov.x_hat) / ref.grid.resolution
-    return Objective(
-        ref=ref,
-        mov=mov,
-        lookup=lookup,
-        table=table,
-        corner=corner,
-        # relative to the encounter: small numbers, so that 32 bits hold them to 1/10,000 of a cell
-        _x=np.ascontiguousarray(offset[:, 0], dtype=np.float32),
-        _y=np.ascontiguousarray(offset[:, 1], dtype=np.float32),
-        _levels=mov.levels.astype(np.float32),
-    )
+    side = Side(ref.grid, table, corner, mov.x_hat, mov.points - mov.x_hat, mov.levels)
+    return Objective((side,), lookup)
 
 
 @fast_kernel

@@ -194,7 +194,7 @@ def _search(
 def _refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Iterator[Detail]:
     """The optimiser on each of the best candidates in turn."""
     optimise = OPTIMISERS[config.refine.optimiser]
-    settled = settled_within(found.objective.ref.grid.resolution)
+    settled = settled_within(found.objective.cell)
     refined = found.candidates[: config.refine.candidates]
     answers: list[Answer] = []
     for index, candidate in enumerate(refined):

@@ -1,31 +1,40 @@
-"""Search boxes: what the observation leaves of the shift, eqs. (6)–(10), and the margins (18)–(20)."""
+"""What the sightings leave of the shift: the paper's window, eqs. (6)–(10), and the coupled one; and
+the optimiser's box, eqs. (18)–(20).
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import hypot, pi
 from typing import Annotated, Literal
 
 import numpy as np
 
 from algorithms.bounds import Bounds, check_bounds
+from algorithms.gridmap import BoolArray
 from algorithms.observation import Encounter
 from algorithms.pose import FloatArray, Pose2
+
+LEAST_MARGIN = 1e-3  # metres; a robot on top of the other was seen with no lateral error at all
 
 
 @dataclass(frozen=True)
 class WindowConfig:
-    """The paper's window for the shift, eqs. (6)–(10)."""
+    """The window for the shift, eqs. (6)–(10), or the coupled window."""
 
+    kind: Literal["coupled", "encounter", "origin"] = "encounter"
+    """Coupled: for every turn only the disc in which the sighting leaves the seen robot. Encounter: the
+    paper's window with its shift taken at the seen robot, a square around that disc. Origin: the paper's
+    window as printed, for map 2's origin; it grows with the distance between that origin and the seen
+    robot, which says nothing about the world."""
     margin: Annotated[float, Bounds(0, 10, 0.05, "m", "σ", "window margin")] = 0.1
-    """Added on every side of the window for what the sighting's own deviations do not tell: how well
-    each robot knew where it stood, and how well its map fits there."""
+    """What the sighting's own deviations do not tell: how well each robot knew where it stood, and how
+    well its map fits there. The paper's window is wider by it on every side; in the coupled window it is
+    one more standard deviation."""
     deviations: Annotated[float, Bounds(0, 10, 0.5, "σ", "k", "sighting deviations")] = 3.0
-    """Added on every side of the window: so many standard deviations of the range and the bearing."""
-    pivot: Literal["encounter", "origin"] = "encounter"
-    """Which point of map 2 the shift is the shift of. Encounter: the seen robot; the window is then
-    as small as the sighting is good. Origin: map 2's origin, as printed; the window then grows with
-    the distance between that origin and the seen robot, which says nothing about the world."""
+    """How many standard deviations of range and bearing the window reaches."""
 
     def __post_init__(self) -> None:
         check_bounds(self)
@@ -97,19 +106,98 @@ class Box:
         return Pose2.from_array(self.transforms(pose[None])[0])
 
 
+@dataclass(frozen=True, eq=False)
+class CoupledWindow:
+    """All transforms that put every seen robot within k standard deviations of where it was seen.
+
+    x̂1 = C(Δθ) x̂2 + Δ ties the shift to the turn: for every Δθ a disc (an ellipse) of shifts remains,
+    of the size of the sighting's own error, however far away the origins of the maps lie.
+
+    x_ref, x_mov : (S, 2) where the S robots were seen, in the ref and the mov frame; metres
+    covariances  : (S, 2, 2) of x_ref − T x_mov; m²
+    k            : how many standard deviations are let pass
+    """
+
+    x_ref: FloatArray
+    x_mov: FloatArray
+    covariances: FloatArray
+    k: float
+
+    @property
+    def pivot(self) -> FloatArray:
+        """(2,) the first seen robot; metres, mov frame. The window is one for where T puts it."""
+        return np.asarray(self.x_mov[0], dtype=np.float64)
+
+    @property
+    def low(self) -> FloatArray:
+        """(2,) lower edges of the rectangle around the pivot's disc; metres, ref frame."""
+        return np.asarray(self.x_ref[0] - self._reach, dtype=np.float64)
+
+    @property
+    def high(self) -> FloatArray:
+        """(2,) upper edges of the rectangle around the pivot's disc; metres, ref frame."""
+        return np.asarray(self.x_ref[0] + self._reach, dtype=np.float64)
+
+    @property
+    def _reach(self) -> FloatArray:
+        return np.asarray(self.k * np.sqrt(np.diag(self.covariances[0])), dtype=np.float64)
+
+    @cached_property
+    def whitening(self) -> FloatArray:
+        """(S, 2, 2): takes metres off a sighting to standard deviations off it."""
+        return np.asarray(np.linalg.inv(np.linalg.cholesky(self.covariances)), dtype=np.float64)
+
+    def deviations(self, poses: FloatArray) -> FloatArray:
+        """(P, S) standard deviations from every sighting, of (P, 3) x, y, theta of T_ref_mov."""
+        c, s = np.cos(poses[:, 2, None]), np.sin(poses[:, 2, None])
+        x, y = self.x_mov.T
+        off = np.stack(
+            [
+                c * x - s * y + poses[:, 0, None] - self.x_ref[:, 0],
+                s * x + c * y + poses[:, 1, None] - self.x_ref[:, 1],
+            ],
+            axis=-1,
+        )
+        return np.asarray(
+            np.linalg.norm(np.einsum("sij,psj->psi", self.whitening, off), axis=-1), dtype=np.float64
+        )
+
+    def contains(self, poses: FloatArray) -> BoolArray:
+        """(P,) whether a transform is near enough to every sighting."""
+        return np.asarray((self.deviations(poses) <= self.k).all(axis=1))
+
+
 def paper_window(at: Encounter, config: WindowConfig) -> Window:
     """Shift window of eqs. (6)–(10): around x̂1, half as wide as x̂2 lies from the pivot, plus σ.
 
     ‖·‖ in (6) is the Euclidean norm: the turned vector's component can reach it, so the
     component-wise absolute value the print may be read as would cut the truth off.
     """
-    pivot = at.x_mov if config.pivot == "encounter" else np.zeros(2)
+    pivot = np.zeros(2) if config.kind == "origin" else at.x_mov
     sigma = config.margin + config.deviations * np.sqrt(np.diag(at.covariance))
     reach = hypot(*(at.x_mov - pivot).tolist()) + sigma  # eqs. (6), (9), (10)
     return Window(at.x_ref - reach, at.x_ref + reach, pivot)  # eqs. (7), (8)
 
 
-def box_around(T_ref_mov: Pose2, window: Window, config: BoxConfig) -> Box:
+def coupled_window(encounters: Sequence[Encounter], config: WindowConfig) -> CoupledWindow:
+    """The window of all sightings; each counts with its own covariance and the margin's."""
+    margin = np.eye(2) * max(config.margin, LEAST_MARGIN) ** 2
+    return CoupledWindow(
+        x_ref=np.array([at.x_ref for at in encounters]),
+        x_mov=np.array([at.x_mov for at in encounters]),
+        covariances=np.array([at.covariance + margin for at in encounters]),
+        k=config.deviations,
+    )
+
+
+def shift_window(encounters: Sequence[Encounter], config: WindowConfig) -> Window | CoupledWindow:
+    """The window that the settings ask for; the paper's knows the first sighting only."""
+    if config.kind == "coupled":
+        return coupled_window(encounters, config)
+    return paper_window(encounters[0], config)
+
+
+def box_around(T_ref_mov: Pose2, window: Window | CoupledWindow, config: BoxConfig) -> Box:
     """The optimiser's box, eqs. (18)–(20): around a candidate, inside the window (Fig. 11)."""
     half = np.array([config.sigma_x, config.sigma_y, config.sigma_theta * pi / 180])
     centre = np.append(T_ref_mov.apply(window.pivot), T_ref_mov.theta)

@@ -16,7 +16,7 @@ in_flat = st.builds(Pose2, st.floats(0, 9), st.floats(0, 7), angles)
 @given(poses, poses, in_flat, in_flat, st.sampled_from(["origin", "encounter"]))
 def test_the_true_transform_lies_in_the_window(T_ref_world, T_mov_world, observer, observed, pivot):
     seen = sighting(T_ref_world, T_mov_world, observer, observed)
-    window = paper_window(encounter(seen), WindowConfig(margin=0.01, pivot=pivot))
+    window = paper_window(encounter(seen), WindowConfig(margin=0.01, kind=pivot))
     goes_to = (T_ref_world @ T_mov_world.inverse()).apply(window.pivot)
     assert np.all(goes_to >= window.low - 1e-9)
     assert np.all(goes_to <= window.high + 1e-9)
@@ -26,7 +26,7 @@ def test_the_true_transform_lies_in_the_window(T_ref_world, T_mov_world, observe
 def test_with_the_norm_of_eq_6_no_turn_leaves_the_window_as_printed(turn):
     # the component-wise |x̂2| would cut off turns that bring its length onto one axis
     at = encounter(sighting(T_REF_WORLD, T_MOV_WORLD, OBSERVER, OBSERVED))
-    window = paper_window(at, WindowConfig(margin=0.0, deviations=0.0, pivot="origin"))
+    window = paper_window(at, WindowConfig(margin=0.0, deviations=0.0, kind="origin"))
     shift = at.x_ref - rotation(turn) @ at.x_mov
     assert np.all((shift >= window.low - 1e-9) & (shift <= window.high + 1e-9))
 
@@ -38,7 +38,7 @@ def test_around_the_encounter_the_window_does_not_grow_with_the_distance_of_the_
         paper_window(at, WindowConfig()).high - paper_window(at, WindowConfig()).low for at in (near, far)
     ]
     assert np.allclose(*sizes)
-    printed = [paper_window(at, WindowConfig(pivot="origin")) for at in (near, far)]
+    printed = [paper_window(at, WindowConfig(kind="origin")) for at in (near, far)]
     assert np.all(printed[1].high - printed[1].low > printed[0].high - printed[0].low + 900)
 
 
@@ -62,7 +62,7 @@ def test_box_coordinates_of_a_transform_give_that_transform_back(T_ref_mov, x, y
 def test_a_box_of_the_printed_kind_is_in_shift_and_turn():
     T = Pose2(1.0, 2.0, 3.0)
     at = encounter(sighting(T_REF_WORLD, T_MOV_WORLD, OBSERVER, OBSERVED))
-    wide = paper_window(at, WindowConfig(margin=10, pivot="origin"))
+    wide = paper_window(at, WindowConfig(margin=10, kind="origin"))
     box = box_around(T, wide, BoxConfig(0.3, 0.4, 5.0))
     assert np.allclose(box.centre, T.array())
     assert np.allclose(box.high - box.low, (0.6, 0.8, np.deg2rad(10)))

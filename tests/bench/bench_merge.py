@@ -19,7 +19,7 @@ import cv2
 import numpy as np
 import pytest
 
-from algorithms.augment import augment
+from algorithms.augment import AugmentedMap, augment
 from algorithms.casefiles import write_observations
 from algorithms.gridmap import GridMap
 from algorithms.mapio import write_map
@@ -46,14 +46,14 @@ def walls_of_a_building(rng: np.random.Generator) -> GridMap:
 
 
 @pytest.fixture(scope="module")
-def job() -> tuple[Objective, np.ndarray]:
+def job() -> tuple[Objective, AugmentedMap, np.ndarray]:
     """An objective over the whole of two such maps, and 400 poses of a swarm."""
     rng = np.random.default_rng(0)
     grid = walls_of_a_building(rng)
     centre = np.array([25.0, 25.0])
     lifted = augment(grid, centre, np.eye(2) * 10.0**2, 100.0)
     around = Pose2().array() + rng.uniform(-1, 1, (PARTICLES, 3)) * (0.5, 0.5, np.deg2rad(5))
-    return make_objective(lifted, lifted), around
+    return make_objective(lifted, lifted), lifted, around
 
 
 def in_turns(ours: Callable[[], object], reference: Callable[[], object], rounds: int) -> tuple[float, float]:
@@ -69,13 +69,13 @@ def in_turns(ours: Callable[[], object], reference: Callable[[], object], rounds
     return float(a), float(b)
 
 
-def by_remap(objective: Objective, poses: np.ndarray) -> np.ndarray:
+def by_remap(lifted: AugmentedMap, poses: np.ndarray) -> np.ndarray:
     """The same sum with OpenCV's bilinear look-up of the moved points, one call for all poses."""
-    grid = objective.ref.grid
+    grid = lifted.grid
     levels = np.zeros(grid.cells.shape, dtype=np.float32)
-    levels[objective.ref.rows, objective.ref.cols] = objective.ref.levels
-    x, y = (objective.mov.points / grid.resolution).astype(np.float32).T
-    weights = objective.mov.levels.astype(np.float32)
+    levels[lifted.rows, lifted.cols] = lifted.levels
+    x, y = (lifted.points / grid.resolution).astype(np.float32).T
+    weights = lifted.levels.astype(np.float32)
     c, s = np.cos(poses[:, 2:3]).astype(np.float32), np.sin(poses[:, 2:3]).astype(np.float32)
     shift = (poses[:, :2] / grid.resolution - 0.5).astype(np.float32)
     u = c * x - s * y + shift[:, :1]
@@ -83,13 +83,13 @@ def by_remap(objective: Objective, poses: np.ndarray) -> np.ndarray:
     return cv2.remap(levels, u, v, cv2.INTER_LINEAR) @ weights
 
 
-def by_warp(objective: Objective, poses: np.ndarray) -> np.ndarray:
+def by_warp(lifted: AugmentedMap, poses: np.ndarray) -> np.ndarray:
     """The same sum as it is printed: turn the whole second raster, multiply with the first, add up."""
-    grid = objective.ref.grid
+    grid = lifted.grid
     ref = np.zeros(grid.cells.shape, dtype=np.float32)
-    ref[objective.ref.rows, objective.ref.cols] = objective.ref.levels
-    mov = np.zeros(objective.mov.grid.cells.shape, dtype=np.float32)
-    mov[objective.mov.rows, objective.mov.cols] = objective.mov.levels
+    ref[lifted.rows, lifted.cols] = lifted.levels
+    mov = np.zeros(lifted.grid.cells.shape, dtype=np.float32)
+    mov[lifted.rows, lifted.cols] = lifted.levels
     values = np.zeros(len(poses))
     for n, pose in enumerate(poses):
         matrix = Pose2.from_array(pose).matrix()
@@ -101,11 +101,11 @@ def by_warp(objective: Objective, poses: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("lookup", list(Lookup))
 def bench_objective_against_remap(job, lookup, benchmark):
-    objective, poses = job
+    objective, lifted, poses = job
     if lookup is Lookup.BILINEAR:  # the reference computes the same thing
-        assert np.allclose(objective(poses), by_remap(objective, poses), rtol=0.02)
-    objective = make_objective(objective.ref, objective.mov, lookup)
-    ours, reference = in_turns(lambda: objective(poses), lambda: by_remap(objective, poses), 15)
+        assert np.allclose(objective(poses), by_remap(lifted, poses), rtol=0.02)
+    objective = make_objective(lifted, lifted, lookup)
+    ours, reference = in_turns(lambda: objective(poses), lambda: by_remap(lifted, poses), 15)
     lookups = objective.evaluation_size * len(poses)
     benchmark.extra_info.update(
         ratio=reference / ours, reference="cv2.remap of the points", lookups_per_s=lookups / ours
@@ -115,10 +115,10 @@ def bench_objective_against_remap(job, lookup, benchmark):
 
 
 def bench_objective_against_warp(job, benchmark):
-    objective, poses = job
+    objective, lifted, poses = job
     few = poses[:20]
-    assert np.allclose(objective(few), by_warp(objective, few), rtol=0.05)
-    ours, reference = in_turns(lambda: objective(poses), lambda: by_warp(objective, few), 5)
+    assert np.allclose(objective(few), by_warp(lifted, few), rtol=0.05)
+    ours, reference = in_turns(lambda: objective(poses), lambda: by_warp(lifted, few), 5)
     ratio = reference * len(poses) / len(few) / ours
     benchmark.extra_info.update(ratio=ratio, reference="cv2.warpAffine and product")
     benchmark(objective, poses)
