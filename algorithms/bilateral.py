@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from algorithms.chain import Chain, Memo
+from algorithms.evidence import evidence
 from algorithms.fuse import Conflict, Fusion, fuse
 from algorithms.gridmap import GridMap
 from algorithms.observation import (
-    Encounter,
     Observation,
     bilateral_covariance,
     bilateral_transform,
@@ -43,13 +43,11 @@ def run(
     """
     chain = Chain({} if memo is None else memo)
     observation = observations[0]
-    at: Encounter = (
-        yield from chain.stage(
-            "observe",
-            (observations,),
-            lambda: [ObservationDetail(tuple(encounter(seen) for seen in observations))],
-        )
-    ).encounter
+    seen: ObservationDetail = yield from chain.stage(
+        "observe",
+        (observations,),
+        lambda: [ObservationDetail(tuple(encounter(observation) for observation in observations))],
+    )
     found: AnswersDetail = yield from chain.stage(
         "search",
         (observation,),
@@ -67,9 +65,9 @@ def run(
                 T_ref_mov=best,
                 covariance=bilateral_covariance(observation),
                 value=None,
-                verdict=judge(fusion, best, at, None, config.verdict),
+                verdict=judge(fusion, evidence(ref, mov, best), best, seen.encounters, None, config.verdict),
                 fusion=fusion,
-                encounter=at,
+                encounters=seen.encounters,
                 answers=found.answers,
                 method=method,
                 seed=seed,

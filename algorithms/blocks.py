@@ -8,7 +8,6 @@ the point can add, and the sum of these bounds the block.
 
 from __future__ import annotations
 
-from itertools import pairwise
 from math import ceil, pi, sin, sqrt
 
 import cv2
@@ -16,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.kernels import fast_kernel, spread
-from algorithms.objective import Float32Array, Objective, Side
+from algorithms.objective import Float32Array, Lookup, Objective, Side
 from algorithms.pose import FloatArray, wrap_angles
 from algorithms.window import CoupledWindow
 
 IntArray = NDArray[np.int64]
 
 LEVELS = 4  # the coarsest blocks are 16 × 16 × 16 transforms
-RADII = (0, 1, 2, 3, 4, 6, 8, 11, 16, 22, 32)  # cells; a table of maxima is made for each
+RADII = (1, 2, 3, 4, 6, 8, 11, 16, 22, 32)  # cells; a table of maxima is made for each that is needed
 MERGE_FROM = 2  # from this level on, points that lie close together are looked up as one
 
 # Float32 sums of many terms: a bound and the value that it bounds are summed in different orders.
@@ -55,7 +54,7 @@ class Lattice:
         self.levels = LEVELS
         while self.levels and self.spread(self.levels) > (RADII[-1] - 1) * min(finest):
             self.levels -= 1
-        # whole blocks, one of them right on the sighting where the disc is small
+        # whole blocks, and a transform right on the sighting: there is one in every window
         blocks = 2 * ceil(self.disc / (2**self.levels * self.cell) - 0.5) + 1
         self.side = max(1, blocks) * 2**self.levels
         self._pivot_ref = pivot_ref
@@ -83,8 +82,7 @@ class Lattice:
         """(P, 3) shift of the pivot in x, y and turn at the middles of (P, 3) blocks; metres, radians."""
         middle = (nodes + 0.5) * 2**level - 0.5
         out = np.empty((len(nodes), 3))
-        out[:, 0] = (middle[:, 1] - (self.side - 1) / 2) * self.cell
-        out[:, 1] = (middle[:, 2] - (self.side - 1) / 2) * self.cell
+        out[:, :2] = (middle[:, 1:] - self.side // 2) * self.cell
         out[:, 2] = middle[:, 0] * self.step
         return out
 
@@ -137,9 +135,8 @@ def _merged(
     points: FloatArray, weights: FloatArray, edge: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Points that share a square of a raster as one: its middle, its weight, how far they lie from it."""
-    square = np.floor(points / edge).astype(np.int64)
-    _, which = np.unique(square, axis=0, return_inverse=True)
-    which = which.ravel()
+    col, row = np.floor(points / edge).astype(np.int64).T
+    _, which = np.unique(row * (np.ptp(col) + 1) + col, return_inverse=True)
     total = np.asarray(np.bincount(which, weights), dtype=np.float64)
     middle = np.stack([np.bincount(which, weights * axis) / total for axis in points.T], axis=1)
     blur = np.zeros(len(total))
@@ -159,47 +156,54 @@ class _Pyramid:
         self.side = side
         self.margin = RADII[-1]
         wide = np.pad(side.table, self.margin)
-        tables = [wide]
-        for smaller, radius in pairwise(RADII):  # a maximum of maxima: the square grows by what is new
-            square = np.ones((2 * (radius - smaller) + 1,) * 2, dtype=np.uint8)
-            tables.append(np.asarray(cv2.dilate(tables[-1], square), dtype=np.float32))
+        levels = [self._points(side, lattice, level) for level in range(1, lattice.levels + 1)]
+        used = np.unique([radius for *_, radii in levels for radius in np.unique(radii)]).astype(int)
+        tables = np.empty((len(used), *wide.shape), dtype=np.float32)
+        source, reached = wide, 0
+        for table, radius in zip(tables, used, strict=True):
+            # a maximum of maxima: the square grows by what is new
+            square = np.ones((2 * (radius - reached) + 1,) * 2, dtype=np.uint8)
+            cv2.dilate(source, square, dst=table)
+            source, reached = table, radius
         self.shape = wide.shape
-        self.flat = np.stack(tables).ravel()
-        self.levels = [self._points(side, lattice, level, wide.size) for level in range(lattice.levels + 1)]
+        self.flat = tables.ravel()
+        self.levels = [
+            (x, y, weights, (np.searchsorted(used, radii) * wide.size).astype(np.uint32))
+            for x, y, weights, radii in levels
+        ]
         self.weight = float(np.abs(side.weights).sum() * np.abs(side.table).max(initial=0.0))
 
     @staticmethod
     def _points(
-        side: Side, lattice: Lattice, level: int, table_size: int
-    ) -> tuple[Float32Array, Float32Array, Float32Array, NDArray[np.uint32]]:
-        """x, y in cells, weight and offset of the table that bounds it, for every (merged) point."""
+        side: Side, lattice: Lattice, level: int
+    ) -> tuple[Float32Array, Float32Array, Float32Array, IntArray]:
+        """x, y in cells, weight, and radius of the table that bounds it, for every (merged) point."""
         points, weights, blur = side.points, side.weights, np.zeros(len(side.points))
         edge = _cluster(level, lattice.cell)
         if edge and len(points):
             points, weights, blur = _merged(points, weights, edge)
-        cells = np.zeros(len(points), dtype=int)
-        if level:
-            shift = lattice.half(level) * sqrt(2)
-            lever = np.linalg.norm(_from_pivot(side, points, lattice.window), axis=1)
-            if side.backward:  # T⁻¹ p = C(−Δθ) (p − Δ): the turn swings the shift, too
-                lever += lattice.disc + shift
-            moved = shift + _chord(lattice.half_turn(level)) * lever + blur
-            cells = np.ceil(moved / side.grid.resolution + HAIR).astype(int)
-        which = np.searchsorted(RADII, cells)
-        order = np.argsort(which, kind="stable")  # neighbours in one table are neighbours in memory
+        shift = lattice.half(level) * sqrt(2)
+        lever = np.linalg.norm(_from_pivot(side, points, lattice.window), axis=1)
+        if side.backward:  # T⁻¹ p = C(−Δθ) (p − Δ): the turn swings the shift, too
+            lever += lattice.disc + shift
+        moved = shift + _chord(lattice.half_turn(level)) * lever + blur
+        radii = np.array(RADII)[np.searchsorted(RADII, np.ceil(moved / side.grid.resolution + HAIR))]
+        order = np.argsort(radii, kind="stable")  # neighbours in one table are neighbours in memory
         x, y = np.ascontiguousarray((points[order] / side.grid.resolution).T, dtype=np.float32)
-        return x, y, weights[order].astype(np.float32), (which[order] * table_size).astype(np.uint32)
+        return x, y, weights[order].astype(np.float32), radii[order]
 
     def cost(self, level: int) -> int:
         """Look-ups per block."""
-        return len(self.levels[level][0])
+        return len(self.levels[level - 1][0]) if level else len(self.side.points)
 
     def __call__(self, poses: FloatArray, level: int) -> FloatArray:
         """(P,) bound of the side's sum over the blocks with these middles; level 0: the sum itself."""
+        if level == 0:
+            return self.side(poses, Lookup.NEAREST)
         motions = self.side.motions(poses)
         motions[:, 2:] += self.margin
         single = motions.astype(np.float32)
-        x, y, weights, offset = self.levels[level]
+        x, y, weights, offset = self.levels[level - 1]
         values = np.zeros(len(poses))
         rows, cols = self.shape
 

@@ -21,16 +21,19 @@ from algorithms.objective import Objective
 from algorithms.pose import FloatArray, wrap_angles
 from algorithms.window import CoupledWindow
 
-BATCH = 512  # blocks opened between two looks at the best value, at least
+BATCH = 256  # blocks opened between two looks at the best value, at least
+MOST_RIVALS = 5
 
 
 @dataclass(frozen=True)
 class ProofConfig:
     """Settings of the certificate."""
 
+    whole_circle: bool = False
+    """Search the whole circle in the coupled window, with proof; the best of it is then the answer."""
     angle: Annotated[float, Bounds(1, 90, 1, "°", "", "rival's turn")] = 10.0
     """Two transforms are two answers where they turn by more than this apart, or"""
-    distance: Annotated[float, Bounds(0.1, 5, 0.1, "m", "", "rival's shift")] = 0.5
+    distance: Annotated[float, Bounds(0.1, 5, 0.1, "m", "", "rival's shift")] = 0.7
     """put the seen robot at places farther apart than this."""
     patience: Annotated[int, Bounds(1, 1000, 1, "10⁵ nodes", "", "patience")] = 30
     """The search stops unproven after so many nodes, with the gap that is left."""
@@ -43,13 +46,13 @@ class ProofConfig:
 class ProofState:
     """How far the proof has come; its arrays are copies.
 
-    rival_sought     : False while the best is proven, True in the second pass
+    rival_sought     : False while the best is proven, True in the passes after it
     nodes            : blocks bounded so far, single transforms among them
     best, best_value : (3,) x, y, theta of T_ref_mov, and its value; None before the first
-    ceiling          : no transform of the lattice is better than this (in the second pass: none elsewhere)
-    rival, rival_value : the same of the best transform elsewhere; None where there is none above
-                       ``floor``
-    floor            : the second pass does not look for rivals below this value
+    ceiling          : no transform of the lattice is better than this; once proven, none elsewhere
+    rivals, rival_values : (R, 3), (R,) the best transforms elsewhere, best first, each another answer
+                       than those before it; the last one may not be final before ``stopped``
+    floor            : rivals below this value are not looked for
     turns            : (A,) middles of the sectors of the circle; radians
     ceilings, found  : (A,) bound of each sector, and the best value met in it (−inf: none looked at)
     stopped          : why the search ended; None while it goes on
@@ -61,14 +64,24 @@ class ProofState:
     best: FloatArray | None
     best_value: float
     ceiling: float
-    rival: FloatArray | None
-    rival_value: float
+    rivals: FloatArray
+    rival_values: FloatArray
     floor: float
     turns: FloatArray
     ceilings: FloatArray
     found: FloatArray
     stopped: str | None
     proven: bool
+
+    @property
+    def rival(self) -> FloatArray | None:
+        """(3,) the best rival; None where there is none above ``floor``."""
+        return np.asarray(self.rivals[0], dtype=np.float64) if len(self.rivals) else None
+
+    @property
+    def rival_value(self) -> float:
+        """Its value; −inf without one."""
+        return float(self.rival_values[0]) if len(self.rivals) else -np.inf
 
     @property
     def gap(self) -> float:
@@ -214,60 +227,68 @@ def prove(
     search = _Search(objective, window)
     lattice = search.lattice
     patience = config.patience * 100_000
-    best_value, best = search.single.best()
-    rival_value, rival = -np.inf, None
+    answers: list[IntArray] = []  # the best, then its rivals
+    values: list[float] = []
+    leading: tuple[float, IntArray | None] = search.single.best()
     least = -np.inf
-    sought = proven = False
+    proven = False
 
     def state(stopped: str | None) -> ProofState:
+        nodes, sums = [*answers], [*values]
+        if leading[1] is not None:
+            nodes, sums = [*nodes, leading[1]], [*sums, leading[0]]
+        poses = lattice.poses(lattice.coordinates(np.array(nodes).reshape(-1, 3), 0))
         ceilings = search.ceilings()
         return ProofState(
-            rival_sought=sought,
+            rival_sought=proven,
             nodes=search.nodes,
-            best=None if best is None else lattice.poses(lattice.coordinates(best[None], 0))[0],
-            best_value=best_value,
-            ceiling=max(search.top, rival_value, least) if sought else max(search.top, best_value),
-            rival=None if rival is None else lattice.poses(lattice.coordinates(rival[None], 0))[0],
-            rival_value=rival_value,
+            best=poses[0] if len(poses) else None,
+            best_value=sums[0] if sums else -np.inf,
+            ceiling=max(search.top, leading[0], least),
+            rivals=poses[1:],
+            rival_values=np.array(sums[1:]),
             floor=least,
             turns=wrap_angles((np.arange(search.sectors) + 0.5) * 2**search.levels * lattice.step),
-            ceilings=np.minimum(ceilings, best_value) if proven else ceilings,
+            ceilings=np.minimum(ceilings, sums[0]) if proven else ceilings,
             found=search.found.copy(),
             stopped=stopped,
             proven=proven,
         )
 
-    while search.open_best(best_value):
-        best_value, best = search.single.best()
-        if search.nodes > patience:
-            yield state(f"not proven: stopped after {search.nodes:,} blocks")
-            return
-        yield state(None)
-    if best is None:
-        yield state("the window holds no transform of the lattice")
-        return
-    proven = True
-    if best_value <= 0:
-        yield state("proven, but nothing speaks for it")
-        return
-    yield state(None)
-    sought, least = True, floor * best_value
-    at = lattice.coordinates(best[None], 0)[0]
-
     def elsewhere(nodes: IntArray, level: int) -> BoolArray:
-        """Whether a block holds a transform that is another answer than the best."""
-        off = lattice.coordinates(nodes, level) - at
-        apart = np.hypot(off[:, 0], off[:, 1]) + lattice.half(level) * sqrt(2)
-        turned = np.abs(wrap_angles(off[:, 2])) + lattice.half_turn(level)
-        return np.asarray((apart > config.distance) | (turned > config.angle * pi / 180))
+        """Whether a block holds a transform that is another answer than those found."""
+        out = np.ones(len(nodes), dtype=np.bool_)
+        at = lattice.coordinates(nodes, level)
+        for answer in lattice.coordinates(np.array(answers), 0):
+            off = at - answer
+            apart = np.hypot(off[:, 0], off[:, 1]) + lattice.half(level) * sqrt(2)
+            turned = np.abs(wrap_angles(off[:, 2])) + lattice.half_turn(level)
+            out &= (apart > config.distance) | (turned > config.angle * pi / 180)
+        return out
 
-    search.single.keep(elsewhere(search.single.nodes, 0))
-    rival_value, rival = search.single.best(least)
-    search.open_again()
-    while search.open_best(max(rival_value, least), elsewhere):
-        rival_value, rival = search.single.best(least)
-        if search.nodes > patience:
-            yield state(f"proven; the search for rivals stopped after {search.nodes:,} blocks")
-            return
-        yield state(None)
-    yield state(f"proven: {search.nodes:,} blocks bounded")
+    while len(answers) <= MOST_RIVALS:
+        while search.open_best(max(leading[0], least), elsewhere if answers else None):
+            leading = search.single.best(least)
+            if search.nodes > patience:
+                yield state(f"{'proven; rivals ' if proven else ''}not all searched: {search.nodes:,} blocks")
+                return
+            yield state(None)
+        if leading[1] is None:
+            break
+        answers.append(leading[1])
+        values.append(leading[0])
+        if not proven and leading[0] <= 0:
+            break
+        least = max(least, floor * leading[0])
+        search.single.keep(elsewhere(search.single.nodes, 0))
+        search.open_again()
+        proven, leading = True, search.single.best(least)
+    if not answers:
+        yield state("the window holds no transform of the lattice")
+    elif not proven:
+        proven = True
+        leading = (-np.inf, None)
+        yield state("proven, but nothing speaks for it")
+    else:
+        leading = (-np.inf, None)
+        yield state(f"proven: {search.nodes:,} blocks bounded")

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from enum import Enum
 from math import ceil, cos, floor, sin
 
-import cv2
 import numpy as np
 
 from algorithms.gridmap import (
@@ -21,9 +20,6 @@ from algorithms.gridmap import (
 )
 from algorithms.kernels import kernel, spread
 from algorithms.pose import Pose2
-
-# Two drawings of one wall may miss each other by a ragged cell in each of the maps.
-WALL_REACH = 2  # cells of the coarser map
 
 
 class Conflict(str, Enum):
@@ -43,8 +39,6 @@ class Fusion:
     agreed      : cells where both are free or both are walls
     agreed_walls : cells where both are walls
     conflicting : cells where one is a wall and the other is free
-    shared_walls : wall cells of either map that the other map knows something about
-    supported_walls : those of them that have a wall of the other map within ``WALL_REACH`` cells
     """
 
     merged: GridMap
@@ -53,21 +47,11 @@ class Fusion:
     agreed: int
     agreed_walls: int
     conflicting: int
-    shared_walls: int
-    supported_walls: int
 
     @property
     def overlap(self) -> int:
         """Cells known to both maps."""
         return self.agreed + self.conflicting
-
-    @property
-    def wall_support(self) -> float:
-        """Share of the walls seen by one map, in the area known to both, that the other confirms.
-
-        Free floor agrees with free floor almost anywhere; walls do not. 0 where there are none.
-        """
-        return self.supported_walls / self.shared_walls if self.shared_walls else 0.0
 
     @property
     def acceptance_index(self) -> float:
@@ -111,8 +95,6 @@ def fuse(ref: GridMap, mov: GridMap, T_ref_mov: Pose2, conflict: Conflict = Conf
     mov_cells[rows[inside], cols[inside]] = OCCUPIED
     merged = np.empty(shape, dtype=np.int8)
     agreed_free, agreed_walls, conflicting = _merge(ref_cells, mov_cells, merged, [*Conflict].index(conflict))
-    reach = ceil(WALL_REACH * max(ref.resolution, mov.resolution) / cell)
-    shared_walls, supported_walls = _support(ref_cells, mov_cells, reach)
     return Fusion(
         merged=GridMap(merged, cell, ref.origin @ T_grid_merged, "merged"),
         ref_cells=ref_cells,
@@ -120,21 +102,7 @@ def fuse(ref: GridMap, mov: GridMap, T_ref_mov: Pose2, conflict: Conflict = Conf
         agreed=agreed_free + agreed_walls,
         agreed_walls=agreed_walls,
         conflicting=conflicting,
-        shared_walls=shared_walls,
-        supported_walls=supported_walls,
     )
-
-
-def _support(ref: CellArray, mov: CellArray, reach: int) -> tuple[int, int]:
-    """Wall cells where the other map knows something, and how many have its wall within reach."""
-    around = np.ones((2 * reach + 1, 2 * reach + 1), dtype=np.uint8)
-    shared = supported = 0
-    for walls_of, other in ((ref, mov), (mov, ref)):
-        seen = (walls_of >= OCCUPIED_FROM) & (other != UNKNOWN)
-        near = cv2.dilate((other >= OCCUPIED_FROM).astype(np.uint8), around)
-        shared += int(np.count_nonzero(seen))
-        supported += int(np.count_nonzero(near[seen]))
-    return shared, supported
 
 
 def _look_up(source: GridMap, T_source_target: Pose2, cell: float, target: CellArray) -> None:

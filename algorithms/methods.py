@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from algorithms import bilateral, pipeline
+from algorithms.augment import AugmentConfig
+from algorithms.certificate import ProofConfig
 from algorithms.chain import Memo
 from algorithms.gridmap import GridMap
 from algorithms.observation import Observation, as_observations, check_standing
@@ -31,9 +33,19 @@ class Method:
     defaults: Any
 
 
-DEFAULT_METHOD = "spectra-swarm"
+DEFAULT_METHOD = "spectra-proven"
 
 METHODS: dict[str, Method] = {
+    "spectra-proven": Method(
+        pipeline.run,
+        "Spectra, swarm, proven optimum",
+        PipelineConfig(
+            augment=AugmentConfig(spread=4.0),
+            window=WindowConfig(kind="coupled", deviations=3.5),
+            refine=RefineConfig(objective="agreement"),
+            proof=ProofConfig(whole_circle=True),
+        ),
+    ),
     "spectra-swarm": Method(pipeline.run, "Spectra, all candidates, swarm", PipelineConfig()),
     "spectra-montecarlo": Method(
         pipeline.run,

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from math import hypot, pi
+from math import hypot, radians
 from typing import Annotated, Literal
 
 import numpy as np
 
+from algorithms.agreement import AgreementConfig, make_agreement
 from algorithms.augment import AugmentConfig, augment
 from algorithms.bounds import Bounds, check_bounds
+from algorithms.certificate import ProofConfig, prove
 from algorithms.chain import Chain, Memo
 from algorithms.covariance import peak_covariance
+from algorithms.evidence import evidence
 from algorithms.fuse import Conflict, Fusion, fuse
 from algorithms.gridmap import GridMap
 from algorithms.montecarlo import monte_carlo
-from algorithms.objective import Lookup, make_objective
+from algorithms.objective import Lookup, Objective, make_objective
 from algorithms.observation import Encounter, Observation, encounter
-from algorithms.pose import FloatArray
+from algorithms.polish import covariance_of, polish
+from algorithms.pose import FloatArray, Pose2, pose_error
 from algorithms.search import Optimiser, SearchState
 from algorithms.smm import CandidateConfig, match_turns, shift_candidates
 from algorithms.spectra import SpectraConfig
@@ -31,17 +35,31 @@ from algorithms.steps import (
     HoughDetail,
     MergeResult,
     ObservationDetail,
+    ProofDetail,
+    ProvenDetail,
     RefineDetail,
     ShiftDetail,
     Step,
     WindowDetail,
 )
 from algorithms.swarm import SwarmConfig, settled_within, swarm
-from algorithms.verdict import VerdictConfig, ambiguity_of, judge
-from algorithms.window import Box, BoxConfig, WindowConfig, box_around, paper_window
+from algorithms.verdict import Rival, VerdictConfig, judge, others
+from algorithms.window import (
+    Box,
+    BoxConfig,
+    CoupledWindow,
+    Window,
+    WindowConfig,
+    box_around,
+    coupled_window,
+    paper_window,
+    shift_window,
+)
 
 GIVE_UP_AFTER = 15  # iterations
-GIVE_UP_BELOW = 0.5  # of the best Γ so far
+GIVE_UP_BELOW = 0.5  # of the best value so far
+RIVAL_FLOOR = 0.5  # of the best value: what is below is no rival
+LEAST_DEVIATION = 0.01  # metres; no pair of rasters is known to fit better
 
 OPTIMISERS: dict[str, Optimiser] = {"pso": swarm, "mco": monte_carlo}
 
@@ -56,6 +74,8 @@ class RefineConfig:
     """Bilinear is smooth between cells; nearest is the paper's raster."""
     candidates: Annotated[int, Bounds(1, 24, 1, "", "", "refined")] = 4
     """How many of the best candidates the optimiser works on."""
+    objective: Literal["gamma", "agreement"] = "gamma"
+    """Gamma: eq. (17), ink on ink. Agreement: walls that coincide, less walls in the other's free floor."""
 
     def __post_init__(self) -> None:
         check_bounds(self)
@@ -72,6 +92,8 @@ class PipelineConfig:
     box: BoxConfig = field(default_factory=BoxConfig)
     swarm: SwarmConfig = field(default_factory=SwarmConfig)
     refine: RefineConfig = field(default_factory=RefineConfig)
+    agreement: AgreementConfig = field(default_factory=AgreementConfig)
+    proof: ProofConfig = field(default_factory=ProofConfig)
     verdict: VerdictConfig = field(default_factory=VerdictConfig)
     conflict: Conflict = Conflict.OCCUPIED_WINS
     """Which map is believed where one says wall and the other says free."""
@@ -94,11 +116,15 @@ def run(
            told again (``Step.reused``)
     """
     chain = Chain({} if memo is None else memo)
-    at: Encounter = (
-        yield from chain.stage("observe", (observations,), lambda: [_observe(observations)])
-    ).encounter
+    seen: ObservationDetail = yield from chain.stage(
+        "observe",
+        (observations,),
+        lambda: [ObservationDetail(tuple(encounter(observation) for observation in observations))],
+    )
     augmented: AugmentDetail = yield from chain.stage(
-        "augment", (ref, mov, at, config.augment), lambda: [_augment(ref, mov, at, config.augment)]
+        "augment",
+        (ref, mov, seen, config.augment),
+        lambda: [_augment(ref, mov, seen.encounter, config.augment)],
     )
     hough: HoughDetail = yield from chain.stage(
         "spectra",
@@ -114,50 +140,59 @@ def run(
             config.box,
             config.swarm.particles,
             config.refine.lookup,
+            config.refine.objective,
+            config.agreement,
             seed,
         ),
-        lambda: _search(at, augmented, hough, config, seed),
+        lambda: _search(ref, mov, seen.encounters, augmented, hough, config, seed),
     )
     refined: AnswersDetail = yield from chain.stage(
         "refine",
         (found, config.box, config.swarm, config.refine, seed),
         lambda: _refine(found, config, seed),
     )
-    best = refined.answers[0]
+    proven: ProvenDetail | None = None
+    if config.proof.whole_circle:
+        proven = yield from chain.stage(
+            "prove", (refined, config.proof), lambda: _prove(found, refined, seen.encounters, config)
+        )
+    best = proven.peak.T_ref_mov if proven else refined.answers[0].T_ref_mov
     fusion: Fusion = yield from chain.stage(
         "fuse",
-        (ref, mov, refined, config.conflict),
-        lambda: [fuse(ref, mov, best.T_ref_mov, config.conflict)],
+        (ref, mov, refined, proven, config.conflict),
+        lambda: [fuse(ref, mov, best, config.conflict)],
     )
-    yield from chain.stage(
-        "verdict",
-        (fusion, refined, config.verdict, method),
-        lambda: [
+
+    def conclude() -> list[Detail]:
+        rivals = _rivals(refined, proven, seen.encounter, config)
+        verdict = judge(
+            fusion,
+            evidence(ref, mov, best),
+            best,
+            seen.encounters,
+            [Rival(T, share, evidence(ref, mov, T)) for T, share in rivals],
+            config.verdict,
+            config.window.margin,
+            _doubts(refined, proven),
+        )
+        return [
             MergeResult(
-                T_ref_mov=best.T_ref_mov,
-                covariance=peak_covariance(
-                    found.objective,
-                    best.T_ref_mov,
-                    box_around(best.T_ref_mov, found.window, config.box),
-                    config.augment.spread,
-                ),
-                value=best.value,
-                verdict=judge(
-                    fusion, best.T_ref_mov, at, _ambiguity(refined, at, config.box), config.verdict
-                ),
+                T_ref_mov=best,
+                covariance=_covariance(found, refined, proven, seen.encounters, config),
+                value=proven.peak.value if proven else refined.answers[0].value,
+                verdict=verdict,
                 fusion=fusion,
-                encounter=at,
+                encounters=seen.encounters,
                 answers=refined.answers,
                 method=method,
                 seed=seed,
+                proof=proven.state if proven else None,
+                search_found_it=proven.search_found_it if proven else None,
                 timings_s=chain.timings_s,
             )
-        ],
-    )
+        ]
 
-
-def _observe(observations: tuple[Observation, ...]) -> ObservationDetail:
-    return ObservationDetail(tuple(encounter(observation) for observation in observations))
+    yield from chain.stage("verdict", (fusion, refined, proven, config.verdict, method), conclude)
 
 
 def _augment(ref: GridMap, mov: GridMap, at: Encounter, config: AugmentConfig) -> AugmentDetail:
@@ -169,26 +204,53 @@ def _augment(ref: GridMap, mov: GridMap, at: Encounter, config: AugmentConfig) -
 
 
 def _search(
-    at: Encounter, augmented: AugmentDetail, hough: HoughDetail, config: PipelineConfig, seed: int
+    ref: GridMap,
+    mov: GridMap,
+    encounters: Sequence[Encounter],
+    augmented: AugmentDetail,
+    hough: HoughDetail,
+    config: PipelineConfig,
+    seed: int,
 ) -> Iterator[Detail]:
-    """A candidate per turn, then a first look into the box of each, which ranks them by Γ."""
-    window = paper_window(at, config.window)
-    yield WindowDetail(window)
+    """A candidate per turn, then a first look into the box of each, which ranks them by their value."""
+    window = shift_window(encounters, config.window)
+    coupled = coupled_window(encounters, config.window)
+    yield WindowDetail(window, coupled, paper_window(encounters[0], replace(config.window, kind="origin")))
     candidates = []
     turns = shift_candidates(augmented.ref, augmented.mov, hough.match, window)
     for index, candidate in enumerate(turns):
+        if isinstance(window, CoupledWindow):  # its rectangle reaches beyond the disc
+            candidate = replace(candidate, T_ref_mov=window.pulled_in(candidate.T_ref_mov))
         yield ShiftDetail(index, len(hough.match.turns), candidate)
         candidates.append(candidate)
-    objective = make_objective(augmented.ref, augmented.mov, config.refine.lookup)
+    if config.refine.objective == "agreement":
+        objective = make_agreement(
+            ref, mov, encounters, config.augment, config.agreement, coupled, config.refine.lookup
+        )
+    else:
+        objective = make_objective(augmented.ref, augmented.mov, config.refine.lookup)
     looked = []
     for index, candidate in enumerate(candidates):
         box = box_around(candidate.T_ref_mov, window, config.box)
         rng = np.random.default_rng([seed, 0, index])
         poses = rng.uniform(box.low, box.high, (config.swarm.particles, 3))
         poses[0] = box.centre
-        looked.append(replace(candidate, value=float(objective(box.transforms(poses)).max())))
-    looked.sort(key=lambda candidate: -(candidate.value or 0.0))
+        looked.append(replace(candidate, value=float(_values(objective, window, box, poses).max())))
+    looked.sort(key=lambda candidate: -_known(candidate.value))
     yield CandidatesDetail(tuple(looked), objective, window)
+
+
+def _values(objective: Objective, window: Window | CoupledWindow, box: Box, poses: FloatArray) -> FloatArray:
+    """(P,) values of (P, 3) coordinates in a box; −inf outside a coupled window."""
+    transforms = box.transforms(poses)
+    values = objective(transforms)
+    if isinstance(window, CoupledWindow):
+        values[~window.contains(transforms)] = -np.inf
+    return values
+
+
+def _known(value: float | None) -> float:
+    return -np.inf if value is None else value
 
 
 def _refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Iterator[Detail]:
@@ -202,7 +264,7 @@ def _refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Itera
         rng = np.random.default_rng([seed, 1, index])
 
         def value(poses: FloatArray, box: Box = box) -> FloatArray:
-            return found.objective(box.transforms(poses))
+            return _values(found.objective, found.window, box, poses)
 
         for state in optimise(value, box, config.swarm, settled, rng):
             if _hopeless(state, answers):
@@ -212,7 +274,7 @@ def _refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Itera
                 break
         answers.append(Answer(box.transform(state.best), state.best_value, state.stopped or ""))
     answers += [
-        Answer(candidate.T_ref_mov, candidate.value or 0.0, "only looked at")
+        Answer(candidate.T_ref_mov, _known(candidate.value), "only looked at")
         for candidate in found.candidates[config.refine.candidates :]
     ]
     answers.sort(key=lambda answer: -answer.value)
@@ -222,18 +284,79 @@ def _refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Itera
 def _hopeless(state: SearchState, answers: Sequence[Answer]) -> bool:
     """Whether a candidate need not be followed to its end: it has had its time, and is far behind.
 
-    What is given up has not even half of the best Γ, so it could neither win nor count as a rival.
+    What is given up has not even half of the best value so far, so it could neither win nor count as a
+    rival.
     """
     best = max((answer.value for answer in answers), default=0.0)
     late = state.iteration + 1 >= GIVE_UP_AFTER
-    return late and state.stopped is None and state.best_value < GIVE_UP_BELOW * best
+    return late and state.stopped is None and best > 0 and state.best_value < GIVE_UP_BELOW * best
 
 
-def _ambiguity(refined: AnswersDetail, at: Encounter, box: BoxConfig) -> float:
-    """Γ of the best answer outside the winner's own box over the winner's."""
-    return ambiguity_of(
+def _prove(
+    found: CandidatesDetail,
+    refined: AnswersDetail,
+    encounters: Sequence[Encounter],
+    config: PipelineConfig,
+) -> Iterator[Detail]:
+    """The best of the whole circle, and whether the optimiser had found it."""
+    window = coupled_window(encounters, config.window)
+    for state in prove(found.objective, window, config.proof, RIVAL_FLOOR):
+        yield ProofDetail(state, window)
+    searched = refined.answers[0].T_ref_mov
+    start = searched if state.best is None else Pose2.from_array(state.best)
+    smooth = replace(found.objective, lookup=Lookup.BILINEAR)
+    peak = polish(smooth, start, window.pivot, config.augment.spread)
+    distance, angle = pose_error(searched, peak.T_ref_mov, window.pivot)
+    found_it = distance <= config.proof.distance and angle <= radians(config.proof.angle)
+    yield ProvenDetail(state, peak, found_it and state.best is not None)
+
+
+def _doubts(refined: AnswersDetail, proven: ProvenDetail | None) -> list[str]:
+    """What the search itself has against its answer."""
+    if proven is None:
+        return [] if refined.answers[0].value > 0 else ["near the encounter no walls coincide"]
+    if proven.state.best is None:
+        return ["the sightings contradict each other: no transform agrees with all of them"]
+    doubts = []
+    if proven.state.best_value <= 0:
+        doubts.append("near the encounter more wall contradicts than agrees")
+    if not proven.state.proven:
+        doubts.append("the search was stopped before it had ruled out a better place")
+    return doubts
+
+
+def _rivals(
+    refined: AnswersDetail, proven: ProvenDetail | None, at: Encounter, config: PipelineConfig
+) -> list[tuple[Pose2, float]]:
+    """Other answers with their share of the best value, those of less than half left out."""
+    if proven is not None:
+        state = proven.state
+        pairs = zip(state.rivals, state.rival_values.tolist(), strict=True)
+        return [(Pose2.from_array(pose), value / state.best_value) for pose, value in pairs]
+    best = refined.answers[0].value
+    if best <= 0:
+        return []
+    elsewhere = others(
         [(answer.T_ref_mov, answer.value) for answer in refined.answers],
         at.x_mov,
-        hypot(box.sigma_x, box.sigma_y),
-        2 * box.sigma_theta * pi / 180,
+        hypot(config.box.sigma_x, config.box.sigma_y),
+        radians(2 * config.box.sigma_theta),
     )
+    return [(T, value / best) for T, value in elsewhere if value > RIVAL_FLOOR * best]
+
+
+def _covariance(
+    found: CandidatesDetail,
+    refined: AnswersDetail,
+    proven: ProvenDetail | None,
+    encounters: Sequence[Encounter],
+    config: PipelineConfig,
+) -> FloatArray:
+    """Calibrated for the agreement; of Γ, which is no likelihood, the width of its peak."""
+    if proven is None or config.refine.objective == "gamma":
+        best = proven.peak.T_ref_mov if proven else refined.answers[0].T_ref_mov
+        box = box_around(best, found.window, config.box)
+        return peak_covariance(found.objective, best, box, config.augment.spread)
+    window = coupled_window(encounters, config.window)
+    widest = np.append(np.sqrt(np.diag(window.covariances[0])), radians(config.proof.angle))
+    return covariance_of(proven.peak, window.pivot, config.agreement.evidence, widest, LEAST_DEVIATION)

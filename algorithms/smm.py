@@ -22,7 +22,7 @@ from algorithms.spectra import (
     parabolic_offset,
     turned,
 )
-from algorithms.window import Window
+from algorithms.window import CoupledWindow, Window
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def circular_peaks(signal: FloatArray) -> list[int]:
 
 
 def shift_candidates(
-    ref: AugmentedMap, mov: AugmentedMap, match: HoughMatch, window: Window
+    ref: AugmentedMap, mov: AugmentedMap, match: HoughMatch, window: Window | CoupledWindow
 ) -> Iterator[Candidate]:
     """Yield one candidate per turn: X and Y spectra of the turned map, eqs. (13)–(16)."""
     step = max(ref.grid.resolution, mov.grid.resolution)

@@ -6,15 +6,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from algorithms.augment import AugmentedMap
+from algorithms.certificate import ProofState
 from algorithms.fuse import Fusion
 from algorithms.objective import Objective
 from algorithms.observation import Encounter
+from algorithms.polish import Peak
 from algorithms.pose import FloatArray, Pose2
 from algorithms.search import SearchState
 from algorithms.smm import Candidate
 from algorithms.spectra import HoughMatch
 from algorithms.verdict import Verdict
-from algorithms.window import Box, Window
+from algorithms.window import Box, CoupledWindow, Window
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,9 +48,15 @@ class HoughDetail:
 
 @dataclass(frozen=True, eq=False)
 class WindowDetail:
-    """Stage "search": the paper's window for the shift, eqs. (6)–(10)."""
+    """Stage "search": the window for the shift: the paper's, eqs. (6)–(10), or the coupled one.
 
-    window: Window
+    coupled : the coupled window whichever of the two is used, to show it beside the other
+    paper   : the paper's window as printed, for the same purpose
+    """
+
+    window: Window | CoupledWindow
+    coupled: CoupledWindow
+    paper: Window
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +74,7 @@ class CandidatesDetail:
 
     candidates: tuple[Candidate, ...]
     objective: Objective
-    window: Window
+    window: Window | CoupledWindow
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,14 +108,40 @@ class AnswersDetail:
 
 
 @dataclass(frozen=True, eq=False)
+class ProofDetail:
+    """Stage "prove": one look at the branch and bound over the whole circle."""
+
+    state: ProofState
+    window: CoupledWindow
+
+
+@dataclass(frozen=True, eq=False)
+class ProvenDetail:
+    """End of stage "prove": the best transform of the whole circle, refined below a cell.
+
+    state      : the last of the proof
+    peak       : its best, polished; the optimiser's best where the window holds no transform at all
+    search_found_it : whether the optimiser had come to the same answer
+    """
+
+    state: ProofState
+    peak: Peak
+    search_found_it: bool
+
+
+@dataclass(frozen=True, eq=False)
 class MergeResult:
     """The answer, and all that is needed to report it; detail of the last step, stage "verdict".
 
     T_ref_mov     : best transform found, also where the merge is refused
     covariance    : (3, 3) of x, y, theta; metres and radians
-    value         : Γ(T_ref_mov), eq. (17); None for a method without an objective
-    answers       : everything the search ended on, best first; the first is T_ref_mov
-    timings_s     : seconds per stage
+    value         : what the method's objective says of T_ref_mov: Γ, eq. (17), or metres of wall that
+                    agree; None for a method without an objective
+    encounters    : where robot 2 was seen, a place per sighting
+    answers       : everything the optimiser ended on, best first; the first is T_ref_mov unless it was
+                    proven that another is better
+    proof         : how the proof ended; None for a method without one
+    search_found_it : whether the optimiser had come to the proven answer; None without a proof
     """
 
     T_ref_mov: Pose2
@@ -115,12 +149,23 @@ class MergeResult:
     value: float | None
     verdict: Verdict
     fusion: Fusion
-    encounter: Encounter
+    encounters: tuple[Encounter, ...]
     answers: tuple[Answer, ...]
     method: str
     seed: int
-    proven_optimal: bool = False
+    proof: ProofState | None = None
+    search_found_it: bool | None = None
     timings_s: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def encounter(self) -> Encounter:
+        """The first sighting's place."""
+        return self.encounters[0]
+
+    @property
+    def proven_optimal(self) -> bool:
+        """Whether no transform of the whole circle fits better."""
+        return self.proof is not None and self.proof.proven
 
 
 Detail = (
@@ -132,6 +177,8 @@ Detail = (
     | CandidatesDetail
     | RefineDetail
     | AnswersDetail
+    | ProofDetail
+    | ProvenDetail
     | Fusion
     | MergeResult
 )
@@ -141,7 +188,7 @@ Detail = (
 class Step:
     """One thing a method has done.
 
-    stage   : "observe", "augment", "spectra", "search", "refine", "fuse" or "verdict"
+    stage   : "observe", "augment", "spectra", "search", "refine", "prove", "fuse" or "verdict"
     detail  : what came out of it, for whoever draws or reports it
     seconds : spent on it, without what the caller did between two steps
     reused  : whether it comes from an earlier run with the same settings (``seconds`` are that run's)

@@ -1,38 +1,59 @@
-"""Is the merge to be trusted? Numbers, and a sentence that says why or why not."""
+"""Is the merge to be trusted? Numbers that mean the same in every building, and a sentence."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
+from math import degrees
 from typing import Annotated
 
 import numpy as np
 
 from algorithms.bounds import Bounds, check_bounds
+from algorithms.evidence import Evidence
 from algorithms.fuse import Fusion
 from algorithms.observation import Encounter
 from algorithms.pose import FloatArray, Pose2, pose_error
+
+SAME_PLACE = 0.5  # metres; answers farther apart are said to be apart, nearer ones turned
 
 
 @dataclass(frozen=True)
 class VerdictConfig:
     """When a merge is accepted."""
 
-    acceptance: Annotated[float, Bounds(0, 1, 0.01, "", "ω_acc", "acceptance index")] = 0.85
-    """Share of the cells known to both maps that must agree."""
-    support: Annotated[float, Bounds(0, 1, 0.01, "", "", "wall support")] = 0.5
-    """Share of the walls in the area known to both that the other map must confirm: more walls have
-    to speak for the merge than against it."""
+    contradiction: Annotated[float, Bounds(0, 1, 0.01, "", "", "contradiction")] = 0.09
+    """Share of the walls that both robots should have seen which the other map may deny, once every
+    patch of the maps may slip a little. Lidar maps of one place stay below 6 %."""
+    bent_contradiction: Annotated[float, Bounds(0, 1, 0.01, "", "", "contradiction, bent")] = 0.25
+    """The same for maps that are bent: slipping must then take away most of the contradictions."""
+    bent: Annotated[float, Bounds(0, 1, 0.01, "", "", "bent")] = 0.46
+    """Share of the contradictions that slipping must take away for maps to count as bent. Of two
+    buildings' maps it takes away half at most."""
+    wall: Annotated[float, Bounds(0, 200, 1, "m", "", "shared wall")] = 15.0
+    """Wall that both robots should have seen, below which nothing can be said."""
+    bent_wall: Annotated[float, Bounds(0, 500, 5, "m", "", "shared wall, bent")] = 60.0
+    """The same for bent maps: what is vague must be long."""
     ambiguity: Annotated[float, Bounds(0, 1, 0.01, "", "", "rival")] = 0.8
-    """Refused where another answer reaches this share of the best Γ."""
-    overlap: Annotated[float, Bounds(0, 50, 0.5, "m²", "", "overlap")] = 2.0
-    """Area known to both maps below which nothing can be said."""
+    """Refused where another answer reaches this share of the best value and is contradicted no more."""
     deviations: Annotated[float, Bounds(1, 10, 0.5, "σ", "", "observation")] = 4.0
-    """How far from the sighting the answer may put the seen robot, in standard deviations."""
+    """How far from a sighting the answer may put the seen robot, in standard deviations."""
 
     def __post_init__(self) -> None:
         check_bounds(self)
+
+
+@dataclass(frozen=True)
+class Rival:
+    """Another answer, at another turn or place.
+
+    share    : its value over the best one's
+    evidence : what the walls say of it
+    """
+
+    T_ref_mov: Pose2
+    share: float
+    evidence: Evidence
 
 
 @dataclass(frozen=True)
@@ -42,10 +63,15 @@ class Verdict:
     acceptance_index : agreeing share of the cells known to both, 0 … 1
     overlap_cells    : cells known to both maps
     overlap_area     : the same; m²
-    wall_support     : share of the walls in the area known to both that the other map confirms
-    ambiguity        : Γ of the best answer elsewhere over Γ of this one, 0 … 1; None for a method
+    shared_wall      : wall that both robots should have seen; m
+    contradiction    : share of it that the other map denies, patches slipped
+    rigid_contradiction : the same with the maps as they are
+    bent             : share of the contradictions that slipping takes away
+    ambiguity        : value of the best answer elsewhere over this one's, 0 … 1; None for a method
                        that knows no other answers
-    deviation        : distance of R2 from where it was seen, in standard deviations
+    rival            : that answer; None where there is none worth naming
+    deviation        : distance of R2 from where it was seen, in standard deviations; of several
+                       sightings the largest
     """
 
     accepted: bool
@@ -54,85 +80,132 @@ class Verdict:
     overlap_cells: int
     overlap_area: float
     conflicting_cells: int
-    wall_support: float
+    shared_wall: float
+    contradiction: float
+    rigid_contradiction: float
+    bent: float
     ambiguity: float | None
+    rival: Pose2 | None
     deviation: float
 
 
 def judge(
-    fusion: Fusion, T_ref_mov: Pose2, at: Encounter, ambiguity: float | None, config: VerdictConfig
+    fusion: Fusion,
+    weighed: Evidence,
+    T_ref_mov: Pose2,
+    encounters: Sequence[Encounter],
+    rivals: Sequence[Rival] | None,
+    config: VerdictConfig,
+    margin: float = 0.0,
+    doubts: Sequence[str] = (),
 ) -> Verdict:
     """Accept or refuse a merge; every number that speaks against it is named in the reason.
 
-    ambiguity : Γ of the best answer elsewhere over Γ of this one, from ``ambiguity_of``; None for a
-                method that knows no other answers
+    weighed : what the walls say of T_ref_mov
+    rivals  : other answers, best first; None for a method that knows none
+    margin  : standard deviation of what the sightings' own do not tell; metres
+    doubts  : what the method itself has against its answer, each a clause of a sentence
     """
     cell = fusion.merged.resolution
-    area = fusion.overlap * cell**2
-    deviation = deviation_from(T_ref_mov, at, cell)
-    doubts = []
-    if area < config.overlap:
-        doubts.append(f"only {area:.1f} m² are known to both maps, too little to tell right from wrong")
-    elif fusion.acceptance_index < config.acceptance:
-        doubts.append(
-            f"the maps contradict each other in {1 - fusion.acceptance_index:.0%} "
-            f"of the {area:.0f} m² known to both"
+    deviation = max(deviation_from(T_ref_mov, at, max(cell, margin)) for at in encounters)
+    shared = weighed.agreeing + weighed.contradicting
+    found = list(doubts)
+    if shared < config.wall:
+        found.append(
+            f"only {shared:.0f} m of wall were seen by both robots, too little to tell right from wrong"
         )
-    if area >= config.overlap and fusion.wall_support < config.support:
-        doubts.append(
-            f"only {fusion.wall_support:.0%} of the walls that both robots should have seen coincide"
+    elif not _consistent(weighed, config):
+        found.append(
+            f"the maps disagree on {weighed.contradiction:.0%} of the {shared:.0f} m of wall "
+            "that both robots should have seen"
         )
-    if ambiguity is not None and ambiguity > config.ambiguity:
-        doubts.append(f"another answer fits almost as well ({ambiguity:.0%} of the best Γ)")
+    rival = next((rival for rival in rivals or () if _ambiguous(weighed, rival, config)), None)
+    if rival is not None:
+        found.append(
+            f"two answers fit almost equally well, {_apart(rival.T_ref_mov, T_ref_mov, encounters[0])}: "
+            "a second observation would decide"
+        )
     if deviation > config.deviations:
-        doubts.append(f"it puts the seen robot {deviation:.1f} standard deviations from where it was seen")
-    if doubts:
-        reason = "Refused: " + "; ".join(doubts) + "."
+        found.append(f"it puts the seen robot {deviation:.1f} standard deviations from where it was seen")
+    if found:
+        reason = "Refused: " + "; ".join(found) + "."
     else:
         reason = (
-            f"Merged: {fusion.acceptance_index:.0%} of the {area:.0f} m² known to both agrees, "
-            f"{fusion.wall_support:.0%} of the walls coincide"
-            + (f"; the next best answer reaches {ambiguity:.0%} of its Γ." if ambiguity is not None else ".")
+            f"Merged: the maps agree on {1 - weighed.contradiction:.0%} of the {shared:.0f} m of wall "
+            "that both robots should have seen."
         )
     return Verdict(
-        accepted=not doubts,
+        accepted=not found,
         reason=reason,
         acceptance_index=fusion.acceptance_index,
         overlap_cells=fusion.overlap,
-        overlap_area=area,
+        overlap_area=fusion.overlap * cell**2,
         conflicting_cells=fusion.conflicting,
-        wall_support=fusion.wall_support,
-        ambiguity=ambiguity,
+        shared_wall=shared,
+        contradiction=weighed.contradiction,
+        rigid_contradiction=weighed.rigid_contradiction,
+        bent=weighed.bent,
+        ambiguity=None if rivals is None else max((rival.share for rival in rivals), default=0.0),
+        rival=None if rival is None else rival.T_ref_mov,
         deviation=deviation,
     )
 
 
-def deviation_from(T_ref_mov: Pose2, at: Encounter, cell: float) -> float:
+def _consistent(weighed: Evidence, config: VerdictConfig) -> bool:
+    """Whether two maps say the same: crisp ones nearly everywhere, bent ones as far as they bend."""
+    if weighed.contradiction <= config.contradiction:
+        return True
+    return (
+        weighed.contradiction <= config.bent_contradiction
+        and weighed.bent >= config.bent
+        and weighed.agreeing >= config.bent_wall
+    )
+
+
+def _ambiguous(weighed: Evidence, rival: Rival, config: VerdictConfig) -> bool:
+    """Whether a rival leaves the answer in doubt.
+
+    A rival that is contradicted three times as much as the answer is none: its walls fit near the
+    encounter, where every corridor looks alike, and not beyond. One that is hardly contradicted at all
+    is to be feared even with half the value, where the answer itself is contradicted.
+    """
+    clean = config.contradiction
+    if rival.share > config.ambiguity:
+        return rival.evidence.contradiction <= max(clean, 3 * weighed.contradiction)
+    return rival.evidence.contradiction <= clean < weighed.contradiction
+
+
+def _apart(a: Pose2, b: Pose2, at: Encounter) -> str:
+    distance, turn = pose_error(a, b, at.x_mov)
+    if distance > SAME_PLACE and degrees(turn) < 1:
+        return f"{distance:.1f} m apart"
+    return f"{degrees(turn):.0f}° apart"
+
+
+def deviation_from(T_ref_mov: Pose2, at: Encounter, margin: float) -> float:
     """How far T puts R2 from where it was seen, in standard deviations of the sighting.
 
-    A robot's own position is known to no better than the cell it stands in: one cell is added to
-    the sighting's standard deviation in every direction.
+    margin : added to the sighting's standard deviation in every direction; metres. At least a cell: a
+             robot's own position is known to no better than the cell it stands in
     """
     miss = T_ref_mov.apply(at.x_mov) - at.x_ref
-    covariance = at.covariance + np.eye(2) * cell**2
-    return sqrt(float(miss @ np.linalg.solve(covariance, miss)))
+    covariance = at.covariance + np.eye(2) * margin**2
+    return float(np.sqrt(miss @ np.linalg.solve(covariance, miss)))
 
 
-def ambiguity_of(
+def others(
     answers: Sequence[tuple[Pose2, float]], at_mov: FloatArray, distance: float, angle: float
-) -> float:
-    """Γ of the best answer elsewhere over Γ of the best; 0 where there is none, 1 without evidence.
+) -> list[tuple[Pose2, float]]:
+    """The answers elsewhere than the best, each elsewhere than those before it, with their values.
 
-    answers  : transforms with their Γ, best first
+    answers  : transforms with their values, best first
     at_mov   : (2,) where two answers are compared, x̂2; metres, mov frame
     distance : metres, and
     angle    : radians, from which on two transforms are two answers
     """
-    if not answers or answers[0][1] <= 0:
-        return 1.0
-    best, best_value = answers[0]
-    for T, value in answers[1:]:
-        apart, turned = pose_error(T, best, at_mov)
-        if apart > distance or turned > angle:
-            return value / best_value
-    return 0.0
+    kept: list[tuple[Pose2, float]] = []
+    for T, value in answers:
+        apart = [pose_error(T, known, at_mov) for known, _ in kept]
+        if all(metres > distance or turn > angle for metres, turn in apart):
+            kept.append((T, value))
+    return kept[1:]

@@ -162,6 +162,15 @@ class CoupledWindow:
             np.linalg.norm(np.einsum("sij,psj->psi", self.whitening, off), axis=-1), dtype=np.float64
         )
 
+    def pulled_in(self, T_ref_mov: Pose2) -> Pose2:
+        """The transform, shifted straight towards the first sighting until it is in its disc."""
+        off = T_ref_mov.apply(self.pivot) - self.x_ref[0]
+        deviation = float(np.linalg.norm(self.whitening[0] @ off))
+        if deviation <= self.k:
+            return T_ref_mov
+        x, y = (off * (1 - 0.999 * self.k / deviation)).tolist()
+        return Pose2(T_ref_mov.x - x, T_ref_mov.y - y, T_ref_mov.theta)
+
     def contains(self, poses: FloatArray) -> BoolArray:
         """(P,) whether a transform is near enough to every sighting."""
         return np.asarray((self.deviations(poses) <= self.k).all(axis=1))

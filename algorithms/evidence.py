@@ -1,0 +1,177 @@
+"""What the walls of two maps say for a transform, and what against it: what the verdict rests on.
+
+Metres of wall are counted over the whole of both maps, not only near the encounter where the search has
+chosen the best of thousands of places: farther out nothing was chosen, so agreement there is worth more.
+
+Maps bend. Right where the robots met they may fit, and ten metres on miss each other by a wall's
+thickness. So every patch of a few metres may slip a little to where it fits best; what still contradicts
+then is not bent but wrong. A right merge of bent maps loses most of its contradictions that way, a wrong
+merge keeps about as many as it had.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.agreement import distance_to_walls, surface
+from algorithms.gridmap import BoolArray, GridMap
+from algorithms.kernels import kernel, spread
+from algorithms.objective import Float32Array
+from algorithms.pose import FloatArray, Pose2
+
+SAME_WALL = 0.12  # metres; two drawings of one wall: the sum of two ragged cells of 0.05 m and a bit
+NEAR_WALL = 0.3  # metres; a wall in unknown ground counts as seen by both where the other has one so near
+PATCH = 7.0  # metres; a room and the wall behind it: large enough that chance does not fit it
+SLIP = 0.6  # metres that a patch may slip
+SLIP_STEP = 0.15  # metres; a wall within SAME_WALL of a step is met by it
+TURN = 0.07  # radians that a patch may turn, 4°
+TURN_STEPS = 2  # to either side
+INERTIA = 0.05  # share of a patch's walls that the farthest slip must win to be worth it
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Metres of wall that both robots should have seen under a transform; both maps' walls count.
+
+    agreeing, contradicting : with every patch where it fits best: the other map has a wall there, or
+                              free floor
+    rigid_agreeing, rigid_contradicting : the same with the maps as they are
+    """
+
+    agreeing: float
+    contradicting: float
+    rigid_agreeing: float
+    rigid_contradicting: float
+
+    @property
+    def contradiction(self) -> float:
+        """Share of the walls seen by both that the other map denies, patches slipped; 1 without walls."""
+        return _share(self.contradicting, self.agreeing)
+
+    @property
+    def rigid_contradiction(self) -> float:
+        """The same with the maps as they are."""
+        return _share(self.rigid_contradicting, self.rigid_agreeing)
+
+    @property
+    def bent(self) -> float:
+        """Share of the contradictions that go away when patches slip, 0 … 1."""
+        before = self.rigid_contradiction
+        return max(0.0, 1 - self.contradiction / before) if before > 0 else 0.0
+
+
+def _share(against: float, agreeing: float) -> float:
+    return against / (against + agreeing) if against + agreeing > 0 else 1.0
+
+
+def evidence(ref: GridMap, mov: GridMap, T_ref_mov: Pose2) -> Evidence:
+    """Weigh the walls of both maps, each looked up in the other."""
+    totals = np.zeros(4)
+    for source, target, T in ((mov, ref, T_ref_mov), (ref, mov, T_ref_mov.inverse())):
+        totals += _one_way(source, target, T) * source.resolution
+    return Evidence(*totals.tolist())
+
+
+def _one_way(source: GridMap, target: GridMap, T_target_source: Pose2) -> FloatArray:
+    """(4,) cells of the source's walls, in the order of ``Evidence``."""
+    rows, cols = np.nonzero(_surface_of(source))
+    places = target.grid_coordinates(T_target_source.apply(source.centres(rows, cols)))
+    margin = ceil((SLIP + PATCH * TURN + NEAR_WALL) / target.resolution) + 1
+    inside = np.all((places >= 0) & (places < (target.width, target.height)), axis=1)
+    places = places[inside]
+    if not len(places):
+        return np.zeros(4)
+    low = np.maximum(0, places.min(axis=0).astype(int) - margin)
+    high = np.minimum((target.width, target.height), places.max(axis=0).astype(int) + margin + 1)
+    part = slice(low[1], high[1]), slice(low[0], high[0])
+    distance = distance_to_walls(target.occupied[part]) * np.float32(target.resolution)
+    free = target.free[part]
+    places = places - low
+    at = places.astype(np.intp)
+    shared = free[at[:, 1], at[:, 0]] | (distance[at[:, 1], at[:, 0]] <= NEAR_WALL)
+    places = places[shared]
+    if not len(places):
+        return np.zeros(4)
+    patch = np.floor(places * (target.resolution / PATCH)).astype(np.int64)
+    number = patch[:, 1] * (patch[:, 0].max() + 1) + patch[:, 0]
+    order = np.argsort(number, kind="stable")
+    places = np.ascontiguousarray(places[order])
+    starts = np.flatnonzero(np.diff(number[order], prepend=-1))
+    starts = np.append(starts, len(places))
+    counts = np.zeros((len(starts) - 1, 4))
+    cell = target.resolution
+
+    def work(start: int, stop: int) -> None:
+        _slip(places, starts[start : stop + 1], distance, free, cell, counts[start:stop])
+
+    spread(work, len(counts), at_least=4)
+    return np.asarray(counts.sum(axis=0), dtype=np.float64)
+
+
+def _surface_of(grid: GridMap) -> BoolArray:
+    return surface(grid.occupied, grid.free)
+
+
+@kernel
+def _look(
+    places: FloatArray,
+    start: int,
+    stop: int,
+    distance: Float32Array,
+    free: BoolArray,
+    x: float,
+    y: float,
+    turn: float,
+) -> tuple[int, int]:
+    """How many points of a patch lie on a wall and how many on free floor, the patch slipped."""
+    middle_x = places[start:stop, 0].mean()
+    middle_y = places[start:stop, 1].mean()
+    c, s = np.cos(turn), np.sin(turn)
+    agreeing = 0
+    contradicting = 0
+    for n in range(start, stop):
+        u, v = places[n, 0] - middle_x, places[n, 1] - middle_y
+        col = int(np.floor(c * u - s * v + middle_x + x))
+        row = int(np.floor(s * u + c * v + middle_y + y))
+        if 0 <= row < distance.shape[0] and 0 <= col < distance.shape[1]:
+            if distance[row, col] <= SAME_WALL:
+                agreeing += 1
+            elif free[row, col]:
+                contradicting += 1
+    return agreeing, contradicting
+
+
+@kernel
+def _slip(
+    places: FloatArray,
+    starts: NDArray[np.intp],
+    distance: Float32Array,
+    free: BoolArray,
+    cell: float,
+    out: FloatArray,
+) -> None:
+    steps = round(SLIP / SLIP_STEP)
+    for patch in range(len(starts) - 1):
+        start, stop = starts[patch], starts[patch + 1]
+        best = -np.inf
+        for a in range(-TURN_STEPS, TURN_STEPS + 1):
+            turn = a * TURN / TURN_STEPS
+            for i in range(-steps, steps + 1):
+                for j in range(-steps, steps + 1):
+                    if i * i + j * j > steps * steps:
+                        continue
+                    agreeing, contradicting = _look(
+                        places, start, stop, distance, free,
+                        i * SLIP_STEP / cell, j * SLIP_STEP / cell, turn,
+                    )  # fmt: skip
+                    far = (i * i + j * j) / (steps * steps) + (a / TURN_STEPS) ** 2
+                    value = agreeing - contradicting - INERTIA * (stop - start) * far
+                    if a == 0 and i == 0 and j == 0:
+                        out[patch, 2], out[patch, 3] = agreeing, contradicting
+                    if value > best:
+                        best = value
+                        out[patch, 0], out[patch, 1] = agreeing, contradicting

@@ -1,0 +1,102 @@
+"""Sub-cell refinement: the top of a paraboloid through the objective, and how sharp it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import combinations_with_replacement, product
+from math import pi
+
+import numpy as np
+
+from algorithms.objective import Objective
+from algorithms.pose import FloatArray, Pose2, rotation
+
+ROUNDS = (1.0, 0.5, 0.25, 0.125)  # cells; width of the stencil, round by round
+PAIRS = tuple(combinations_with_replacement(range(3), 2))
+
+
+@dataclass(frozen=True, eq=False)
+class Peak:
+    """A local maximum of a smooth objective.
+
+    curvature : (3, 3) of −objective by where the pivot goes (x, y; m) and by theta (rad)
+    """
+
+    T_ref_mov: Pose2
+    value: float
+    curvature: FloatArray
+
+
+def polish(objective: Objective, T_ref_mov: Pose2, pivot: FloatArray, reach: float) -> Peak:
+    """Climb from a transform on the lattice to the top nearby; never to a lower value.
+
+    pivot : (2,) metres, mov frame; turns are about it
+    reach : distance over which a turn moves a cell by one cell; metres
+    """
+    cell = objective.cell
+    scale = np.array([cell, cell, cell / reach])
+    at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
+    value = float(objective(_transforms(at[None], pivot))[0])
+    for width in ROUNDS:
+        gradient, hessian, values, stencil = _paraboloid(objective, at, scale * width, pivot)
+        tried = [stencil[int(values.argmax())]]
+        if np.linalg.eigvalsh(hessian)[-1] < 0:
+            tried.append(np.clip(-np.linalg.solve(hessian, gradient), -2, 2))
+        places = at + np.array(tried) * scale * width
+        found = objective(_transforms(places, pivot))
+        best = int(found.argmax())
+        if found[best] > value:
+            at, value = places[best], float(found[best])
+    _, hessian, _, _ = _paraboloid(objective, at, scale, pivot)
+    return Peak(Pose2.from_array(_transforms(at[None], pivot)[0]), value, -hessian / np.outer(scale, scale))
+
+
+def covariance_of(
+    peak: Peak, pivot: FloatArray, evidence: float, widest: FloatArray, least: float
+) -> FloatArray:
+    """(3, 3) covariance of Δx, Δy, Δθ; metres and radians; positive definite.
+
+    With an objective that counts metres of wall, of which ``evidence`` metres say as much as one
+    measurement, objective / evidence is a log-likelihood; its curvature at the top is inverted.
+
+    widest : (3,) standard deviations of x, y, theta where the objective says nothing
+    least  : standard deviation that no raster goes below; metres
+    """
+    unit = np.asarray(widest, dtype=np.float64)
+    strengths, directions = np.linalg.eigh(peak.curvature * np.outer(unit, unit) / evidence)
+    at_pivot = (directions / np.maximum(strengths, 1.0)) @ directions.T * np.outer(unit, unit)
+    at_pivot[0, 0] += least**2
+    at_pivot[1, 1] += least**2
+    to_shift = np.eye(3)  # d (Δx, Δy, Δθ) / d (where the pivot goes, Δθ): Δ = that − C(Δθ) pivot
+    to_shift[:2, 2] = -rotation(peak.T_ref_mov.theta + pi / 2) @ pivot
+    return np.asarray(to_shift @ at_pivot @ to_shift.T, dtype=np.float64)
+
+
+@cache
+def _stencil() -> tuple[FloatArray, FloatArray]:
+    """(27, 3) the corners, edges and faces of a cube and its middle; and the least squares over them."""
+    places = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
+    columns = [np.ones(len(places)), *places.T, *(places[:, i] * places[:, j] for i, j in PAIRS)]
+    return places, np.linalg.pinv(np.column_stack(columns))
+
+
+def _paraboloid(
+    objective: Objective, at: FloatArray, step: FloatArray, pivot: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Gradient and Hessian in steps, the stencil's values and its places in steps."""
+    places, solve = _stencil()
+    values = objective(_transforms(at + places * step, pivot))
+    fitted = solve @ values
+    hessian = np.zeros((3, 3))
+    for coefficient, (i, j) in zip(fitted[4:], PAIRS, strict=True):
+        hessian[i, j] += coefficient
+        hessian[j, i] += coefficient
+    return fitted[1:4], hessian, values, places
+
+
+def _transforms(places: FloatArray, pivot: FloatArray) -> FloatArray:
+    """(P, 3) x, y, theta of T_ref_mov that put the pivot at x, y and turn by theta."""
+    c, s = np.cos(places[:, 2]), np.sin(places[:, 2])
+    x, y = pivot
+    return np.column_stack([places[:, 0] - c * x + s * y, places[:, 1] - s * x - c * y, places[:, 2]])
