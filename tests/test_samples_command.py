@@ -35,6 +35,17 @@ def test_a_building_is_simulated_with_as_many_sightings_as_asked_for(tmp_path, c
         assert len(case.observations) == 3
 
 
+def test_every_wrong_pairing_of_several_buildings_can_be_written(tmp_path, capsys):
+    words = ["--building", "corridor,apartment", "--seeds", "3", "--wrong-pairs"]
+    assert main(["samples", str(tmp_path), *words]) == 0
+    made = [read_case(folder) for folder in case_folders(tmp_path)]
+    assert len(made) == 8
+    for case in made:
+        assert case.truth.expected == "refuse"
+        assert "corridor seed 3" in case.truth.source
+        assert "apartment seed 3" in case.truth.source
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -45,6 +56,9 @@ def test_a_building_is_simulated_with_as_many_sightings_as_asked_for(tmp_path, c
         (["--building", "office", "--sightings", "0"], "--sightings is 0; it must lie in [1, 64]"),
         (["--seeds", "3"], "need --building"),
         (["--sightings", "3"], "need --building"),
+        (["--wrong-pairs"], "need --building"),
+        (["--building", "office,castle"], "there is no building 'castle'"),
+        (["--building", "office", "--wrong-pairs"], "needs two buildings"),
     ],
 )
 def test_what_cannot_be_simulated_is_told(tmp_path, capsys, words, said):

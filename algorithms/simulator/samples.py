@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import permutations, product
 from pathlib import Path
 
 from algorithms.atomic import write_files
@@ -18,7 +19,7 @@ from algorithms.casefiles import (
     truth_to_bytes,
 )
 from algorithms.mapio import map_to_bytes
-from algorithms.simulator.scenario import Case, Scenario, simulate
+from algorithms.simulator.scenario import Case, Scenario, mismatch, simulate
 
 
 @dataclass(frozen=True)
@@ -140,8 +141,32 @@ def generate_cases(
     """Write two cases per seed, in folders ``kind_SEED_r2_r1`` and ``kind_SEED_r3_r2``."""
     folders = []
     for seed in seeds:
-        for case in simulate(kind, seed, overlap, sightings=sightings).cases:
-            robots = case.name.split("_", 1)[1]
-            folders.append(Path(folder) / f"{kind}_{seed:04d}_{robots}")
+        for name, case in _named_cases(kind, seed, overlap, sightings):
+            folders.append(Path(folder) / name)
             write_case(folders[-1], case)
     return folders
+
+
+def generate_wrong_pairs(
+    kinds: Iterable[str],
+    seeds: Iterable[int],
+    folder: Path,
+    overlap: float | None = None,
+    sightings: int = 1,
+) -> Iterator[Path]:
+    """Write every pairing of an observer with a robot that was observed in another building.
+
+    The only right answer to each is to refuse. Folders are named ``wrong_OBSERVER_OBSERVED``; n buildings
+    give 4·n·(n − 1) of them.
+    """
+    buildings = [_named_cases(kind, seed, overlap, sightings) for kind in kinds for seed in seeds]
+    for here, there in permutations(buildings, 2):
+        for (name, case), (other_name, other) in product(here, there):
+            path = Path(folder) / f"wrong_{name}_{other_name}"
+            write_case(path, mismatch(case, other))
+            yield path
+
+
+def _named_cases(kind: str, seed: int, overlap: float | None, sightings: int) -> list[tuple[str, Case]]:
+    cases = simulate(kind, seed, overlap, sightings=sightings).cases
+    return [(f"{kind}_{seed:04d}_{case.name.split('_', 1)[1]}", case) for case in cases]

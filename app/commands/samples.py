@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 
 from app.usage import Parser
 
-USAGE = "DIR [--building KIND --seeds FIRST[-LAST] [--overlap SHARE] [--sightings N]]"
+USAGE = "DIR [--building KIND[,KIND…] --seeds FIRST[-LAST] [--overlap SHARE] [--sightings N] [--wrong-pairs]]"
 DESCRIPTION = """\
 Simulate pairs of maps whose true transform is known: buildings drawn in code, robots with a lidar.
 Without --building those that ship with mapmeld: the same files, bit for bit.
@@ -19,6 +20,8 @@ Examples:
                                      forty pairs from twenty other warehouses
   mapmeld samples cases --building office --sightings 3
                                      pairs whose robots met at up to three places
+  mapmeld samples lies --building office,corridor --seeds 0-3 --wrong-pairs
+                                     maps of different buildings: all to be refused
   mapmeld evaluate cases             and how the method does on them"""
 
 
@@ -26,7 +29,9 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     """Tell the parser what the command takes."""
     parser.add_argument("folder", type=Path, metavar="DIR", help="where the folders go; made where missing")
     parser.add_argument(
-        "--building", metavar="KIND", help="office, apartment, warehouse or corridor, one per seed"
+        "--building",
+        metavar="KIND[,KIND…]",
+        help="office, apartment, warehouse, corridor, or several; one of each per seed",
     )
     parser.add_argument("--seeds", metavar="FIRST[-LAST]", help="which buildings of that kind (default: 0)")
     parser.add_argument(
@@ -38,33 +43,52 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
         metavar="N",
         help="how often robot 1 sees robot 2, at most; less where they meet less often (default: 1)",
     )
+    parser.add_argument(
+        "--wrong-pairs",
+        action="store_true",
+        help="pair every robot with those of the other buildings instead: what has to be refused",
+    )
 
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Write the cases and name them."""
     from algorithms.casefiles import MOST_OBSERVATIONS
     from algorithms.simulator.buildings import BUILDINGS
-    from algorithms.simulator.samples import generate_cases, regenerate
+    from algorithms.simulator.samples import generate_cases, generate_wrong_pairs, regenerate
     from app.progress import bar
 
     if args.building is None:
-        if args.seeds or args.overlap is not None or args.sightings is not None:
+        if args.seeds or args.overlap is not None or args.sightings is not None or args.wrong_pairs:
             parser.error(
-                "--seeds, --overlap and --sightings need --building: the shipped samples are what they are"
+                "--seeds, --overlap, --sightings and --wrong-pairs need --building: "
+                "the shipped samples are what they are"
             )
         for case in regenerate(args.folder):
             print(args.folder / case.name)
         return 0
-    if args.building not in BUILDINGS:
-        parser.error(f"there is no building {args.building!r}, but {', '.join(BUILDINGS)}")
+    kinds = args.building.split(",")
+    for kind in kinds:
+        if kind not in BUILDINGS:
+            parser.error(f"there is no building {kind!r}, but {', '.join(BUILDINGS)}")
     if args.overlap is not None and not 0.05 <= args.overlap <= 0.6:
         parser.error(f"--overlap is {args.overlap:g}; it must lie in [0.05, 0.6]")
     sightings = 1 if args.sightings is None else args.sightings
     if not 1 <= sightings <= MOST_OBSERVATIONS:
         parser.error(f"--sightings is {sightings}; it must lie in [1, {MOST_OBSERVATIONS}]")
-    with bar(total=len(seeds := seeds_of(args.seeds or "0", parser)), unit="building") as shown:
-        for seed in seeds:
-            for folder in generate_cases(args.building, [seed], args.folder, args.overlap, sightings):
+    seeds = seeds_of(args.seeds or "0", parser)
+    buildings = len(kinds) * len(seeds)
+    if args.wrong_pairs:
+        if buildings < 2:
+            parser.error("--wrong-pairs needs two buildings at least: name more kinds or more seeds")
+        pairs = generate_wrong_pairs(kinds, seeds, args.folder, args.overlap, sightings)
+        with bar(total=4 * buildings * (buildings - 1), unit="pair") as shown:
+            for folder in pairs:
+                print(folder)
+                shown.update()
+        return 0
+    with bar(total=buildings, unit="building") as shown:
+        for kind, seed in product(kinds, seeds):
+            for folder in generate_cases(kind, [seed], args.folder, args.overlap, sightings):
                 print(folder)
             shown.update()
     return 0
