@@ -6,9 +6,11 @@ from math import degrees
 
 import numpy as np
 
+from algorithms.certificate import ProofState
 from algorithms.pose import FloatArray
 from algorithms.smm import Candidate
 from algorithms.spectra import HoughMatch, ShiftMatch
+from app.measure import Measure
 
 Columns = tuple[FloatArray, ...]
 
@@ -77,31 +79,94 @@ def shift_correlation(match: ShiftMatch) -> Columns:
     return x, window, y, _marked(x, np.array([match.shift]), np.array([top]))
 
 
-def gammas(courses: list[list[float]], lines: int) -> Columns:
-    """Iteration, then best Γ so far for each refined candidate; one that has ended stays where it was, one
-    that has not begun lies on the axis (NaN would keep the chart from finding its own scale).
+def courses(told: list[list[float]], lines: int) -> Columns:
+    """Iteration, then best value so far for each refined candidate; one that has ended stays where it was,
+    one that has not begun, or has met nothing in the window yet, lies on the axis (NaN would keep the
+    chart from finding its own scale).
     """
-    longest = max(2, max((len(course) for course in courses), default=0))
+    longest = max(2, max((len(course) for course in told), default=0))
     table = np.zeros((lines, longest))
-    for row, course in zip(table, courses, strict=False):
+    for row, course in zip(table, told, strict=False):
         if course:
             row[: len(course)], row[len(course) :] = course, course[-1]
+    table[~np.isfinite(table)] = 0.0
     return (np.arange(1, longest + 1, dtype=float), *table)
 
 
-def candidate_rows(candidates: tuple[Candidate, ...], refined: list[list[float]]) -> list[tuple[str, ...]]:
-    """Rank, turn, shift, Γ of the first look, Γ after refining."""
+def proof_range(state: ProofState, ceiling: float) -> tuple[float, float]:
+    """Lower and upper end of the axis on which a proof is drawn.
+
+    ceiling : the bound that it began with, so that the axis stands still while the bounds come down
+    """
+    top = max(value if np.isfinite(value) else 0.0 for value in (ceiling, state.ceiling, state.best_value))
+    return 0.0, 1.06 * top if top > 0 else 1.0
+
+
+def proof(state: ProofState, top: float) -> Columns:
+    """Turn in degrees over the whole circle, the ceiling of each sector as a stair, the best value met in
+    it, the floor under which no rival is looked for, the optimum, the rivals.
+
+    What lies outside of 0 … top, −inf included, is drawn on that border.
+    """
+    turns = np.degrees(state.turns)
+    order = np.argsort(turns)
+    width = 360.0 / max(1, len(turns))
+    low = turns[order] - width / 2
+    # the sector at ±180° may lie on either side, or across
+    low = np.concatenate([low[-1:] - 360.0, low, low[:1] + 360.0])
+    which = np.concatenate([order[-1:], order, order[:1]])
+    high = np.append(low[1:], low[-1] + width)
+    seen = (high > -180.0) & (low < 180.0)
+    low, high, which = low[seen], high[seen], which[seen]
+    x = np.clip(np.stack([low, high], axis=1).ravel(), -180.0, 180.0)
+    sector = np.repeat(which, 2)
+    poses = [] if state.best is None else [state.best, *state.rivals]
+    values = [] if state.best is None else [state.best_value, *state.rival_values]
+    # a mark has a place of its own on the axis, between the edges of its sector
+    at = np.degrees([pose[2] for pose in poses]).reshape(-1)
+    inside = np.clip(np.searchsorted(high, at), 0, len(which) - 1)
+    x, sector = np.concatenate([x, at]), np.concatenate([sector, which[inside]])
+    marks = np.full((2, len(x)), np.nan)
+    for k, value in enumerate(values):
+        marks[0 if k == 0 else 1, len(x) - len(at) + k] = value
+    order = np.argsort(x, kind="stable")
+    columns = [state.ceilings[sector], state.found[sector], np.full(len(x), state.floor), *marks]
+    return (x[order], *(np.clip(_bounded(column, top)[order], 0.0, top) for column in columns))
+
+
+def _bounded(values: FloatArray, top: float) -> FloatArray:
+    return np.nan_to_num(values, nan=np.nan, posinf=top, neginf=0.0)
+
+
+def proof_rows(result: ProofState, measure: Measure) -> list[tuple[str, ...]]:
+    """The optimum and its rivals: turn, where map 2 goes, value, share of the best value."""
+    if result.best is None:
+        return []
+    rows = []
+    poses, values = [result.best, *result.rivals], [result.best_value, *result.rival_values]
+    for rank, (pose, value) in enumerate(zip(poses, values, strict=True)):
+        name = f"rival {rank}" if rank else "optimum" if result.proven else "best so far"
+        share = f"{value / result.best_value:.0%}" if result.best_value > 0 else "–"
+        rows.append((name, f"{degrees(pose[2]):.1f}°", measure.number(float(value)), share))
+    return rows
+
+
+def candidate_rows(
+    candidates: tuple[Candidate, ...], refined: list[list[float]], measure: Measure
+) -> list[tuple[str, ...]]:
+    """Rank, turn, shift, value of the first look, value after refining."""
     rows = []
     for rank, candidate in enumerate(candidates):
         T = candidate.T_ref_mov
-        after = f"{refined[rank][-1]:.4g}" if rank < len(refined) and refined[rank] else "–"
+        looked = 0.0 if candidate.value is None else candidate.value
+        after = measure.number(refined[rank][-1]) if rank < len(refined) and refined[rank] else "–"
         rows.append(
             (
                 f"{rank + 1}{'  + π' if candidate.twin else ''}",
                 f"{degrees(T.theta):.1f}°",
                 f"{T.x:.2f}",
                 f"{T.y:.2f}",
-                f"{candidate.value or 0:.4g}",
+                measure.number(looked),
                 after,
             )
         )

@@ -84,7 +84,12 @@ def settings_of(config: Any, path: Path = ()) -> Iterator[Setting]:
             yield Setting(here, words, hint, value, choices=choices)
         elif get_origin(hints[field.name]) is Literal:
             options = get_args(hints[field.name])
-            yield Setting(here, words, hint, value, choices={str(o).upper(): o for o in options})
+            yield Setting(here, words, hint, value, choices={_word(str(o)): o for o in options})
+
+
+def _word(option: str) -> str:
+    """An option as a menu shows it: "pso" is an abbreviation, "coupled" a word."""
+    return option.upper() if len(option) <= 3 else option.capitalize()
 
 
 def value_at(config: Any, path: Path) -> Any:

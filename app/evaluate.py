@@ -6,7 +6,7 @@ import signal
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 from multiprocessing import get_context
 from pathlib import Path
@@ -44,15 +44,16 @@ class Order:
     rough: bool = False
 
 
-def evaluate(order: Order, jobs: int = 1) -> Iterator[Entry]:
-    """Yield an entry per case folder under ``order.root``, in the order of their completion.
+def evaluate(order: Order, jobs: int = 1, folders: Sequence[Path] | None = None) -> Iterator[Entry]:
+    """Yield an entry per case folder, in the order of their completion.
 
     A case that fails has its "error", and the others go on.
 
-    jobs   : processes at work; the answers don't depend on it
-    raises : InputFileError where there is no case
+    jobs    : processes at work; the answers don't depend on it
+    folders : the cases; all under ``order.root`` unless given
+    raises  : InputFileError where there is no case
     """
-    folders = case_folders(order.root)
+    folders = case_folders(order.root) if folders is None else folders
     if jobs == 1 or len(folders) == 1:
         for folder in folders:
             yield run_case(folder, order)
@@ -62,6 +63,19 @@ def evaluate(order: Order, jobs: int = 1) -> Iterator[Entry]:
         if (yield from _in_processes([folder], order, 1)):
             message = "the process that ran it ended; was there too little memory?"
             yield _entry(folder, order) | {"error": message, "seconds": 0.0, "truth": None}
+
+
+def evaluate_both(order: Order, jobs: int = 1) -> Iterator[Entry]:
+    """Yield an entry per case with its observation, then one per case that also has a rough one."""
+    yield from evaluate(replace(order, rough=False), jobs)
+    folders = rough_folders(order.root)
+    if folders:
+        yield from evaluate(replace(order, rough=True), jobs, folders)
+
+
+def rough_folders(root: Path) -> list[Path]:
+    """The case folders that hold a badly measured observation, too."""
+    return [folder for folder in case_folders(root) if (folder / ROUGH_OBSERVATION_FILE).exists()]
 
 
 def _in_processes(folders: Sequence[Path], order: Order, jobs: int) -> Generator[Entry, None, list[Path]]:

@@ -9,6 +9,9 @@ from algorithms.steps import (
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
+    MergeResult,
+    ProofDetail,
+    ProvenDetail,
     RefineDetail,
     ShiftDetail,
     WindowDetail,
@@ -40,18 +43,27 @@ def legend(palette: Palette, view: str, story: Story, preview: bool = False) -> 
     particle = _chip("dot", palette.particle, "particle")
     best = _chip("diamond", palette.best, "swarm best")
     if preview and augmented and view == "Map":
-        return [level_scale(augmented), _chip("line", palette.margin, "Σ_aug, box")]
+        return [level_scale(augmented), _chip("line", palette.margin, "Σ_aug, windows, box")]
     if view == "Heights":
         return [level_scale(augmented)] if augmented else []
+    star = _chip("star", palette.answer, "proven optimum")
+    rival = _chip("dot", palette.rival, "rival")
     if view == "Swarm space":
-        return [particle, best]
+        return [particle, best, *([star] if story.reached(ProvenDetail) else [])]
     if story.reached(Fusion):
+        result = story.get(MergeResult)
+        in_doubt = result is not None and result.verdict.rival is not None
         return [
             *maps,
             _chip("square", palette.agreed, "both"),
             _chip("square", palette.conflict, "contradiction"),
             _chip("star", palette.answer, "robot 2"),
+            *([rival] if in_doubt else []),
         ]
+    if isinstance(detail, (ProofDetail, ProvenDetail)):
+        best_yet = star if detail.state.proven else _chip("star", palette.answer, "best so far")
+        rivals = [rival] if len(detail.state.rivals) else []
+        return [*maps, best_yet, *rivals, _chip("line", palette.margin, "coupled window")]
     if isinstance(detail, RefineDetail):
         return [*maps, particle, best, _chip("line", palette.margin, "box")]
     if isinstance(detail, (WindowDetail, ShiftDetail)):

@@ -8,7 +8,7 @@
   if (window.mapmeld) { window.mapmeld.reset(); return; }
   const viewer = () => window.__viserMutable;
   const FOV = 4 * Math.PI / 180; // far and narrow: as good as parallel
-  const ORDER = ["floor", "window", "aug", "box", "trail", "swarm", "sight", "robots", "best", "axes", "readout"];
+  const ORDER = ["floor", "window", "aug", "box", "trail", "swarm", "rival", "sight", "robots", "best", "axes", "readout"];
   const lerp = (a, b, u) => a + (b - a) * u;
   const LIGHTER = { "#0072b2": "#56b4e9", "#009e73": "#34d399", "#d55e00": "#fb923c" }; // words on dark ground
   const smooth = (u) => u * u * (3 - 2 * u);

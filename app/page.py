@@ -47,6 +47,7 @@ class Page:
         self._story = Story()
         self._notice: viser.NotificationHandle | None = None
         self._result: MergeResult | None = None  # of the last run that came to its end
+        self._config: Any = None  # it ran with
         self._merged = False  # from the first Merge on, a moved slider runs the whole method again
         self.session = Session(self)
         inputs = Inputs.of(initial) if initial else Inputs()
@@ -164,7 +165,7 @@ class Page:
         if job is None:
             return
         if self._result is not None:
-            self._plots.tell(result_html(self._result, self._inputs, faded=True))
+            self._plots.tell(result_html(self._result, self._inputs, self._config, faded=True))
             self._export.offer(None)
         self.session.request(job)
 
@@ -214,6 +215,9 @@ class Page:
             if view != SWARM:
                 self._swarm.hide()
             self._draw(self._story, live=False, look=True)
+            result = self._story.get(MergeResult)
+            if result is not None and self._stage.mood in ("accepted", "refused"):
+                self._say(self._story, result)
             self._stage.flush()
 
     def _report(self, error: MapMergeError) -> None:
@@ -262,13 +266,13 @@ class Page:
                 self._stage.hud(state=words.UP_TO_DATE, mood="idle", progress=None)
             else:
                 self._result = result
-                self._plots.tell(result_html(result, self._inputs))
+                self._config = job.config
+                self._plots.tell(result_html(result, self._inputs, job.config))
                 self._export.offer(result)
                 accepted = result.verdict.accepted
                 self._draw(story, live=job.pace > 0)
-                self._stage.hud(
-                    state=result.verdict.reason, mood="accepted" if accepted else "refused", progress=None
-                )
+                self._stage.hud(mood="accepted" if accepted else "refused", progress=None)
+                self._say(story, result)
             self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
             self._stage.flush()
 
@@ -298,9 +302,14 @@ class Page:
         elif view == HEIGHTS:
             self._heights.show(story.get(AugmentDetail), self._palette, look)
         else:
-            self._swarm.show(story.get(RefineDetail), self._palette, look)
+            self._swarm.show(story, self._palette, look)
         self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
         self._stage.hud(legend=legend(self._palette, view, story))
+
+    def _say(self, story: Story, result: MergeResult) -> None:
+        """The verdict; over the swarm also whether it found the proven optimum."""
+        found = words.found_it(story) if self._run.view == SWARM else ""
+        self._stage.hud(state=f"{found} {result.verdict.reason}".strip())
 
     def _maps_preview(self, job: Job) -> None:
         if self._run.view == MAP:

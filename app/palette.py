@@ -23,6 +23,8 @@ class Palette:
     particle: Rgb
     best: Rgb
     answer: Rgb  # the place the search ended on
+    rim: Rgb  # around it: yellow is faint on white
+    rival: Rgb  # another place that fits
     margin: Rgb  # windows and boxes
     free: Rgb
     unknown: Rgb
@@ -38,6 +40,8 @@ LIGHT = Palette(
     particle=(0xE6, 0x9F, 0x00),
     best=(0xCC, 0x79, 0xA7),
     answer=(0xF0, 0xE4, 0x42),
+    rim=(0x37, 0x41, 0x51),
+    rival=(0xCC, 0x79, 0xA7),
     margin=(0x6B, 0x72, 0x80),
     free=(0xFF, 0xFF, 0xFF),
     unknown=(0xE5, 0xE7, 0xEB),

@@ -12,6 +12,8 @@ from algorithms.steps import (
     CandidatesDetail,
     HoughDetail,
     ObservationDetail,
+    ProofDetail,
+    ProvenDetail,
     RefineDetail,
     ShiftDetail,
     Step,
@@ -31,12 +33,15 @@ DWELL: dict[type, float] = {
     ShiftDetail: 0.42,
     CandidatesDetail: 0.6,
     AnswersDetail: 0.4,
+    ProvenDetail: 0.9,
     Fusion: 0.9,
 }
 FIRST_SWARM = 0.03  # per iteration of the best candidate's swarm
 FIRST_MOVES = 0.17  # more than that on its first iterations, where most of it happens
 CALM_AFTER = 5.0  # iterations in which that extra time falls to a third
 LATER_SWARMS = 0.006  # the rest look alike: a glimpse of each is enough
+PROOF = 0.2  # per look at the proof, at its beginning; all of them together take about a second
+PROOF_CALM = 4000  # blocks after which that time has fallen to half
 
 
 def dwell(step: Step, pace: float, again: bool) -> float:
@@ -51,6 +56,8 @@ def dwell(step: Step, pace: float, again: bool) -> float:
         if step.detail.index > 0:
             return pace * LATER_SWARMS
         return pace * (FIRST_SWARM + FIRST_MOVES * exp(-step.detail.state.iteration / CALM_AFTER))
+    if isinstance(step.detail, ProofDetail):
+        return pace * PROOF / (1 + step.detail.state.nodes / PROOF_CALM)
     return pace * DWELL.get(type(step.detail), 0.0)
 
 

@@ -54,10 +54,10 @@ def _tinted(mask: NDArray[np.bool_], colour: Rgb, alpha: int = 255) -> Pixels:
     return pixels
 
 
-def walls(cells: CellArray, colour: Rgb) -> Picture:
+def walls(cells: CellArray, colour: Rgb, alpha: int = 255) -> Picture:
     """The walls in one colour, everything else transparent."""
     factor = pooling(cells.shape)
-    return Picture(_tinted(pool(cells, factor) >= OCCUPIED_FROM, colour), factor)
+    return Picture(_tinted(pool(cells, factor) >= OCCUPIED_FROM, colour, alpha), factor)
 
 
 def floor(cells: CellArray, palette: Palette, alpha: int = 255) -> Picture:

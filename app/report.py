@@ -46,12 +46,36 @@ def report_of(
         "method": result.method,
         "seed": result.seed,
         "timings_s": {"load": load_s, **result.timings_s},
+        "proof": proof_of(result),
         "performance_index_at_estimate": performance_index(result.fusion),
         "settings": config,
         "inputs": dict(inputs or {}),
         "versions": versions(),
     }
     return {key: _plain(value) for key, value in report.items()}
+
+
+def proof_of(result: MergeResult) -> dict[str, Any] | None:
+    """How the proof ended, in the units of "objective"; None for a method without one.
+
+    nodes  : blocks of transforms that were bounded
+    gap    : how much better than the best found something could still be
+    rivals : the best transforms elsewhere, best first
+    """
+    proof = result.proof
+    if proof is None:
+        return None
+    rivals = zip(proof.rivals.tolist(), proof.rival_values.tolist(), strict=True)
+    return {
+        "nodes": proof.nodes,
+        "gap": proof.gap,
+        "proven": proof.proven,
+        "stopped": proof.stopped,
+        "swarm_found_it": result.search_found_it,
+        "rivals": [
+            {"T_ref_mov": {"x": x, "y": y, "theta": theta}, "value": value} for (x, y, theta), value in rivals
+        ],
+    }
 
 
 def report_json(report: Mapping[str, Any]) -> bytes:

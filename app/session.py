@@ -135,7 +135,7 @@ class Session:
                     return
                 job, self._wanted = self._wanted, None
                 assert job is not None
-                self._running, self._story, self._pace = job, Story(), job.pace
+                self._running, self._story, self._pace = job, Story(job.config), job.pace
             try:
                 self._tell(job)
             except MapMergeError as error:

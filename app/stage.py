@@ -42,6 +42,11 @@ class Stage:
         if changed:
             self._pending.setdefault("hud", {}).update(changed)
 
+    @property
+    def mood(self) -> str:
+        """What the words above the map are coloured by."""
+        return str(self._hud.get("mood", "idle"))
+
     def place_mov(self, at: Pose2, milliseconds: float = 0) -> None:
         """Turn and slide map 2's anchor to a pose of the scene, in this time."""
         self._pending["mov"] = {"x": at.x, "y": at.y, "theta": at.theta, "ms": milliseconds}

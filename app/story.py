@@ -3,51 +3,43 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TypeVar
+from math import isfinite
+from typing import Any, TypeVar
 
-from algorithms.fuse import Fusion
+from algorithms.pose import Pose2
 from algorithms.steps import (
     AnswersDetail,
-    AugmentDetail,
-    CandidatesDetail,
     Detail,
-    HoughDetail,
     MergeResult,
-    ObservationDetail,
+    ProofDetail,
+    ProvenDetail,
     RefineDetail,
     ShiftDetail,
     Step,
-    WindowDetail,
 )
+from app.measure import Measure, measure_of
 
 D = TypeVar("D")
-
-ORDER: tuple[type, ...] = (
-    ObservationDetail,
-    AugmentDetail,
-    HoughDetail,
-    WindowDetail,
-    ShiftDetail,
-    CandidatesDetail,
-    RefineDetail,
-    AnswersDetail,
-    Fusion,
-    MergeResult,
-)
 
 
 @dataclass
 class Story:
     """The state of a run as it is drawn. A picture that needs a detail asks with ``get``.
 
-    last   : the newest step, None before the first
-    gammas : best Γ after every iteration, a list per refined candidate
-    shifts : the turns tried so far
+    config  : of the method that runs
+    last    : the newest step, None before the first
+    courses : best value after every iteration, a list per refined candidate
+    swarms  : the newest snapshot of every refined candidate
+    shifts  : the turns tried so far
+    ceiling : the highest bound that the proof began with; −inf before it
     """
 
+    config: Any = None
     last: Step | None = None
-    gammas: list[list[float]] = field(default_factory=list)
+    courses: list[list[float]] = field(default_factory=list)
+    swarms: list[RefineDetail] = field(default_factory=list)
     shifts: list[ShiftDetail] = field(default_factory=list)
+    ceiling: float = float("-inf")
     seconds: dict[str, float] = field(default_factory=dict)
     _newest: dict[type, Detail] = field(default_factory=dict)
 
@@ -59,9 +51,13 @@ class Story:
         if isinstance(detail, ShiftDetail):
             self.shifts.append(detail)
         elif isinstance(detail, RefineDetail):
-            if detail.index >= len(self.gammas):
-                self.gammas.append([])
-            self.gammas[detail.index].append(detail.state.best_value)
+            if detail.index >= len(self.courses):
+                self.courses.append([])
+                self.swarms.append(detail)
+            self.courses[detail.index].append(detail.state.best_value)
+            self.swarms[detail.index] = detail
+        elif isinstance(detail, ProofDetail) and isfinite(detail.state.ceiling):
+            self.ceiling = max(self.ceiling, detail.state.ceiling)
         elif isinstance(detail, MergeResult):
             self.seconds = dict(detail.timings_s)
 
@@ -72,3 +68,36 @@ class Story:
     def reached(self, kind: type) -> bool:
         """Whether the run has come to this kind of step."""
         return kind in self._newest
+
+    @property
+    def measure(self) -> Measure:
+        """What is maximised."""
+        return measure_of(self.config)
+
+    @property
+    def searcher(self) -> str:
+        """Who searches, as the subject of a sentence."""
+        optimiser = getattr(getattr(self.config, "refine", None), "optimiser", "pso")
+        return "Monte-Carlo" if optimiser == "mco" else "The swarm"
+
+    @property
+    def swarm(self) -> RefineDetail | None:
+        """The swarm to look at: the one at work; once all are done, the one that got highest."""
+        if not self.swarms:
+            return None
+        if self.reached(AnswersDetail):
+            return max(self.swarms, key=lambda detail: detail.state.best_value)
+        return self.swarms[-1]
+
+    @property
+    def answer(self) -> Pose2 | None:
+        """The best transform as far as the run has come; None before the search is done."""
+        answers, proof = self.get(AnswersDetail), self.get(ProofDetail)
+        result, proven = self.get(MergeResult), self.get(ProvenDetail)
+        if result is not None:
+            return result.T_ref_mov
+        if proven is not None:
+            return proven.peak.T_ref_mov
+        if proof is not None and proof.state.best is not None:
+            return Pose2.from_array(proof.state.best)
+        return answers.answers[0].T_ref_mov if answers is not None else None

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from math import degrees
+from math import degrees, isfinite
+from typing import Any
 
+from algorithms.certificate import ProofState
 from algorithms.fuse import Fusion
+from algorithms.pose import Pose2, pose_error
 from algorithms.steps import (
     AnswersDetail,
     AugmentDetail,
@@ -12,13 +15,17 @@ from algorithms.steps import (
     HoughDetail,
     MergeResult,
     ObservationDetail,
+    ProofDetail,
+    ProvenDetail,
     RefineDetail,
     ShiftDetail,
     WindowDetail,
 )
+from algorithms.verdict import SAME_PLACE, VerdictConfig
+from app.measure import Measure
 from app.story import Story
 
-# Share of the work done when a stage begins; refining takes what lies between the last two.
+# Share of the work done when a stage begins; refining and proving take what lies before the next.
 _SHARE: dict[type, float] = {
     ObservationDetail: 0.02,
     AugmentDetail: 0.06,
@@ -27,10 +34,13 @@ _SHARE: dict[type, float] = {
     ShiftDetail: 0.2,
     CandidatesDetail: 0.4,
     RefineDetail: 0.4,
-    AnswersDetail: 0.95,
+    AnswersDetail: 0.8,
+    ProofDetail: 0.8,
+    ProvenDetail: 0.95,
     Fusion: 0.98,
     MergeResult: 1.0,
 }
+_MANY_BLOCKS = 20_000  # a proof has seldom more; nobody knows before its end how many there will be
 
 READY = "Ready. Press Merge."
 UP_TO_DATE = "Everything up to the candidates is up to date. Press Merge."
@@ -38,7 +48,7 @@ UP_TO_DATE = "Everything up to the candidates is up to date. Press Merge."
 
 def sentence(story: Story) -> str:
     """What a run is doing right now."""
-    detail = story.last.detail if story.last else None
+    detail, measure = story.last.detail if story.last else None, story.measure
     if isinstance(detail, ObservationDetail):
         times = len(detail.encounters)
         if times > 1:
@@ -54,19 +64,108 @@ def sentence(story: Story) -> str:
         turn = f"{degrees(detail.candidate.T_ref_mov.theta):.1f}".replace("-", "−")
         return f"Shifting candidate {detail.index + 1} of {detail.total}: map 2 turned by {turn}°."
     if isinstance(detail, CandidatesDetail):
-        return f"{len(detail.candidates)} candidates, ranked by Γ."
+        return f"{len(detail.candidates)} candidates, ranked by {measure.name}."
     if isinstance(detail, RefineDetail):
         return (
             f"Searching around candidate {detail.index + 1} of {detail.total}: "
-            f"iteration {detail.state.iteration + 1}, Γ = {detail.state.best_value:.4g}."
+            f"iteration {detail.state.iteration + 1}, {measure.name} = "
+            f"{measure.text(detail.state.best_value)}."
         )
     if isinstance(detail, AnswersDetail):
         return f"The search is done: {detail.answers[0].stopped}."
+    if isinstance(detail, ProofDetail):
+        return _proving(detail.state, measure)
+    if isinstance(detail, ProvenDetail):
+        return found_it(story)
     if isinstance(detail, Fusion):
         return "Merging the cells: what agrees, what contradicts."
     if isinstance(detail, MergeResult):
         return detail.verdict.reason
     return "Starting."
+
+
+def _proving(state: ProofState, measure: Measure) -> str:
+    blocks = f"{state.nodes:,} blocks bounded"
+    if state.best is None and not isfinite(state.ceiling):
+        return f"Proving: {blocks}, none of them agrees with every sighting."
+    if state.rival_sought:
+        return f"Proven. Looking for rivals: {blocks}, elsewhere nothing above {measure.text(state.ceiling)}."
+    return f"Proving: {blocks}, nothing above {measure.text(state.ceiling)} is left."
+
+
+def proof_says(state: ProofState, measure: Measure) -> str:
+    """What the picture of the proof means, in a line."""
+    if state.best is None and not isfinite(state.ceiling):
+        return "No transform agrees with every sighting: there is nothing to bound."
+    if not state.proven:
+        return (
+            f"No turn reaches above its grey ceiling, none anywhere {measure.text(state.ceiling)}. "
+            "It comes down until only the best is left."
+        )
+    if state.best_value <= 0:
+        return "No turn gets above zero: nothing speaks for a merge."
+    best = f"Nothing on the whole circle is better than {measure.text(state.best_value)}"
+    if len(state.rivals):
+        return f"{best}; the best rival has {state.rival_value / state.best_value:.0%} of it."
+    if state.stopped is None:
+        return f"{best}. Is there a rival elsewhere?"
+    return f"{best}, and no other place has {state.floor / state.best_value:.0%} of it."
+
+
+def found_it(story: Story) -> str:
+    """Whether the optimiser had come to the proven optimum; empty for a method without a proof."""
+    proven, answers = story.get(ProvenDetail), story.get(AnswersDetail)
+    if proven is None or answers is None:
+        return ""
+    state = proven.state
+    if state.best is None:
+        return "No transform at all agrees with every sighting."
+    if not state.proven:
+        left = story.measure.text(state.ceiling)
+        return f"Not proven after {state.nodes:,} blocks: somewhere there may be up to {left}."
+    if proven.search_found_it:
+        return f"{story.searcher} found the proven optimum."
+    seen = story.get(ObservationDetail)
+    stuck = f"{story.searcher} got stuck"
+    if seen is None:
+        return f"{stuck} below the proven optimum."
+    away = apart(answers.answers[0].T_ref_mov, proven.peak.T_ref_mov, seen)
+    return f"{stuck}: the proven optimum lies {away} from its best."
+
+
+def apart(a: Pose2, b: Pose2, seen: ObservationDetail | MergeResult) -> str:
+    """How far two transforms lie apart, at the seen robot."""
+    return apart_by(*pose_error(a, b, seen.encounter.x_mov))
+
+
+def apart_by(distance: float, turn: float) -> str:
+    """A distance in metres and a turn in radians, as words."""
+    return f"{distance:.1f} m and {degrees(turn):.0f}°"
+
+
+def rival(result: MergeResult) -> str:
+    """How the rival in doubt differs, and how near it comes: "180° turned, 98 %"; empty without one."""
+    other = result.verdict.rival
+    if other is None:
+        return ""
+    distance, turn = pose_error(result.T_ref_mov, other, result.encounter.x_mov)
+    shifted = distance > SAME_PLACE and degrees(turn) < 1
+    how = f"{distance:.1f} m shifted" if shifted else f"{degrees(turn):.0f}° turned"
+    share = _share_of(other, result)
+    return how if share is None else f"{how}, {100 * share:.0f} %"
+
+
+def _share_of(other: Pose2, result: MergeResult) -> float | None:
+    """Value of another answer over the best one's; None where it is not known."""
+    if result.proof is not None:
+        poses = [Pose2.from_array(pose) for pose in result.proof.rivals]
+        values, best = result.proof.rival_values.tolist(), result.proof.best_value
+    else:
+        poses = [answer.T_ref_mov for answer in result.answers]
+        values, best = [answer.value for answer in result.answers], result.value or 0.0
+    if other not in poses or best <= 0:
+        return None
+    return float(values[poses.index(other)] / best)
 
 
 def progress(story: Story) -> float:
@@ -76,19 +175,41 @@ def progress(story: Story) -> float:
     if isinstance(detail, ShiftDetail):
         share += 0.2 * (detail.index + 1) / max(1, detail.total)
     if isinstance(detail, RefineDetail):
-        share += 0.55 * detail.index / max(1, detail.total)
+        share += 0.4 * detail.index / max(1, detail.total)
+    if isinstance(detail, ProofDetail):
+        share += 0.15 * detail.state.nodes / (detail.state.nodes + _MANY_BLOCKS)
     return share
 
 
-def remedy(result: MergeResult) -> str:
-    """What would help after a refusal; empty where the merge was accepted."""
-    verdict = result.verdict
+def optimum(proof: ProofState) -> str:
+    """How the proof ended: "proven", or that it is not, and why."""
+    if proof.proven and proof.best_value > 0:
+        return "proven"
+    return f"{'' if proof.proven else 'not proven: '}{proof.stopped or 'not finished'}"
+
+
+def remedy(result: MergeResult, config: Any = None) -> str:
+    """What would help after a refusal; empty where the merge was accepted.
+
+    config : the settings that were used
+    """
+    verdict, proof = result.verdict, result.proof
+    rules = getattr(config, "verdict", VerdictConfig())
     if verdict.accepted:
         return ""
-    if verdict.overlap_area < 2:
-        return "Let one of the robots drive on, so that the maps share more, and merge again."
-    if verdict.ambiguity is not None and verdict.ambiguity > 0.8:
+    if proof is not None and proof.best is None:
+        return "Check the numbers of the sightings, leave the odd one out, or widen the window's margin."
+    if proof is not None and not proof.proven:
+        return "Give the proof more patience, or narrow the window, and merge again."
+    if verdict.rival is not None:
         return "A second observation would tell the two places apart; a larger Σ_aug takes in more walls."
-    if verdict.deviation > 4:
-        return "Check the observation's numbers; or widen σ_x, σ_y, or try more peaks."
+    if verdict.shared_wall < rules.wall:
+        return "Let one of the robots drive on, so that the maps share more, and merge again."
+    if verdict.deviation > rules.deviations:
+        return "Check the observation's numbers; or widen the window, or try more peaks."
+    if verdict.contradiction > rules.contradiction:
+        return (
+            "Are these maps of one building? Check the observation; a larger Σ_aug or a second "
+            "observation may find a better place."
+        )
     return "Check the observation; try a larger Σ_aug, more candidates, or a second observation."

@@ -11,13 +11,14 @@ from typing import Any
 
 from app.usage import Parser
 
-USAGE = "DIR [--rough] [--json FILE] [--jobs N] [options]"
+USAGE = "DIR [--rough | --both] [--json FILE] [--jobs N] [options]"
 DESCRIPTION = """\
 Run a method on every case folder under DIR and hold it against the truth.
 
 Examples:
   mapmeld evaluate cases --jobs 4
-  mapmeld evaluate cases --rough --method paper-argmax --json results.json
+  mapmeld evaluate cases --both --jobs 4 --json results.json
+  mapmeld evaluate cases --rough --method paper-argmax
 
 A case is a folder of map1.yaml, map2.yaml, observation.yaml and, where the answer is known,
 truth.yaml; without it the case is run and not judged.
@@ -45,7 +46,11 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     from app.flags import add_method
 
     parser.add_argument("folder", type=Path, metavar="DIR", help="folder of cases, or one case")
-    parser.add_argument("--rough", action="store_true", help="take observation_rough.yaml of each case")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--rough", action="store_true", help="take observation_rough.yaml of each case")
+    which.add_argument(
+        "--both", action="store_true", help="run each case with either file, and print a table for each"
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write every report and the totals there")
     parser.add_argument(
         "--jobs", type=_jobs, default=1, metavar="N", help="cases at a time, a process each (default: 1)"
@@ -57,20 +62,31 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     """Run all cases, print the table; 1 where a case could not be run."""
     from algorithms.atomic import write_file
     from algorithms.casefiles import case_folders
-    from app.evaluate import OVERALL, Order, evaluate, totals_of
+    from app.evaluate import OVERALL, Order, evaluate, evaluate_both, rough_folders, totals_of
     from app.flags import config_from
     from app.progress import bar
 
     order = Order(args.folder, args.method, config_from(args), args.seed, args.rough)
-    total = len(case_folders(args.folder))
-    entries = list(bar(iterable=evaluate(order, args.jobs), total=total, unit="case"))
-    entries.sort(key=lambda entry: str(entry["case"]))
+    total = len(case_folders(args.folder)) + (len(rough_folders(args.folder)) if args.both else 0)
+    told = evaluate_both(order, args.jobs) if args.both else evaluate(order, args.jobs)
+    entries = list(bar(iterable=told, total=total, unit="case"))
+    entries.sort(key=lambda entry: (str(entry["observation"]), str(entry["case"])))
     totals = totals_of(entries)
+    by_observation = {
+        file: totals_of([entry for entry in entries if entry["observation"] == file])
+        for file in dict.fromkeys(entry["observation"] for entry in entries)
+    }
     if args.json:
-        text = json.dumps({"cases": entries, "totals": totals}, indent=1, ensure_ascii=False, allow_nan=False)
+        answer = {"cases": entries, "totals": totals}
+        if args.both:
+            answer["totals_by_observation"] = by_observation
+        text = json.dumps(answer, indent=1, ensure_ascii=False, allow_nan=False)
         write_file(args.json, (text + "\n").encode())
-    for line in (*table(totals), *remarks(entries)):
-        print(line)
+    for number, (file, counts) in enumerate(by_observation.items()):
+        if args.both:
+            print(f"{chr(10) if number else ''}{file}")
+        for line in (*table(counts), *remarks([e for e in entries if e["observation"] == file])):
+            print(line)
     return 1 if totals[OVERALL]["errors"] else 0
 
 

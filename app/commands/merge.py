@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from math import degrees
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from algorithms.errors import OutputError
 from app.usage import Parser
@@ -32,7 +32,7 @@ Examples:
 Files in the folder of --out:
   merged.yaml, merged.pgm   the merged map, in map 1's frame
   transform.yaml            where map 2 lies in map 1, and the line that publishes it in ROS 2
-  report.json               transform, covariance, verdict, times, settings
+  report.json               transform, covariance, verdict, proof, times, settings
   overlay.png               both maps under the transform: agreement and contradiction
 A refused merge leaves report.json and overlay.png alone. merged.* and transform.yaml of an
 earlier run are then removed, so that nobody takes them for this run's.
@@ -87,7 +87,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     if args.json:
         sys.stdout.write(report_json(report).decode())
     else:
-        print("\n".join(_summary(result, args.out, files, removed)))
+        print("\n".join(_summary(result, config, args.out, files, removed)))
     return 0 if accepted else 1
 
 
@@ -144,13 +144,24 @@ def _check_folder(args: argparse.Namespace) -> None:
             raise OutputError(place, "is an input of this merge", "choose another --out")
 
 
-def _summary(result: MergeResult, out: Path, files: Mapping[str, bytes], removed: list[str]) -> list[str]:
-    T, verdict = result.T_ref_mov, result.verdict
-    gamma = "" if result.value is None else f"Γ {result.value:.4g}, "
-    lines = [
-        verdict.reason,
-        f"map 2 in map 1: x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°",
-        f"{gamma}acceptance index {verdict.acceptance_index:.3f} "
+def _summary(
+    result: MergeResult, config: Any, out: Path, files: Mapping[str, bytes], removed: list[str]
+) -> list[str]:
+    from app import words
+    from app.measure import measure_of
+
+    T, verdict, proof, measure = result.T_ref_mov, result.verdict, result.proof, measure_of(config)
+    lines = [verdict.reason]
+    if words.remedy(result, config):
+        lines.append(words.remedy(result, config))
+    lines.append(f"map 2 in map 1: x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°")
+    if result.value is not None:
+        ended = "" if proof is None else f", {words.optimum(proof)} ({proof.nodes:,} blocks bounded)"
+        lines.append(f"{measure.name} {measure.text(result.value)}{ended}")
+    if verdict.rival is not None:
+        lines.append(f"rival: {words.rival(result)} of the best")
+    lines += [
+        f"acceptance index {verdict.acceptance_index:.3f} "
         f"over {verdict.overlap_cells} cells ({verdict.overlap_area:.1f} m²)",
         f"written to {out}: {', '.join(files)}",
     ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import degrees, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from algorithms.pose import pose_error
 from algorithms.steps import MergeResult
 from app import words
 from app.inputs import Inputs
+from app.measure import measure_of
 from app.panels.tables import box, table
 
 STAGES = {
@@ -20,19 +22,23 @@ STAGES = {
     "spectra": "Hough spectra",
     "search": "candidates",
     "refine": "swarm",
+    "prove": "proof",
     "fuse": "merged cells",
     "verdict": "verdict",
 }
 
 
-def result_html(result: MergeResult, inputs: Inputs, faded: bool = False) -> str:
-    """HTML of the whole result; faded where it is out of date."""
+def result_html(result: MergeResult, inputs: Inputs, config: Any = None, faded: bool = False) -> str:
+    """HTML of the whole result; faded where it is out of date.
+
+    config : the settings that were used
+    """
     verdict = result.verdict
     mood = "accepted" if verdict.accepted else "refused"
-    note = "Out of date: a setting was changed." if faded else words.remedy(result)
+    note = "Out of date: a setting was changed." if faded else words.remedy(result, config)
     return (
         box(verdict.reason, mood, note, faded)
-        + table(numbers(result, inputs), faded=faded)
+        + table(numbers(result, inputs, config), faded=faded)
         + table(times(result), ("time per stage", "ms"), faded)
     )
 
@@ -41,8 +47,8 @@ def _share(index: float | None) -> str:
     return "–" if index is None else f"{index:.1%}"
 
 
-def numbers(result: MergeResult, inputs: Inputs) -> list[tuple[str, ...]]:
-    """The transform with its standard deviations, Γ, and the figures of merit."""
+def numbers(result: MergeResult, inputs: Inputs, config: Any = None) -> list[tuple[str, ...]]:
+    """The transform with its standard deviations, its value, and the figures of merit."""
     T, verdict = result.T_ref_mov, result.verdict
     at_robot, turn = _deviations(result)
     rows = [
@@ -52,7 +58,9 @@ def numbers(result: MergeResult, inputs: Inputs) -> list[tuple[str, ...]]:
         ("robot 2 known to", f"± {at_robot:.3f} m"),
     ]
     if result.value is not None:
-        rows.append(("Γ, eq. (17)", f"{result.value:.5g}"))
+        measure = measure_of(config)
+        digits = ".2f" if measure.unit else ".5g"
+        rows.append((measure.row, f"{result.value:{digits}}"))
     truth = inputs.truth.T_ref_mov if inputs.truth else None
     if truth is not None and inputs.ref is not None and inputs.mov is not None:
         index = performance_index(result.fusion, fuse(inputs.ref, inputs.mov, truth))
@@ -69,14 +77,37 @@ def numbers(result: MergeResult, inputs: Inputs) -> list[tuple[str, ...]]:
         rows.append(("eq. (23), at the estimated T", _share(performance_index(result.fusion))))
     rows += [
         ("acceptance index", f"{verdict.acceptance_index:.1%}"),
-        ("walls that coincide", f"{verdict.wall_support:.0%}"),
         ("area known to both", f"{verdict.overlap_area:.1f} m²"),
-        ("contradicting cells", f"{verdict.conflicting_cells}"),
-        *([("next best Γ", f"{verdict.ambiguity:.0%} of the best")] if verdict.ambiguity is not None else []),
+        ("wall that both should have seen", f"{verdict.shared_wall:.1f} m"),
+        ("contradicted, patches slipped", f"{verdict.contradiction:.1%}"),
+        ("contradicted, as the maps are", f"{verdict.rigid_contradiction:.1%}"),
         ("robot 2 off its sighting", f"{verdict.deviation:.1f} σ"),
-        *([("optimum", "proven")] if result.proven_optimal else []),
+        *_rivals(result),
+        *_proof(result),
         ("seed", f"{result.seed}"),
     ]
+    return rows
+
+
+def _rivals(result: MergeResult) -> list[tuple[str, ...]]:
+    """The next best place, and the one that leaves the answer in doubt."""
+    verdict = result.verdict
+    if verdict.ambiguity is None:
+        return []
+    best = f"{verdict.ambiguity:.0%} of the best" if verdict.ambiguity > 0 else "none worth naming"
+    rows: list[tuple[str, ...]] = [("next best place", best)]
+    if verdict.rival is not None:
+        rows.append(("rival in doubt", words.rival(result)))
+    return rows
+
+
+def _proof(result: MergeResult) -> list[tuple[str, ...]]:
+    """Whether there can be a better answer, and whether the search alone had found this one."""
+    if result.proof is None:
+        return []
+    rows = [("optimum", words.optimum(result.proof)), ("blocks bounded", f"{result.proof.nodes:,}")]
+    if result.proven_optimal and result.search_found_it is not None:
+        rows.append(("found by the search", "yes" if result.search_found_it else "no, by the proof alone"))
     return rows
 
 

@@ -5,15 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable
 from html import escape
 
+LONGEST = 26  # letters of a cell that is kept on one line; more would push the table out of its panel
+
 
 def table(rows: Iterable[tuple[str, ...]], head: tuple[str, ...] = (), faded: bool = False) -> str:
     """HTML of a table: first column words, the others numbers set flush right."""
 
     def row(cells: tuple[str, ...], tag: str) -> str:
         first, *rest = cells
-        style = "text-align:right;font-variant-numeric:tabular-nums;padding-left:8px;white-space:nowrap"
+        style = "text-align:right;font-variant-numeric:tabular-nums;padding-left:8px"
         inner = f'<{tag} style="text-align:left;font-weight:400;opacity:.75">{escape(first)}</{tag}>'
-        return inner + "".join(f'<{tag} style="{style}">{escape(cell)}</{tag}>' for cell in rest)
+        for cell in rest:
+            wrap = "normal" if len(cell) > LONGEST else "nowrap"
+            inner += f'<{tag} style="{style};white-space:{wrap}">{escape(cell)}</{tag}>'
+        return inner
 
     body = "".join(f"<tr>{row(cells, 'td')}</tr>" for cells in rows)
     top = f'<tr style="opacity:.6;font-size:11px">{row(head, "th")}</tr>' if head else ""

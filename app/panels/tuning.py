@@ -1,4 +1,4 @@
-"""Folders "Augmentation", "Search" and "Result": a slider for every setting of the chosen method."""
+"""Folders "Augmentation" to "Result": a slider for every setting of the chosen method."""
 
 from __future__ import annotations
 
@@ -13,14 +13,23 @@ from app.controls import Path, Setting, in_cells, settings_of, value_at, with_va
 from app.palette import QUIET
 
 # Group of the config -> folder; what is not named goes to "Search".
-FOLDERS = {"augment": "Augmentation", "verdict": "Result", "conflict": "Result"}
-ORDER = {"Augmentation": 30.0, "Search": 40.0, "Result": 60.0}
+FOLDERS = {
+    "augment": "Augmentation",
+    "agreement": "Agreement",
+    "proof": "Proof",
+    "verdict": "Result",
+    "conflict": "Result",
+}
+ORDER = {"Augmentation": 30.0, "Search": 40.0, "Agreement": 43.0, "Proof": 46.0, "Result": 60.0}
 
 # Shown at once, in this order; every other setting is under "More".
 FRONT: tuple[Path, ...] = (
     ("augment", "intensity"),
     ("augment", "spread"),
+    ("window", "kind"),
     ("window", "margin"),
+    ("window", "deviations"),
+    ("refine", "objective"),
     ("box", "sigma_x"),
     ("box", "sigma_y"),
     ("box", "sigma_theta"),
@@ -32,6 +41,23 @@ FRONT: tuple[Path, ...] = (
 )
 
 
+def idle(config: Any, path: Path) -> bool:
+    """Whether a setting does nothing beside the others as they stand."""
+    refine, proof = getattr(config, "refine", None), getattr(config, "proof", None)
+    if path[0] == "agreement":
+        return refine is not None and refine.objective != "agreement"
+    if path[0] == "proof" and path[-1] != "whole_circle":
+        return proof is not None and not proof.whole_circle
+    if path in {("swarm", "omega"), ("swarm", "tau")}:
+        return refine is not None and refine.optimiser != "pso"
+    return False
+
+
+def _in_metres(setting: Setting) -> bool:
+    """Whether a setting is a length with a symbol: worth telling in cells, too."""
+    return setting.bounds is not None and setting.bounds.unit == "m" and bool(setting.bounds.symbol)
+
+
 class TuningPanel:
     """Owns the config. ``changed`` is called with it after every change by the person."""
 
@@ -41,7 +67,7 @@ class TuningPanel:
         self._gui, self._changed, self._report = gui, changed, report
         self._handles: dict[Path, Any] = {}
         self._settings: dict[Path, Setting] = {}
-        self._folders: list[Any] = []
+        self._folders: dict[str, Any] = {}
         self._notes: dict[str, Any] = {}
         self._cells: tuple[float, ...] = ()
         self.method = DEFAULT_METHOD
@@ -52,7 +78,7 @@ class TuningPanel:
         """Take another method, at its defaults."""
         if method != self.method:
             self.method, self.config = method, METHODS[method].defaults
-            for folder in self._folders:
+            for folder in self._folders.values():
                 folder.remove()
             self._build()
             self._changed()
@@ -68,7 +94,7 @@ class TuningPanel:
         self._handles.clear()
         self._notes.clear()
         self._settings = {setting.path: setting for setting in settings_of(self.config)}
-        self._folders = []
+        self._folders = {}
         for title, order in ORDER.items():
             mine = [path for path in self._settings if FOLDERS.get(path[0], "Search") == title]
             if not mine:
@@ -76,13 +102,11 @@ class TuningPanel:
             front = [path for path in FRONT if path in mine]
             more = [path for path in mine if path not in front]
             folder = self._gui.add_folder(title, order=order, expand_by_default=bool(front))
-            self._folders.append(folder)
+            self._folders[title] = folder
             with folder:
                 for path in front:
                     self._add(self._settings[path])
-                if any(
-                    self._settings[path].bounds and self._settings[path].bounds.unit == "m" for path in mine
-                ):
+                if any(_in_metres(self._settings[path]) for path in mine):
                     self._notes[title] = self._gui.add_html("")
                 if front and more:
                     with self._gui.add_folder("More", expand_by_default=False):
@@ -94,6 +118,7 @@ class TuningPanel:
                 reset = self._gui.add_button(f"Reset {title.lower()}", color=QUIET)
                 reset.on_click(lambda _, mine=tuple(mine): self._reset(mine))
         self._show_cells()
+        self._hide_idle()
 
     def _add(self, setting: Setting) -> None:
         hint, value = setting.hint or None, setting.default
@@ -154,6 +179,7 @@ class TuningPanel:
         if config != self.config:
             self.config = config
             self._show_cells()
+            self._hide_idle()
             self._changed()
 
     def _reset(self, mine: tuple[Path, ...]) -> None:
@@ -164,6 +190,7 @@ class TuningPanel:
             self.config = config
             self._write(config)
             self._show_cells()
+            self._hide_idle()
             self._changed()
 
     def _write(self, config: Any) -> None:
@@ -173,20 +200,29 @@ class TuningPanel:
             if handle.value != shown:
                 handle.value = shown
 
+    def _hide_idle(self) -> None:
+        """Show the settings that do something, and the folders that hold one."""
+        for path, handle in self._handles.items():
+            shown = not idle(self.config, path)
+            if handle.visible != shown:
+                handle.visible = shown
+        for title, folder in self._folders.items():
+            mine = [path for path in self._handles if FOLDERS.get(path[0], "Search") == title]
+            shown = not all(idle(self.config, path) for path in mine)
+            if folder.visible != shown:
+                folder.visible = shown
+
     def _show_cells(self) -> None:
         """Lengths in cells below the sliders of a folder; the maps may differ in resolution."""
         for title, note in self._notes.items():
             parts = []
             for path, setting in self._settings.items():
-                if (
-                    FOLDERS.get(path[0], "Search") != title
-                    or setting.bounds is None
-                    or setting.bounds.unit != "m"
-                ):
+                bounds = setting.bounds
+                if FOLDERS.get(path[0], "Search") != title or bounds is None or not _in_metres(setting):
                     continue
                 if self._cells:
                     cells = in_cells(value_at(self.config, path), *self._cells)
-                    parts.append(f"{setting.bounds.symbol} = {cells}")
+                    parts.append(f"{bounds.symbol} = {cells}")
             note.content = (
                 f'<div style="font-size:11.5px;opacity:.7;margin:-2px 10px 6px">{" · ".join(parts)}</div>'
             )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from math import cos, sin
 from typing import Literal
 
 import viser
 
 from algorithms.fuse import Fusion
 from algorithms.gridmap import GridMap
+from algorithms.pose import Pose2
 from algorithms.steps import AugmentDetail
 from app import render
 from app.layout import Layout
@@ -18,7 +20,8 @@ Which = Literal["sources", "levels", "merged"]
 
 # Heights in the order they lie on each other; all floors are below all walls, so that a map that
 # slides over the other hides none of its walls.
-FREE_1, FREE_2, WALLS_1, WALLS_2, MERGED_FREE, MERGED_WALLS = 0.0, 0.1, 0.2, 0.3, 0.4, 0.5
+FREE_1, FREE_2, WALLS_1, WALLS_2, MERGED_FREE, MERGED_WALLS, GHOST = 0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6
+GHOSTLY = 60  # of 255; twice as much on the page, which makes thin walls darker
 
 
 class Ground:
@@ -45,9 +48,14 @@ class Ground:
             GridImage(scene, "/world/ref/merged_free", MERGED_FREE),
             GridImage(scene, "/world/ref/merged_walls", MERGED_WALLS),
         )
-        self._all = (*self._free, *self._walls, *self._levels, *self._merged)
+        self._ghost_frame = scene.add_frame("/world/ghost", show_axes=False)
+        self._ghost = GridImage(scene, "/world/ghost/walls", GHOST)
+        self._haunted: GridMap | None = None  # whose walls the ghost is made of
+        self._ghost_at: Pose2 | None = None
+        self._all = (*self._free, *self._walls, *self._levels, *self._merged, self._ghost)
         self._layout: Layout | None = None
         self._palette: Palette | None = None
+        self._mov: GridMap | None = None
         self._lifted: AugmentDetail | None = None
         self._fused: Fusion | None = None
         self.which: Which = "sources"
@@ -57,6 +65,8 @@ class Ground:
         for image in self._all:
             image.remove()
         self._layout, self._palette, self._lifted, self._fused = layout, palette, None, None
+        self._haunted = None
+        self._mov = mov
         colours, anchors = (palette.ref, palette.mov), (layout.anchor_ref, layout.anchor_mov)
         for k, grid in enumerate((ref, mov)):
             if grid is not None:
@@ -83,6 +93,18 @@ class Ground:
             walls.show(render.merged_walls(fusion, self._palette), fusion.merged, self._layout.anchor_ref)
         self.show("merged")
 
+    def ghost(self, at: Pose2 | None) -> None:
+        """Show map 2's walls faintly with its anchor at another place of the scene; None: nowhere."""
+        if at is not None and self._mov is not None and self._layout is not None and self._palette:
+            if self._haunted is not self._mov:
+                self._haunted = self._mov
+                faint = render.walls(self._mov.cells, self._palette.rival, GHOSTLY)
+                self._ghost.show(faint, self._mov, self._layout.anchor_mov)
+            self._ghost_frame.position = (at.x, at.y, 0.0)
+            self._ghost_frame.wxyz = (cos(at.theta / 2), 0.0, 0.0, sin(at.theta / 2))
+        self._ghost_at = at
+        self._ghost.visible(at is not None)
+
     def show(self, which: Which) -> None:
         """Show one set of pictures and hide the others."""
         self.which = which
@@ -94,6 +116,7 @@ class Ground:
         ):
             for image in images:
                 image.visible(which in among)
+        self._ghost.visible(self._ghost_at is not None)
 
     def hide(self) -> None:
         """Hide everything; ``show(self.which)`` brings it back."""

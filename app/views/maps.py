@@ -16,13 +16,16 @@ from algorithms.steps import (
     CandidatesDetail,
     HoughDetail,
     MergeResult,
+    ProofDetail,
+    ProvenDetail,
     RefineDetail,
     ShiftDetail,
     WindowDetail,
 )
+from app import words
 from app.inputs import Inputs
 from app.layout import Layout, Rect, union
-from app.palette import LIGHT, Palette
+from app.palette import LIGHT, Palette, css
 from app.stage import Stage, cloud, mark
 from app.story import Story
 from app.views import signs
@@ -30,7 +33,7 @@ from app.views.ground import Ground
 
 TURN_MS, SLIDE_MS, FOLLOW_MS = 900.0, 330.0, 70.0
 MOST_PARTICLES = 600  # drawn; more would be a blot
-OF_A_RUN = ("aug", "window", "box", "swarm", "best")
+OF_A_RUN = ("aug", "window", "box", "swarm", "rival", "best")
 
 
 class MapView:
@@ -101,13 +104,15 @@ class MapView:
             look = self._candidates(story, glide)
         elif isinstance(detail, RefineDetail):
             look = self._refine(detail, glide)
-        elif isinstance(detail, (AnswersDetail, Fusion, MergeResult)):
+        elif isinstance(detail, ProofDetail):
+            look = self._prove(story, detail, glide)
+        elif isinstance(detail, (AnswersDetail, ProvenDetail, Fusion, MergeResult)):
             look = self._answer(story, glide)
         if camera and look is not None:
             self._stage.look_down(look)
 
     def preview(self, story: Story, config: Any) -> None:
-        """Draw what a moved slider does before there is a merge: levels, Σ_aug, the box's size."""
+        """Draw what a moved slider does before there is a merge: levels, Σ_aug, windows, the box's size."""
         self._ground.lift(story.get(AugmentDetail))
         self._lifted(0.0, 0.0)
         if not story.reached(AugmentDetail):  # a method without levels
@@ -116,6 +121,16 @@ class MapView:
         box = getattr(config, "box", None)
         if box is not None:
             self._stage.layer("box", signs.margins(box.sigma_x, box.sigma_y, self._palette))
+        self._windows(story, self.layout.view())
+
+    def _windows(self, story: Story, view: Rect) -> None:
+        window, found = story.get(WindowDetail), story.get(CandidatesDetail)
+        if window is None or self._inputs.at is None:
+            return
+        at_hand = found.candidates[0] if found else story.shifts[-1].candidate if story.shifts else None
+        turn = at_hand.T_ref_mov.theta if at_hand else 0.0
+        drawn = signs.windows(window, turn, self.layout, self._palette, view)
+        self._stage.layer("window", drawn)
 
     def _lifted(self, turn: float, glide: float) -> Rect:
         turned = Pose2(self.layout.apart.x, self.layout.apart.y, turn)
@@ -131,12 +146,10 @@ class MapView:
             self._stage.layer("aug", signs.rings(augment.covariance(), self._palette, both=True))
 
     def _candidates(self, story: Story, glide: float) -> Rect:
-        colours, found, at = self._palette, story.get(CandidatesDetail), self._inputs.at
+        colours, found = self._palette, story.get(CandidatesDetail)
         self._ground.show("sources")
-        self._clear("aug", "swarm", "best")
-        window = story.get(WindowDetail)
-        if window is not None and at is not None:
-            self._stage.layer("window", signs.window(window.window, at.x_mov, self.layout, colours))
+        self._clear("aug", "swarm", "rival", "best")
+        self._windows(story, self.layout.swept())
         tried = found.candidates if found else [shift.candidate for shift in story.shifts]
         places = [self.layout.placed(candidate.T_ref_mov) for candidate in tried]
         marks = [mark("diamond", place.xy, colours.particle, r=5) for place in places]
@@ -151,7 +164,7 @@ class MapView:
     def _refine(self, detail: RefineDetail, glide: float) -> Rect | None:
         layout, colours, state = self.layout, self._palette, detail.state
         self._ground.show("sources")
-        self._clear("aug", "window")
+        self._clear("aug", "window", "rival")
         best = layout.placed(detail.box.transform(state.best))
         self._place(best, glide * FOLLOW_MS)
         self._robots(together=True, seen=False)  # the swarm's best stands there
@@ -166,18 +179,37 @@ class MapView:
         self._stage.layer("box", signs.box(detail.box, layout, colours))
         return signs.footprint(detail.box, layout)
 
+    def _prove(self, story: Story, detail: ProofDetail, glide: float) -> Rect | None:
+        self._ground.show("sources")
+        self._clear("aug", "swarm", "box", "rival")
+        if story.answer is not None:
+            at = self.layout.placed(story.answer)
+            self._place(at, glide * SLIDE_MS)
+        self._robots(together=True)
+        self._stage.layer("window", signs.discs(detail.window, self.layout, self._palette))
+        self._stage.layer("best", signs.proof(detail.state, self.layout, self._palette))
+        return self.layout.swept()
+
     def _answer(self, story: Story, glide: float) -> Rect | None:
-        answers, fusion = story.get(AnswersDetail), story.get(Fusion)
-        if answers is None:
+        fusion, result = story.get(Fusion), story.get(MergeResult)
+        if story.answer is None:
             return None
-        at = self.layout.placed(answers.answers[0].T_ref_mov)
-        self._clear("aug", "window", "swarm", "box")
+        at = self.layout.placed(story.answer)
+        self._clear("aug", "window", "swarm", "box", "rival")
         self._place(at, glide * SLIDE_MS)
         self._robots(together=True)
-        self._stage.layer("best", [mark("star", at.xy, self._palette.answer, r=9, rim="#374151")])
+        star = mark("star", at.xy, self._palette.answer, r=9, rim=css(self._palette.rim))
+        self._stage.layer("best", [star])
         if fusion is not None:
             self._ground.merge(fusion)
-        return self.layout.view(at)
+        if result is None or result.verdict.rival is None:
+            return self.layout.view(at)
+        rival = self.layout.placed(result.verdict.rival)
+        self._ground.ghost(rival)
+        heading = self._inputs.observations[0].observed_heading
+        doubt = signs.rival(result, heading, words.rival(result), self.layout, self._palette)
+        self._stage.layer("rival", doubt)
+        return union(self.layout.view(at), self.layout.view(rival))
 
     # --- parts ------------------------------------------------------------------------------------
 
@@ -220,5 +252,7 @@ class MapView:
     def _clear(self, *names: str) -> None:
         for name in names:
             self._stage.layer(name, None)
+        if "rival" in names:
+            self._ground.ghost(None)
         if "box" in names:
             self._boxed = None

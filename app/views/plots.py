@@ -9,45 +9,52 @@ import numpy as np
 import viser
 from viser import uplot
 
+from algorithms.certificate import ProofState
+from algorithms.fuse import Fusion
 from algorithms.steps import (
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
     MergeResult,
+    ProofDetail,
+    ProvenDetail,
     RefineDetail,
     ShiftDetail,
     WindowDetail,
 )
-from app import charts
+from app import charts, words
 from app.palette import LIGHT, css
 from app.panels.tables import box, table
 from app.story import Story
 
-TURN, SHIFT, SWARM, RESULT = "Turn", "Shift", "Swarm", "Result"
-LINES = 4  # courses of Γ that are drawn
+TURN, SHIFT, SWARM, PROOF, RESULT = "Turn", "Shift", "Swarm", "Proof", "Result"
+LINES = 4  # courses of the search that are drawn
 
 # colours that read on light and on dark panels alike
 REF, MOV, MARK, BEST = css(LIGHT.ref), css(LIGHT.mov), css(LIGHT.particle), css(LIGHT.best)
-GREY = css(LIGHT.margin)
+GREY, OPTIMUM, RIVAL, RIM = css(LIGHT.margin), css(LIGHT.answer), css(LIGHT.rival), css(LIGHT.rim)
 # what a page says while there is nothing on it
 HINTS = {
     TURN: "Which way do the walls run? Press Merge, or move a slider: the Hough spectra of both maps, and "
     "the turns in which they coincide, appear here.",
     SHIFT: "How far is map 2 off? The X and Y spectra of every turn that is tried appear here.",
-    SWARM: "The climb of Γ, candidate by candidate, appears here during a merge.",
+    SWARM: "The climb of the best value, candidate by candidate, appears here during a merge.",
+    PROOF: "Is there a better place anywhere on the circle? What the method “Spectra, swarm, proven optimum” "
+    "has ruled out, turn by turn, appears here during a merge.",
     RESULT: "The verdict and its numbers appear here after a merge.",
 }
 NOTHING = (np.array([0.0, 1.0]), np.full(2, np.nan))
 
 
-def _dots(label: str, colour: str, size: float) -> uplot.Series:
-    points = {"show": True, "size": size, "fill": colour, "stroke": colour, "width": 1}
-    return uplot.Series(label=label, width=0, stroke=colour, points=points)  # type: ignore[typeddict-item]
+def _dots(label: str, colour: str, size: float, rim: str | None = None) -> uplot.Series:
+    points = {"show": True, "size": size, "fill": colour, "stroke": rim or colour, "width": 1}
+    fill = {"fill": colour} if rim else {}  # the swatch of the legend
+    return uplot.Series(label=label, width=0, stroke=rim or colour, points=points, **fill)  # type: ignore[typeddict-item]
 
 
-def _line(label: str, colour: str, width: float = 1.5) -> uplot.Series:
-    return uplot.Series(label=label, stroke=colour, width=width, points={"show": False})
+def _line(label: str, colour: str, width: float = 1.5, **more: Any) -> uplot.Series:
+    return uplot.Series(label=label, stroke=colour, width=width, points={"show": False}, **more)
 
 
 class PlotDock:
@@ -60,7 +67,7 @@ class PlotDock:
         self._chosen = False
         self._shown: dict[str, object] = {}
         with self._panel.add_tab("Stages", icon=viser.Icon.CHART_LINE):
-            self._pages = gui.add_button_group("", (TURN, SHIFT, SWARM, RESULT))
+            self._pages = gui.add_button_group("", (TURN, SHIFT, SWARM, PROOF, RESULT))
             self._pages.on_click(lambda _: self._choose())
             self._hint = gui.add_html("")
             self._hough = self._plot(
@@ -93,7 +100,7 @@ class PlotDock:
                         ),
                         self._plot(
                             gui,
-                            "Correlation, window of eqs. (9), (10) shaded",
+                            "Correlation, window shaded",
                             f"Δ{axis} (m)",
                             (window, _line("C", GREY), _dots("shift", BEST, 9)),
                             140,
@@ -101,15 +108,31 @@ class PlotDock:
                     )
                 )
             colours = (BEST, MARK, REF, GREY)
-            self._gamma = self._plot(
+            self._climb = self._plot(
                 gui,
-                "Best Γ so far, eq. (17)",
+                "Best value so far",
                 "iteration",
                 tuple(_line(f"{k + 1}", colour, 2.2 if k == 0 else 1.3) for k, colour in enumerate(colours)),
                 230,
                 None,
             )
             self._candidates = gui.add_html("")
+            self._proof_says = gui.add_html("")
+            self._proof = self._plot(
+                gui,
+                "Best value of every turn",
+                "turn Δθ (°), the whole circle",
+                (
+                    _line("ceiling", GREY, 1.4, fill="rgba(107,114,128,.16)"),
+                    _line("best met", MARK, 1, fill="rgba(230,159,0,.55)"),
+                    _line("floor", GREY, 1, dash=(3, 4), alpha=0.7),
+                    _dots("optimum", OPTIMUM, 11, RIM),
+                    _dots("rivals", RIVAL, 9),
+                ),
+                250,
+                ticks=(30.0, 45.0, 90.0, 180.0),
+            )
+            self._rivals = gui.add_html("")
             self.result = gui.add_html("")
         self._panel.dock_left()
         self._panel.set_width(316)
@@ -124,6 +147,7 @@ class PlotDock:
         series: tuple[uplot.Series, ...],
         height: int,
         top: float | None = 1.1,
+        ticks: tuple[float, ...] = (),
     ) -> Any:
         small = "11px system-ui, sans-serif"
         return gui.add_uplot(
@@ -135,7 +159,14 @@ class PlotDock:
                 "y": uplot.Scale(auto=True) if top is None else uplot.Scale(range=(0.0, top)),
             },
             axes=(
-                uplot.Axis(label=label, labelSize=16, labelFont=small, font=small, size=26),
+                uplot.Axis(
+                    label=label,
+                    labelSize=16,
+                    labelFont=small,
+                    font=small,
+                    size=26,
+                    **({"incrs": ticks} if ticks else {}),
+                ),
                 uplot.Axis(font=small, size=46 if top is None else 42),
             ),
             legend=uplot.Legend(show=True, live=False),
@@ -168,7 +199,8 @@ class PlotDock:
         for handles, page in (
             ((self._hough, self._turns), TURN),
             ([handle for pair in self._shifts for handle in pair], SHIFT),
-            ((self._gamma, self._candidates), SWARM),
+            ((self._climb, self._candidates), SWARM),
+            ((self._proof_says, self._proof, self._rivals), PROOF),
             ((self.result,), RESULT),
         ):
             shown = self.page == page and self._filled(page)
@@ -185,7 +217,7 @@ class PlotDock:
         """Whether there is anything to show on a page."""
         if page == RESULT:
             return bool(self.result.content)
-        return {TURN: "turn", SHIFT: "shift", SWARM: "candidates"}[page] in self._shown
+        return {TURN: "turn", SHIFT: "shift", SWARM: "candidates", PROOF: "proof"}[page] in self._shown
 
     def tell(self, answer: str) -> None:
         """Put the answer, as HTML, on its page."""
@@ -198,7 +230,9 @@ class PlotDock:
         """Nothing is known."""
         self._shown.clear()
         self._candidates.content = self.result.content = ""
-        for plot in (self._hough, self._turns, self._gamma, *(p for pair in self._shifts for p in pair)):
+        self._proof_says.content = self._rivals.content = ""
+        pairs = (plot for pair in self._shifts for plot in pair)
+        for plot in (self._hough, self._turns, *pairs, self._climb, self._proof):
             plot.data = (NOTHING[0], *(NOTHING[1] for _ in plot.data[1:]))
         self._show_page()
 
@@ -207,7 +241,7 @@ class PlotDock:
         detail = story.last.detail if story.last else None
         hough, refine = story.get(HoughDetail), story.get(RefineDetail)
         shift = story.shifts[-1] if story.shifts else None
-        found = story.get(CandidatesDetail)
+        found, proof = story.get(CandidatesDetail), story.get(ProofDetail)
         # after the search the best candidate is the one at hand
         at_hand = found.candidates[0] if found else shift.candidate if shift else None
         if hough is not None and self._new("turn", (hough, at_hand)):
@@ -223,12 +257,19 @@ class PlotDock:
             for (spectra, correlation), match in zip(self._shifts, (at_hand.x, at_hand.y), strict=True):
                 spectra.data = charts.shift_spectra(match)
                 correlation.data = charts.shift_correlation(match)
-        if refine is not None and self._new("gamma", refine):
-            self._gamma.data = charts.gammas(story.gammas, LINES)
+        measure = story.measure
+        if refine is not None and self._new("climb", refine):
+            self._climb.data = charts.courses(story.courses, LINES)
+            self._climb.title = f"Best {measure.row} so far"
         if found is not None and self._new("candidates", (found, refine)):
-            rows = charts.candidate_rows(found.candidates, story.gammas)
-            head = ("candidate", "Δθ", "Δx (m)", "Δy (m)", "Γ, look", "Γ, swarm")
+            rows = charts.candidate_rows(found.candidates, story.courses, measure)
+            sign = measure.unit or measure.name
+            head = ("candidate", "Δθ", "Δx (m)", "Δy (m)", f"look ({sign})", f"swarm ({sign})")
             self._candidates.content = table(rows, head)
+        if proof is not None and self._new("proof", proof):
+            self._prove(story, proof.state)
+        elif proof is None and story.reached(Fusion):  # of an earlier run; this method proves nothing
+            self._shown.pop("proof", None)
         self._show_page()
         if not follow:
             return
@@ -238,8 +279,25 @@ class PlotDock:
             self.turn_to(SHIFT)
         elif isinstance(detail, (RefineDetail, AnswersDetail)):
             self.turn_to(SWARM)
+        elif isinstance(detail, (ProofDetail, ProvenDetail)):
+            self.turn_to(PROOF)
         elif isinstance(detail, MergeResult):
             self.turn_to(RESULT)
+
+    def _prove(self, story: Story, state: ProofState) -> None:
+        measure, span = story.measure, charts.proof_range(state, story.ceiling)
+        # the axis first: its curves are clipped to it
+        if self._new("proof scale", span):
+            self._proof.scales = {
+                "x": uplot.Scale(time=False, range=(-180.0, 180.0)),
+                "y": uplot.Scale(range=span),
+            }
+        self._proof.title = f"Best {measure.row} at every turn"
+        self._proof.data = charts.proof(state, span[1])
+        self._proof_says.content = box(words.proof_says(state, measure), "plain")
+        rows = charts.proof_rows(state, measure)
+        head = ("", "Δθ", measure.unit or measure.name, "of the best")
+        self._rivals.content = table(rows, head) if rows else ""
 
     def _new(self, name: str, source: object) -> bool:
         before, self._shown[name] = self._shown.get(name), source

@@ -8,11 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from algorithms.certificate import ProofState
 from algorithms.observation import Encounter, Observation
-from algorithms.pose import FloatArray
-from algorithms.window import Box, Window
+from algorithms.pose import FloatArray, Pose2, rotation
+from algorithms.steps import MergeResult, WindowDetail
+from algorithms.window import Box, CoupledWindow, Window
 from app.layout import Layout, Rect
-from app.palette import Palette
+from app.palette import Palette, css
 from app.stage import Item, ellipse, mark, path, rectangle
 
 ZERO = np.zeros(2)  # the meeting place of the first sighting, in both frames
@@ -112,12 +114,90 @@ def rings(covariance: FloatArray, colours: Palette, both: bool) -> list[Item]:
     return items
 
 
-def window(w: Window, x_mov: FloatArray, layout: Layout, colours: Palette) -> list[Item]:
-    """The window of the shift: where T may put the pivot."""
-    corners = rectangle(w.low - layout.anchor_ref, w.high - layout.anchor_ref)
-    whose = "robot 2" if np.allclose(w.pivot, x_mov) else "map 2's origin"
-    label = {"t": f"window for {whose}, eqs. (9), (10)", "tp": corners[2], "dy": -12, "align": "center"}
-    return [path(corners, colours.margin, **DASHED, **label)]
+def windows(detail: WindowDetail, turn: float, layout: Layout, colours: Palette, view: Rect) -> list[Item]:
+    """Both windows as the places where T may put robot 2: the one in use strong, the other faint.
+
+    turn : of map 2 at hand, radians: as printed the window bounds where map 2's origin goes, and robot 2
+           stands off that by the turned x̂2
+    view : what the camera shows; a window beyond it is told by its size
+    """
+    coupled = isinstance(detail.window, CoupledWindow)
+    printed = detail.paper if coupled else detail.window
+    assert isinstance(printed, Window)
+    items = _paper_window(printed, turn, layout, colours, view, strong=not coupled)
+    return items + discs(detail.coupled, layout, colours, strong=coupled)
+
+
+def _paper_window(
+    w: Window, turn: float, layout: Layout, colours: Palette, view: Rect, strong: bool
+) -> list[Item]:
+    off = rotation(turn) @ (layout.anchor_mov - w.pivot) - layout.anchor_ref
+    low, high = w.low + off, w.high + off
+    corners = rectangle(low, high)
+    width, height = (high - low).tolist()
+    size = f"{width:.0f} m × {height:.0f} m" if min(width, height) >= 5 else f"{width:.1f} m × {height:.1f} m"
+    words = f"paper's window, eqs. (6)–(10): {size}"
+    x0, y0, x1, y1 = view
+    middle = (max(low[0], x0) + min(high[0], x1)) / 2
+    # the words stand on an edge that is seen; where none is, at the foot of what is seen
+    if y0 < low[1]:
+        at, dy = (middle, low[1]), 11
+    elif high[1] < y1:
+        at, dy = (middle, high[1]), -11
+    else:
+        at, dy, words = (middle, y0), 14, f"{words}, more than you see"
+    label = {"t": words, "tp": np.array(at), "dy": dy, "align": "center", "tc": css(colours.margin)}
+    how = {"close": True, "d": [6, 4], "w": 1.8 if strong else 1.0, "halo": strong}
+    return [path(corners, colours.margin, alpha=1.0 if strong else QUIET, **how, **label)]
+
+
+def discs(w: CoupledWindow, layout: Layout, colours: Palette, strong: bool = True) -> list[Item]:
+    """The coupled window: for every sighting the disc in which T may put the seen robot."""
+    items = []
+    for number, (x_ref, covariance) in enumerate(zip(w.x_ref, w.covariances, strict=True), 1):
+        ring = ellipse(x_ref - layout.anchor_ref, covariance, w.k)
+        how: dict[str, Any] = {"close": True, "w": 1.8 if strong else 1.0, "halo": strong}
+        if not strong:
+            how["d"] = [2, 3]
+        if number == 1:
+            top = ring[int(ring[:, 1].argmax())]
+            how |= {"t": f"coupled window, {w.k:g} σ", "tp": top, "dy": -11, "align": "center"}
+            how["tc"] = css(colours.margin)
+        alpha = 1.0 if strong and number == 1 else QUIET
+        items.append(path(ring, colours.margin, alpha=alpha, **how))
+    return items
+
+
+def proof(state: ProofState, layout: Layout, colours: Palette) -> list[Item]:
+    """The best so far and its rivals, as map 2's robot would stand there."""
+    items = [
+        mark("dot", layout.placed(Pose2.from_array(pose)).xy, colours.rival, r=4.5) for pose in state.rivals
+    ]
+    if state.best is not None:
+        at = layout.placed(Pose2.from_array(state.best)).xy
+        items.append(mark("star", at, colours.answer, r=9, rim=css(colours.rim)))
+    return items
+
+
+def rival(
+    result: MergeResult, heading: float | None, words: str, layout: Layout, colours: Palette
+) -> list[Item]:
+    """Where map 2 and its robot would lie under the rival that leaves the answer in doubt.
+
+    heading : of robot 2 in map 2; None where it is not known
+    """
+    T = result.verdict.rival
+    if T is None or layout.mov_corners is None:
+        return []
+    at = layout.placed(T)
+    outline = at.apply(layout.mov_corners)
+    foot = outline[int(outline[:, 1].argmin())]
+    label = {"t": f"rival: {words}", "tp": foot, "dy": 13, "align": "center", "size": 12}
+    items = [
+        path(outline, colours.rival, alpha=0.8, w=1.4, close=True, d=[7, 5], tc=css(colours.rival), **label)
+    ]
+    shape, how = ("robot", {"a": heading + at.theta, "r": 8}) if heading is not None else ("dot", {"r": 5})
+    return [*items, mark(shape, at.xy, colours.rival, **how)]
 
 
 def margins(sigma_x: float, sigma_y: float, colours: Palette) -> list[Item]:

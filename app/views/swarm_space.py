@@ -6,10 +6,13 @@ from math import pi
 
 import numpy as np
 
-from algorithms.pose import FloatArray
-from algorithms.steps import RefineDetail
+from algorithms.pose import FloatArray, Pose2, pose_error, wrap_angle
+from algorithms.steps import ProvenDetail, RefineDetail
+from algorithms.window import Box
+from app import words
 from app.palette import Palette, css
 from app.stage import Item, Stage, cloud, mark, path
+from app.story import Story
 
 TRAILS = 24  # particles that draw a trail
 TRAIL_LENGTH = 10
@@ -25,8 +28,35 @@ def to_cube(poses: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     return np.asarray((2 * (poses - low) / width - 1) @ _AXES, dtype=np.float64)
 
 
+def in_box(T_ref_mov: Pose2, box: Box) -> FloatArray:
+    """(3,) coordinates of a transform in a box: where the pivot goes, and the turn nearest to the box's."""
+    middle = float(box.centre[2])
+    turn = middle + wrap_angle(T_ref_mov.theta - middle)
+    return np.append(T_ref_mov.apply(box.pivot), turn)
+
+
+def proven_optimum(proven: ProvenDetail, detail: RefineDetail, palette: Palette) -> list[Item]:
+    """The proven optimum as a star; where it lies outside of the box, on its border, with how far it is."""
+    box, T = detail.box, proven.peak.T_ref_mov
+    at = to_cube(in_box(T, box)[None], box.low, box.high)[0]
+    beyond = float(np.abs(at).max())
+    name = "proven optimum" if proven.state.proven else "best known"
+    star = {"r": 10, "rim": css(palette.rim), "tc": css(palette.text), "size": 12, "dx": 16}
+    if beyond <= 1.001:
+        # its words stand off those of the swarm's best, which lies as near as can be where it found it
+        return [mark("star", at, palette.answer, t=name, dy=-16, **star)]
+    distance, turn = pose_error(box.transform(detail.state.best), T, box.pivot)
+    away = words.apart_by(distance, turn)
+    edge = at / beyond
+    ray = path(np.array([np.zeros(3), edge]), palette.rim, w=1, d=[2, 4])
+    return [
+        ray,
+        mark("star", edge, palette.answer, t=f"{name}: outside, {away} from the swarm's best", **star),
+    ]
+
+
 class SwarmSpaceView:
-    """Particles, a few trails, the swarm's best, and shadows on floor and walls."""
+    """Particles, a few trails, the swarm's best, the proven optimum, and shadows on floor and walls."""
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
@@ -35,12 +65,13 @@ class SwarmSpaceView:
 
     def hide(self) -> None:
         """Take everything away."""
-        for name in ("axes", "swarm", "trail", "best", "floor"):
+        for name in ("axes", "swarm", "trail", "best", "rival", "floor"):
             self._stage.layer(name, None)
         self._trail.clear()
 
-    def show(self, detail: RefineDetail | None, palette: Palette, look: bool) -> None:
-        """Draw a snapshot; ``look`` puts the camera before the box."""
+    def show(self, story: Story, palette: Palette, look: bool) -> None:
+        """Draw the newest snapshot; ``look`` puts the camera before the box."""
+        detail = story.swarm
         if look:
             self._stage.look_at("swarm", np.array([0.0, 0.0, 0.0]), 1.95, 1.15, -0.55)
         if detail is None:
@@ -55,6 +86,9 @@ class SwarmSpaceView:
             )
             self._stage.layer("axes", [text])
             return
+        proven = story.get(ProvenDetail)
+        known = proven is not None and proven.state.best is not None
+        self._stage.layer("rival", proven_optimum(proven, detail, palette) if proven and known else None)
         low, high = detail.box.low, detail.box.high
         if self._of is not detail.box:
             self._of = detail.box

@@ -1,0 +1,42 @@
+"""What a method maximises, as a person reads it: Γ of eq. (17), or metres of wall that agree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Measure:
+    """Words for the value of a transform.
+
+    name : in a sentence, and above a chart
+    row  : beside a number in a table, its unit included
+    unit : behind a number in a sentence; empty where there is none
+    """
+
+    name: str
+    row: str
+    unit: str
+
+    def number(self, value: float) -> str:
+        """The value without its unit; a dash where no transform in the window was met (−inf)."""
+        if not isfinite(value):
+            return "–"
+        return (f"{value:.1f}" if self.unit else f"{value:.4g}").replace("-", "−")
+
+    def text(self, value: float) -> str:
+        """The value with its unit."""
+        number = self.number(value)
+        return f"{number} {self.unit}" if self.unit and number != "–" else number
+
+
+GAMMA = Measure("Γ", "Γ, eq. (17)", "")
+AGREEMENT = Measure("agreement", "agreement (m of wall)", "m")
+
+
+def measure_of(config: Any) -> Measure:
+    """What the method with this config maximises; one without an objective says nothing of it."""
+    objective = getattr(getattr(config, "refine", None), "objective", "gamma")
+    return AGREEMENT if objective == "agreement" else GAMMA
