@@ -39,7 +39,7 @@ class AgreementConfig:
     """Standard deviation of the distance between two drawings of the same wall."""
     penalty: Annotated[float, Bounds(0, 5, 0.1, "", "λ", "contradiction")] = 1.0
     """What a metre of wall in the other map's free floor takes back, in metres of wall that agree."""
-    evidence: Annotated[float, Bounds(0.05, 5, 0.05, "m", "ℓ", "evidence")] = 0.5
+    evidence: Annotated[float, Bounds(0.05, 5, 0.05, "m", "ℓ", "evidence")] = 0.25
     """Metres of wall that say as much as one measurement: neighbouring cells err alike. It weighs the
     sightings against the walls, and makes a covariance of the peak's width."""
 

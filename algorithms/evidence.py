@@ -12,7 +12,7 @@ merge keeps about as many as it had.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import ceil
+from math import ceil, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,7 @@ from algorithms.pose import FloatArray, Pose2
 SAME_WALL = 0.12  # metres; two drawings of one wall: the sum of two ragged cells of 0.05 m and a bit
 NEAR_WALL = 0.3  # metres; a wall in unknown ground counts as seen by both where the other has one so near
 PATCH = 7.0  # metres; a room and the wall behind it: large enough that chance does not fit it
+RASTERS = (0.0, 0.5)  # patches; where the patches' borders lie must not matter, so two are averaged
 SLIP = 0.6  # metres that a patch may slip
 SLIP_STEP = 0.15  # metres; a wall within SAME_WALL of a step is met by it
 TURN = 0.07  # radians that a patch may turn, 4°
@@ -35,17 +36,19 @@ INERTIA = 0.05  # share of a patch's walls that the farthest slip must win to be
 
 @dataclass(frozen=True)
 class Evidence:
-    """Metres of wall that both robots should have seen under a transform; both maps' walls count.
+    """Wall that both robots should have seen under a transform, both maps' walls counted; metres.
 
     agreeing, contradicting : with every patch where it fits best: the other map has a wall there, or
                               free floor
     rigid_agreeing, rigid_contradicting : the same with the maps as they are
+    slip : how far patches slipped, root of the mean square over the agreeing wall
     """
 
     agreeing: float
     contradicting: float
     rigid_agreeing: float
     rigid_contradicting: float
+    slip: float = 0.0
 
     @property
     def contradiction(self) -> float:
@@ -70,21 +73,23 @@ def _share(against: float, agreeing: float) -> float:
 
 def evidence(ref: GridMap, mov: GridMap, T_ref_mov: Pose2) -> Evidence:
     """Weigh the walls of both maps, each looked up in the other."""
-    totals = np.zeros(4)
+    totals = np.zeros(5)
     for source, target, T in ((mov, ref, T_ref_mov), (ref, mov, T_ref_mov.inverse())):
         totals += _one_way(source, target, T) * source.resolution
-    return Evidence(*totals.tolist())
+    agreeing, contradicting, rigid_agreeing, rigid_contradicting, squared = totals.tolist()
+    slip = sqrt(squared / agreeing) if agreeing else 0.0
+    return Evidence(agreeing, contradicting, rigid_agreeing, rigid_contradicting, slip)
 
 
 def _one_way(source: GridMap, target: GridMap, T_target_source: Pose2) -> FloatArray:
-    """(4,) cells of the source's walls, in the order of ``Evidence``."""
+    """(5,) cells of the source's walls, in the order of ``Evidence``; the last times squared slips, m²."""
     rows, cols = np.nonzero(_surface_of(source))
     places = target.grid_coordinates(T_target_source.apply(source.centres(rows, cols)))
     margin = ceil((SLIP + PATCH * TURN + NEAR_WALL) / target.resolution) + 1
     inside = np.all((places >= 0) & (places < (target.width, target.height)), axis=1)
     places = places[inside]
     if not len(places):
-        return np.zeros(4)
+        return np.zeros(5)
     low = np.maximum(0, places.min(axis=0).astype(int) - margin)
     high = np.minimum((target.width, target.height), places.max(axis=0).astype(int) + margin + 1)
     part = slice(low[1], high[1]), slice(low[0], high[0])
@@ -95,15 +100,24 @@ def _one_way(source: GridMap, target: GridMap, T_target_source: Pose2) -> FloatA
     shared = free[at[:, 1], at[:, 0]] | (distance[at[:, 1], at[:, 0]] <= NEAR_WALL)
     places = places[shared]
     if not len(places):
-        return np.zeros(4)
-    patch = np.floor(places * (target.resolution / PATCH)).astype(np.int64)
+        return np.zeros(5)
+    totals = np.zeros(5)
+    for offset in RASTERS:
+        totals += _patch_by_patch(places, offset, distance, free, target.resolution)
+    return totals / len(RASTERS)
+
+
+def _patch_by_patch(
+    places: FloatArray, offset: float, distance: Float32Array, free: BoolArray, cell: float
+) -> FloatArray:
+    """(5,) the sums over all patches; offset: of the raster of patches, in patches."""
+    patch = np.floor(places * (cell / PATCH) + offset).astype(np.int64)
     number = patch[:, 1] * (patch[:, 0].max() + 1) + patch[:, 0]
     order = np.argsort(number, kind="stable")
     places = np.ascontiguousarray(places[order])
     starts = np.flatnonzero(np.diff(number[order], prepend=-1))
     starts = np.append(starts, len(places))
-    counts = np.zeros((len(starts) - 1, 4))
-    cell = target.resolution
+    counts = np.zeros((len(starts) - 1, 5))
 
     def work(start: int, stop: int) -> None:
         _slip(places, starts[start : stop + 1], distance, free, cell, counts[start:stop])
@@ -175,3 +189,4 @@ def _slip(
                     if value > best:
                         best = value
                         out[patch, 0], out[patch, 1] = agreeing, contradicting
+                        out[patch, 4] = agreeing * (i * i + j * j) * SLIP_STEP**2

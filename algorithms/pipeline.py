@@ -15,7 +15,7 @@ from algorithms.bounds import Bounds, check_bounds
 from algorithms.certificate import ProofConfig, prove
 from algorithms.chain import Chain, Memo
 from algorithms.covariance import peak_covariance
-from algorithms.evidence import evidence
+from algorithms.evidence import PATCH, Evidence, evidence
 from algorithms.fuse import Conflict, Fusion, fuse
 from algorithms.gridmap import GridMap
 from algorithms.montecarlo import monte_carlo
@@ -165,9 +165,10 @@ def run(
 
     def conclude() -> list[Detail]:
         rivals = _rivals(refined, proven, seen.encounter, config)
+        weighed = evidence(ref, mov, best)
         verdict = judge(
             fusion,
-            evidence(ref, mov, best),
+            weighed,
             best,
             seen.encounters,
             [Rival(T, share, evidence(ref, mov, T)) for T, share in rivals],
@@ -178,7 +179,7 @@ def run(
         return [
             MergeResult(
                 T_ref_mov=best,
-                covariance=_covariance(found, refined, proven, seen.encounters, config),
+                covariance=_covariance(found, refined, proven, seen.encounters, weighed, config),
                 value=proven.peak.value if proven else refined.answers[0].value,
                 verdict=verdict,
                 fusion=fusion,
@@ -350,13 +351,19 @@ def _covariance(
     refined: AnswersDetail,
     proven: ProvenDetail | None,
     encounters: Sequence[Encounter],
+    weighed: Evidence,
     config: PipelineConfig,
 ) -> FloatArray:
-    """Calibrated for the agreement; of Γ, which is no likelihood, the width of its peak."""
+    """Calibrated for the agreement; of Γ, which is no likelihood, the width of its peak.
+
+    Bent maps have no one transform: it differs from patch to patch by as much as patches slip.
+    """
     if proven is None or config.refine.objective == "gamma":
         best = proven.peak.T_ref_mov if proven else refined.answers[0].T_ref_mov
         box = box_around(best, found.window, config.box)
         return peak_covariance(found.objective, best, box, config.augment.spread)
     window = coupled_window(encounters, config.window)
     widest = np.append(np.sqrt(np.diag(window.covariances[0])), radians(config.proof.angle))
-    return covariance_of(proven.peak, window.pivot, config.agreement.evidence, widest, LEAST_DEVIATION)
+    bend = weighed.slip if weighed.rigid_contradiction > config.verdict.contradiction else 0.0
+    least = np.hypot(LEAST_DEVIATION, bend) * np.array([1.0, 1.0, 1 / PATCH])
+    return covariance_of(proven.peak, window.pivot, config.agreement.evidence, widest, least)

@@ -13,6 +13,7 @@ from algorithms.objective import Objective
 from algorithms.pose import FloatArray, Pose2, rotation
 
 ROUNDS = (1.0, 0.5, 0.25, 0.125)  # cells; width of the stencil, round by round
+LEASH = 1.5  # cells from where it began: farther off is another answer, for the search to find
 PAIRS = tuple(combinations_with_replacement(range(3), 2))
 
 
@@ -37,13 +38,14 @@ def polish(objective: Objective, T_ref_mov: Pose2, pivot: FloatArray, reach: flo
     cell = objective.cell
     scale = np.array([cell, cell, cell / reach])
     at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
+    low, high = at - LEASH * scale, at + LEASH * scale
     value = float(objective(_transforms(at[None], pivot))[0])
     for width in ROUNDS:
         gradient, hessian, values, stencil = _paraboloid(objective, at, scale * width, pivot)
         tried = [stencil[int(values.argmax())]]
         if np.linalg.eigvalsh(hessian)[-1] < 0:
-            tried.append(np.clip(-np.linalg.solve(hessian, gradient), -2, 2))
-        places = at + np.array(tried) * scale * width
+            tried.append(-np.linalg.solve(hessian, gradient))
+        places = np.clip(at + np.array(tried) * scale * width, low, high)
         found = objective(_transforms(places, pivot))
         best = int(found.argmax())
         if found[best] > value:
@@ -53,7 +55,7 @@ def polish(objective: Objective, T_ref_mov: Pose2, pivot: FloatArray, reach: flo
 
 
 def covariance_of(
-    peak: Peak, pivot: FloatArray, evidence: float, widest: FloatArray, least: float
+    peak: Peak, pivot: FloatArray, evidence: float, widest: FloatArray, least: FloatArray
 ) -> FloatArray:
     """(3, 3) covariance of Δx, Δy, Δθ; metres and radians; positive definite.
 
@@ -61,13 +63,12 @@ def covariance_of(
     measurement, objective / evidence is a log-likelihood; its curvature at the top is inverted.
 
     widest : (3,) standard deviations of x, y, theta where the objective says nothing
-    least  : standard deviation that no raster goes below; metres
+    least  : (3,) standard deviations of x, y, theta that come on top: rasters, and bent maps
     """
     unit = np.asarray(widest, dtype=np.float64)
     strengths, directions = np.linalg.eigh(peak.curvature * np.outer(unit, unit) / evidence)
     at_pivot = (directions / np.maximum(strengths, 1.0)) @ directions.T * np.outer(unit, unit)
-    at_pivot[0, 0] += least**2
-    at_pivot[1, 1] += least**2
+    at_pivot += np.diag(np.square(least))
     to_shift = np.eye(3)  # d (Δx, Δy, Δθ) / d (where the pivot goes, Δθ): Δ = that − C(Δθ) pivot
     to_shift[:2, 2] = -rotation(peak.T_ref_mov.theta + pi / 2) @ pivot
     return np.asarray(to_shift @ at_pivot @ to_shift.T, dtype=np.float64)

@@ -27,7 +27,7 @@ class VerdictConfig:
     patch of the maps may slip a little. Lidar maps of one place stay below 6 %."""
     bent_contradiction: Annotated[float, Bounds(0, 1, 0.01, "", "", "contradiction, bent")] = 0.25
     """The same for maps that are bent: slipping must then take away most of the contradictions."""
-    bent: Annotated[float, Bounds(0, 1, 0.01, "", "", "bent")] = 0.46
+    bent: Annotated[float, Bounds(0, 1, 0.01, "", "", "bent")] = 0.45
     """Share of the contradictions that slipping must take away for maps to count as bent. Of two
     buildings' maps it takes away half at most."""
     wall: Annotated[float, Bounds(0, 200, 1, "m", "", "shared wall")] = 15.0
