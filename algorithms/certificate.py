@@ -21,6 +21,7 @@ from algorithms.objective import Objective
 from algorithms.pose import FloatArray, wrap_angles
 from algorithms.window import CoupledWindow
 
+NODES = 100_000  # in one unit of patience
 BATCH = 256  # blocks opened between two looks at the best value, at least
 MOST_RIVALS = 5
 
@@ -52,11 +53,13 @@ class ProofState:
     ceiling          : no transform of the lattice is better than this; once proven, none elsewhere
     rivals, rival_values : (R, 3), (R,) the best transforms elsewhere, best first, each another answer
                        than those before it; the last one may not be final before ``stopped``
-    floor            : rivals below this value are not looked for
+    floor            : neither bests nor rivals below this value are looked for
     turns            : (A,) middles of the sectors of the circle; radians
     ceilings, found  : (A,) bound of each sector, and the best value met in it (−inf: none looked at)
     stopped          : why the search ended; None while it goes on
     proven           : whether ``best`` is the best of the lattice
+    empty            : whether the window is known to hold no transform at all: the sightings contradict
+                       each other
     """
 
     rival_sought: bool
@@ -72,6 +75,7 @@ class ProofState:
     found: FloatArray
     stopped: str | None
     proven: bool
+    empty: bool = False
 
     @property
     def rival(self) -> FloatArray | None:
@@ -160,6 +164,12 @@ class _Search:
         """Bound of what is open."""
         return max(front.top for front in self.open)
 
+    @property
+    def empty(self) -> bool:
+        """Whether nothing has been found in the window, and nothing is left to look at."""
+        blocks = (*self.open, *self.shut, self.single)
+        return not any(len(front.bounds) for front in blocks)
+
     def sector(self, nodes: IntArray, level: int) -> IntArray:
         """(P,) which sector of the circle blocks lie in."""
         return np.asarray(nodes[:, 0] >> (self.levels - level), dtype=np.int64)
@@ -216,21 +226,27 @@ Wanted = Callable[[IntArray, int], BoolArray]
 
 
 def prove(
-    objective: Objective, window: CoupledWindow, config: ProofConfig, floor: float = 0.0
+    objective: Objective,
+    window: CoupledWindow,
+    config: ProofConfig,
+    floor: float = 0.0,
+    worth: float = -np.inf,
 ) -> Iterator[ProofState]:
     """Search the whole circle; yield the state every few hundred blocks, the last one ``stopped``.
 
     The caller may leave at any time. Values are those of ``objective`` at look-up NEAREST.
 
     floor : share of the best value below which a rival is of no interest
+    worth : value up to which the best is of no interest either; where none is above it, that is proven
+            and no ``best`` is told
     """
     search = _Search(objective, window)
     lattice = search.lattice
-    patience = config.patience * 100_000
+    patience = config.patience * NODES
     answers: list[IntArray] = []  # the best, then its rivals
     values: list[float] = []
-    leading: tuple[float, IntArray | None] = search.single.best()
-    least = -np.inf
+    leading: tuple[float, IntArray | None] = search.single.best(worth)
+    least = worth
     proven = False
 
     def state(stopped: str | None) -> ProofState:
@@ -253,6 +269,7 @@ def prove(
             found=search.found.copy(),
             stopped=stopped,
             proven=proven,
+            empty=search.empty,
         )
 
     def elsewhere(nodes: IntArray, level: int) -> BoolArray:
@@ -283,8 +300,10 @@ def prove(
         search.single.keep(elsewhere(search.single.nodes, 0))
         search.open_again()
         proven, leading = True, search.single.best(least)
-    if not answers:
+    if not answers and search.empty:
         yield state("the window holds no transform of the lattice")
+    elif not answers:
+        yield state(f"proven: no transform has a value above {worth:g}")
     elif not proven:
         proven = True
         leading = (-np.inf, None)

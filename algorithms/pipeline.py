@@ -301,7 +301,8 @@ def _prove(
 ) -> Iterator[Detail]:
     """The best of the whole circle, and whether the optimiser had found it."""
     window = coupled_window(encounters, config.window)
-    for state in prove(found.objective, window, config.proof, RIVAL_FLOOR):
+    # where nothing fits, the best of what does not fit is not worth the time to prove it
+    for state in prove(found.objective, window, config.proof, RIVAL_FLOOR, worth=0.0):
         yield ProofDetail(state, window)
     searched = refined.answers[0].T_ref_mov
     start = searched if state.best is None else Pose2.from_array(state.best)
@@ -316,14 +317,13 @@ def _doubts(refined: AnswersDetail, proven: ProvenDetail | None) -> list[str]:
     """What the search itself has against its answer."""
     if proven is None:
         return [] if refined.answers[0].value > 0 else ["near the encounter no walls coincide"]
-    if proven.state.best is None:
+    if proven.state.empty:
         return ["the sightings contradict each other: no transform agrees with all of them"]
-    doubts = []
-    if proven.state.best_value <= 0:
-        doubts.append("near the encounter more wall contradicts than agrees")
-    if not proven.state.proven:
-        doubts.append("the search was stopped before it had ruled out a better place")
-    return doubts
+    if proven.state.proven:
+        return []
+    if proven.state.stopped and proven.state.ceiling <= 0:
+        return ["wherever robot 2 may have stood, more wall contradicts than agrees"]
+    return ["the search was stopped before it had ruled out a better place"]
 
 
 def _rivals(
