@@ -72,6 +72,8 @@ def settings_of(config: Any, path: Path = ()) -> Iterator[Setting]:
             yield from settings_of(value, here)
             continue
         words, hint = field.name.replace("_", " "), docs.get(field.name, "")
+        if words == "kind" and path:  # of what?
+            words = f"{path[-1]} kind"
         if field.name in bounds:
             b = bounds[field.name]
             parts = (b.symbol, b.label or words, f"({b.unit})" if b.unit else "")

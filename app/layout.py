@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
 from algorithms.gridmap import UNKNOWN, GridMap
@@ -24,6 +25,15 @@ def known_corners(grid: GridMap) -> FloatArray:
     low, high = np.array([cols[0], rows[0]]), np.array([cols[-1] + 1, rows[-1] + 1])
     unit = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
     return grid.origin.apply((low + unit * (high - low)) * grid.resolution)
+
+
+def known_hull(grid: GridMap) -> FloatArray:
+    """(N, 2) corners of the convex hull of all known cells; metres, map frame."""
+    rows, cols = np.nonzero(grid.cells != UNKNOWN)
+    if len(rows) == 0:
+        return grid.corners()
+    centres = np.stack([cols, rows], axis=1).astype(np.float32) + 0.5
+    return grid.origin.apply(cv2.convexHull(centres)[:, 0].astype(np.float64) * grid.resolution)
 
 
 def rect_of(points: FloatArray) -> Rect:

@@ -307,9 +307,10 @@ class Page:
         self._stage.hud(legend=legend(self._palette, view, story))
 
     def _say(self, story: Story, result: MergeResult) -> None:
-        """The verdict; over the swarm also whether it found the proven optimum."""
-        found = words.found_it(story) if self._run.view == SWARM else ""
-        self._stage.hud(state=f"{found} {result.verdict.reason}".strip())
+        """The verdict; over the swarm whether it found the proven optimum, and the verdict's first word."""
+        found, reason = words.found_it(story), result.verdict.reason
+        brief = f"{found} {reason.split(':')[0]}."
+        self._stage.hud(state=brief if found and self._run.view == SWARM else reason)
 
     def _maps_preview(self, job: Job) -> None:
         if self._run.view == MAP:

@@ -67,9 +67,8 @@ def sentence(story: Story) -> str:
         return f"{len(detail.candidates)} candidates, ranked by {measure.name}."
     if isinstance(detail, RefineDetail):
         return (
-            f"Searching around candidate {detail.index + 1} of {detail.total}: "
-            f"iteration {detail.state.iteration + 1}, {measure.name} = "
-            f"{measure.text(detail.state.best_value)}."
+            f"Searching: candidate {detail.index + 1} of {detail.total}, iteration "
+            f"{detail.state.iteration + 1}, {measure.name} {measure.text(detail.state.best_value)}."
         )
     if isinstance(detail, AnswersDetail):
         return f"The search is done: {detail.answers[0].stopped}."
@@ -89,7 +88,7 @@ def _proving(state: ProofState, measure: Measure) -> str:
     if state.best is None and not isfinite(state.ceiling):
         return f"Proving: {blocks}, none of them agrees with every sighting."
     if state.rival_sought:
-        return f"Proven. Looking for rivals: {blocks}, elsewhere nothing above {measure.text(state.ceiling)}."
+        return f"Proven. Rivals: {blocks}, none above {measure.text(state.ceiling)}."
     return f"Proving: {blocks}, nothing above {measure.text(state.ceiling)} is left."
 
 
@@ -99,7 +98,7 @@ def proof_says(state: ProofState, measure: Measure) -> str:
         return "No transform agrees with every sighting: there is nothing to bound."
     if not state.proven:
         return (
-            f"No turn reaches above its grey ceiling, none anywhere {measure.text(state.ceiling)}. "
+            f"Every turn stays below its grey ceiling, and all of them below {measure.text(state.ceiling)}. "
             "It comes down until only the best is left."
         )
     if state.best_value <= 0:
@@ -144,7 +143,7 @@ def apart_by(distance: float, turn: float) -> str:
 
 
 def rival(result: MergeResult) -> str:
-    """How the rival in doubt differs, and how near it comes: "180° turned, 98 %"; empty without one."""
+    """How the rival in doubt differs, and how near it comes: "180° turned, 98%"; empty without one."""
     other = result.verdict.rival
     if other is None:
         return ""
@@ -152,7 +151,7 @@ def rival(result: MergeResult) -> str:
     shifted = distance > SAME_PLACE and degrees(turn) < 1
     how = f"{distance:.1f} m shifted" if shifted else f"{degrees(turn):.0f}° turned"
     share = _share_of(other, result)
-    return how if share is None else f"{how}, {100 * share:.0f} %"
+    return how if share is None else f"{how}, {share:.0%}"
 
 
 def _share_of(other: Pose2, result: MergeResult) -> float | None:

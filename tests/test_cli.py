@@ -103,7 +103,7 @@ def test_no_command_is_an_error_that_shows_the_help(capsys):
         (["merge", "--observaton", "x"], "did you mean --observation?"),
         (["merge", "--augment.spred", "3"], "did you mean --augment.spread?"),
         (["merge", "--method", "spectra-swam"], "did you mean spectra-swarm?"),
-        (["merge", "--method", "zebra"], "known are spectra-swarm"),
+        (["merge", "--method", "zebra"], "known are spectra-proven"),
         (["merge", "--method", "bilateral", "--swarm.particles", "90"], "other than bilateral"),
         (["merge", "a", "b", "--out", "c"], "required: --observation"),
         (["merge", "--augment.spread", "99"], "it must lie in [0.2, 20] m"),

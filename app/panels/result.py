@@ -78,7 +78,7 @@ def numbers(result: MergeResult, inputs: Inputs, config: Any = None) -> list[tup
     rows += [
         ("acceptance index", f"{verdict.acceptance_index:.1%}"),
         ("area known to both", f"{verdict.overlap_area:.1f} m²"),
-        ("wall that both should have seen", f"{verdict.shared_wall:.1f} m"),
+        ("wall in view of both", f"{verdict.shared_wall:.1f} m"),
         ("contradicted, patches slipped", f"{verdict.contradiction:.1%}"),
         ("contradicted, as the maps are", f"{verdict.rigid_contradiction:.1%}"),
         ("robot 2 off its sighting", f"{verdict.deviation:.1f} σ"),
@@ -94,7 +94,7 @@ def _rivals(result: MergeResult) -> list[tuple[str, ...]]:
     verdict = result.verdict
     if verdict.ambiguity is None:
         return []
-    best = f"{verdict.ambiguity:.0%} of the best" if verdict.ambiguity > 0 else "none worth naming"
+    best = f"{verdict.ambiguity:.0%} of the best" if verdict.ambiguity > 0 else "none"
     rows: list[tuple[str, ...]] = [("next best place", best)]
     if verdict.rival is not None:
         rows.append(("rival in doubt", words.rival(result)))
@@ -107,7 +107,7 @@ def _proof(result: MergeResult) -> list[tuple[str, ...]]:
         return []
     rows = [("optimum", words.optimum(result.proof)), ("blocks bounded", f"{result.proof.nodes:,}")]
     if result.proven_optimal and result.search_found_it is not None:
-        rows.append(("found by the search", "yes" if result.search_found_it else "no, by the proof alone"))
+        rows.append(("found by the search", "yes" if result.search_found_it else "no"))
     return rows
 
 

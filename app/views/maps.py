@@ -22,9 +22,10 @@ from algorithms.steps import (
     ShiftDetail,
     WindowDetail,
 )
+from algorithms.window import CoupledWindow
 from app import words
 from app.inputs import Inputs
-from app.layout import Layout, Rect, union
+from app.layout import Layout, Rect, known_hull, union
 from app.palette import LIGHT, Palette, css
 from app.stage import Stage, cloud, mark
 from app.story import Story
@@ -103,7 +104,7 @@ class MapView:
         elif isinstance(detail, (WindowDetail, ShiftDetail, CandidatesDetail)):
             look = self._candidates(story, glide)
         elif isinstance(detail, RefineDetail):
-            look = self._refine(detail, glide)
+            look = self._refine(story, detail, glide)
         elif isinstance(detail, ProofDetail):
             look = self._prove(story, detail, glide)
         elif isinstance(detail, (AnswersDetail, ProvenDetail, Fusion, MergeResult)):
@@ -161,10 +162,14 @@ class MapView:
         self._robots(together=bool(places))
         return self.layout.swept()
 
-    def _refine(self, detail: RefineDetail, glide: float) -> Rect | None:
+    def _refine(self, story: Story, detail: RefineDetail, glide: float) -> Rect | None:
         layout, colours, state = self.layout, self._palette, detail.state
         self._ground.show("sources")
-        self._clear("aug", "window", "rival")
+        self._clear("aug", "rival")
+        window = story.get(WindowDetail)
+        coupled = window is not None and isinstance(window.window, CoupledWindow)
+        discs = signs.discs(window.coupled, layout, colours) if window and coupled else None
+        self._stage.layer("window", discs)
         best = layout.placed(detail.box.transform(state.best))
         self._place(best, glide * FOLLOW_MS)
         self._robots(together=True, seen=False)  # the swarm's best stands there
@@ -182,13 +187,14 @@ class MapView:
     def _prove(self, story: Story, detail: ProofDetail, glide: float) -> Rect | None:
         self._ground.show("sources")
         self._clear("aug", "swarm", "box", "rival")
-        if story.answer is not None:
-            at = self.layout.placed(story.answer)
-            self._place(at, glide * SLIDE_MS)
+        if story.answer is None:
+            return None
+        at = self.layout.placed(story.answer)
+        self._place(at, glide * SLIDE_MS)
         self._robots(together=True)
         self._stage.layer("window", signs.discs(detail.window, self.layout, self._palette))
         self._stage.layer("best", signs.proof(detail.state, self.layout, self._palette))
-        return self.layout.swept()
+        return self.layout.view(at)
 
     def _answer(self, story: Story, glide: float) -> Rect | None:
         fusion, result = story.get(Fusion), story.get(MergeResult)
@@ -202,12 +208,14 @@ class MapView:
         self._stage.layer("best", [star])
         if fusion is not None:
             self._ground.merge(fusion)
-        if result is None or result.verdict.rival is None:
+        mov = self._inputs.mov
+        if result is None or result.verdict.rival is None or mov is None:
             return self.layout.view(at)
         rival = self.layout.placed(result.verdict.rival)
         self._ground.ghost(rival)
         heading = self._inputs.observations[0].observed_heading
-        doubt = signs.rival(result, heading, words.rival(result), self.layout, self._palette)
+        hull = known_hull(mov) - self.layout.anchor_mov
+        doubt = signs.rival(rival, hull, heading, words.rival(result), self._palette)
         self._stage.layer("rival", doubt)
         return union(self.layout.view(at), self.layout.view(rival))
 

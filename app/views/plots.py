@@ -33,7 +33,7 @@ LINES = 4  # courses of the search that are drawn
 
 # colours that read on light and on dark panels alike
 REF, MOV, MARK, BEST = css(LIGHT.ref), css(LIGHT.mov), css(LIGHT.particle), css(LIGHT.best)
-GREY, OPTIMUM, RIVAL, RIM = css(LIGHT.margin), css(LIGHT.answer), css(LIGHT.rival), css(LIGHT.rim)
+GREY, OPTIMUM, RIVAL, RIM = css(LIGHT.margin), css(LIGHT.answer), css(LIGHT.rival), "#9a8b00"
 # what a page says while there is nothing on it
 HINTS = {
     TURN: "Which way do the walls run? Press Merge, or move a slider: the Hough spectra of both maps, and "
@@ -48,9 +48,9 @@ NOTHING = (np.array([0.0, 1.0]), np.full(2, np.nan))
 
 
 def _dots(label: str, colour: str, size: float, rim: str | None = None) -> uplot.Series:
+    # no fill of the series itself: it would reach from mark to mark
     points = {"show": True, "size": size, "fill": colour, "stroke": rim or colour, "width": 1}
-    fill = {"fill": colour} if rim else {}  # the swatch of the legend
-    return uplot.Series(label=label, width=0, stroke=rim or colour, points=points, **fill)  # type: ignore[typeddict-item]
+    return uplot.Series(label=label, width=0, stroke=colour, points=points)  # type: ignore[typeddict-item]
 
 
 def _line(label: str, colour: str, width: float = 1.5, **more: Any) -> uplot.Series:
@@ -125,7 +125,7 @@ class PlotDock:
                 (
                     _line("ceiling", GREY, 1.4, fill="rgba(107,114,128,.16)"),
                     _line("best met", MARK, 1, fill="rgba(230,159,0,.55)"),
-                    _line("floor", GREY, 1, dash=(3, 4), alpha=0.7),
+                    _line("floor", RIVAL, 1, dash=(3, 4), alpha=0.8),
                     _dots("optimum", OPTIMUM, 11, RIM),
                     _dots("rivals", RIVAL, 9),
                 ),
@@ -171,6 +171,7 @@ class PlotDock:
             ),
             legend=uplot.Legend(show=True, live=False),
             height=height,
+            padding=(10, 14, 0, 0),  # room for the outermost numbers of both axes
         )
 
     # --- pages ------------------------------------------------------------------------------------
@@ -264,7 +265,7 @@ class PlotDock:
         if found is not None and self._new("candidates", (found, refine)):
             rows = charts.candidate_rows(found.candidates, story.courses, measure)
             sign = measure.unit or measure.name
-            head = ("candidate", "Δθ", "Δx (m)", "Δy (m)", f"look ({sign})", f"swarm ({sign})")
+            head = ("candidate", "Δθ", "Δx (m)", "Δy (m)", f"{sign}, look", f"{sign}, swarm")
             self._candidates.content = table(rows, head)
         if proof is not None and self._new("proof", proof):
             self._prove(story, proof.state)
@@ -296,7 +297,7 @@ class PlotDock:
         self._proof.data = charts.proof(state, span[1])
         self._proof_says.content = box(words.proof_says(state, measure), "plain")
         rows = charts.proof_rows(state, measure)
-        head = ("", "Δθ", measure.unit or measure.name, "of the best")
+        head = ("on the raster", "Δθ", measure.unit or measure.name, "of the best")
         self._rivals.content = table(rows, head) if rows else ""
 
     def _new(self, name: str, source: object) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 from algorithms.certificate import ProofState
 from algorithms.observation import Encounter, Observation
 from algorithms.pose import FloatArray, Pose2, rotation
-from algorithms.steps import MergeResult, WindowDetail
+from algorithms.steps import WindowDetail
 from algorithms.window import Box, CoupledWindow, Window
 from app.layout import Layout, Rect
 from app.palette import Palette, css
@@ -138,14 +138,16 @@ def _paper_window(
     size = f"{width:.0f} m × {height:.0f} m" if min(width, height) >= 5 else f"{width:.1f} m × {height:.1f} m"
     words = f"paper's window, eqs. (6)–(10): {size}"
     x0, y0, x1, y1 = view
-    middle = (max(low[0], x0) + min(high[0], x1)) / 2
-    # the words stand on an edge that is seen; where none is, at the foot of what is seen
-    if y0 < low[1]:
-        at, dy = (middle, low[1]), 11
-    elif high[1] < y1:
-        at, dy = (middle, high[1]), -11
-    else:
-        at, dy, words = (middle, y0), 14, f"{words}, more than you see"
+    middle = float(np.clip((x0 + x1) / 2, low[0], high[0]))
+    # the words stand on an edge that is seen, away from the meeting place, where much is written
+    edges = [(edge, dy) for edge, dy in ((low[1], 11), (high[1], -11)) if y0 < edge < y1]
+    clear = [(edge, dy) for edge, dy in edges if abs(edge) > 0.2 * (y1 - y0)]
+    edge, dy = max(clear, key=lambda found: abs(found[0]), default=(y0, 14))
+    if width < (x1 - x0) / 4:  # small: above the words of the disc in it
+        edge, dy = high[1], -25
+    at = (middle, edge)
+    if not edges:
+        words += ", beyond this view"
     label = {"t": words, "tp": np.array(at), "dy": dy, "align": "center", "tc": css(colours.margin)}
     how = {"close": True, "d": [6, 4], "w": 1.8 if strong else 1.0, "halo": strong}
     return [path(corners, colours.margin, alpha=1.0 if strong else QUIET, **how, **label)]
@@ -179,24 +181,20 @@ def proof(state: ProofState, layout: Layout, colours: Palette) -> list[Item]:
     return items
 
 
-def rival(
-    result: MergeResult, heading: float | None, words: str, layout: Layout, colours: Palette
-) -> list[Item]:
+def rival(at: Pose2, hull: FloatArray, heading: float | None, words: str, colours: Palette) -> list[Item]:
     """Where map 2 and its robot would lie under the rival that leaves the answer in doubt.
 
+    at      : where the rival puts map 2's anchor, and its turn; scene
+    hull    : (N, 2) outline of map 2, from its anchor
     heading : of robot 2 in map 2; None where it is not known
     """
-    T = result.verdict.rival
-    if T is None or layout.mov_corners is None:
-        return []
-    at = layout.placed(T)
-    outline = at.apply(layout.mov_corners)
+    outline = at.apply(hull)
     foot = outline[int(outline[:, 1].argmin())]
     label = {"t": f"rival: {words}", "tp": foot, "dy": 13, "align": "center", "size": 12}
-    items = [
-        path(outline, colours.rival, alpha=0.8, w=1.4, close=True, d=[7, 5], tc=css(colours.rival), **label)
-    ]
-    shape, how = ("robot", {"a": heading + at.theta, "r": 8}) if heading is not None else ("dot", {"r": 5})
+    label["tc"] = css(colours.rival)
+    items = [path(outline, colours.rival, alpha=0.8, w=1.4, close=True, d=[7, 5], **label)]
+    # larger than the star of the answer, which lies on it: both put robot 2 where it was seen
+    shape, how = ("robot", {"a": heading + at.theta, "r": 13}) if heading is not None else ("dot", {"r": 12})
     return [*items, mark(shape, at.xy, colours.rival, **how)]
 
 

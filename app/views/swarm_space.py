@@ -43,16 +43,16 @@ def proven_optimum(proven: ProvenDetail, detail: RefineDetail, palette: Palette)
     name = "proven optimum" if proven.state.proven else "best known"
     star = {"r": 10, "rim": css(palette.rim), "tc": css(palette.text), "size": 12, "dx": 16}
     if beyond <= 1.001:
-        # its words stand off those of the swarm's best, which lies as near as can be where it found it
-        return [mark("star", at, palette.answer, t=name, dy=-16, **star)]
+        # larger than the swarm's best, which lies on it where the swarm found it, and its words above
+        return [mark("star", at, palette.answer, t=name, dy=-16, **star | {"r": 15})]
     distance, turn = pose_error(box.transform(detail.state.best), T, box.pivot)
-    away = words.apart_by(distance, turn)
     edge = at / beyond
-    ray = path(np.array([np.zeros(3), edge]), palette.rim, w=1, d=[2, 4])
-    return [
-        ray,
-        mark("star", edge, palette.answer, t=f"{name}: outside, {away} from the swarm's best", **star),
-    ]
+    best = to_cube(detail.state.best[None], box.low, box.high)[0]
+    ray = path(np.array([best, edge]), palette.margin, w=1, d=[2, 4])
+    first = star | {"t": f"{name}, outside", "dx": 0, "dy": 22, "align": "center"}
+    second = first | {"t": f"{words.apart_by(distance, turn)} from the swarm's best", "dy": 38, "r": 0}
+    del second["rim"]
+    return [ray, mark("star", edge, palette.answer, **first), mark("none", edge, palette.text, **second)]
 
 
 class SwarmSpaceView:

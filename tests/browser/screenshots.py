@@ -68,7 +68,7 @@ def a_merge(tab: Tab, keep: Callable[[str], None], _: str) -> None:
     keep("turned")
     until("candidate 3", 700)
     keep("shifted")
-    until("around candidate 1", 1200)
+    until("Searching: candidate 1", 1200)
     keep("swarm")
     tab.press("Swarm space")
     tab.page.wait_for_timeout(700)
