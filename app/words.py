@@ -66,10 +66,10 @@ def sentence(story: Story) -> str:
     if isinstance(detail, CandidatesDetail):
         return f"{len(detail.candidates)} candidates, ranked by {measure.name}."
     if isinstance(detail, RefineDetail):
-        return (
-            f"Searching: candidate {detail.index + 1} of {detail.total}, iteration "
-            f"{detail.state.iteration + 1}, {measure.name} {measure.text(detail.state.best_value)}."
-        )
+        state = detail.state
+        where = f"candidate {detail.index + 1} of {detail.total}, iteration {state.iteration + 1}"
+        value = f"{measure.name} {measure.text(state.best_value)}"
+        return f"Searching: {where}, {value if isfinite(state.best_value) else 'outside the window'}."
     if isinstance(detail, AnswersDetail):
         return f"The search is done: {detail.answers[0].stopped}."
     if isinstance(detail, ProofDetail):
@@ -83,9 +83,14 @@ def sentence(story: Story) -> str:
     return "Starting."
 
 
+def fits_nowhere(state: ProofState) -> bool:
+    """Whether it is known that no transform of the window has a value above zero."""
+    return state.stopped is not None and not state.empty and state.ceiling <= 0
+
+
 def _proving(state: ProofState, measure: Measure) -> str:
     blocks = f"{state.nodes:,} blocks bounded"
-    if state.best is None and not isfinite(state.ceiling):
+    if state.empty:
         return f"Proving: {blocks}, none of them agrees with every sighting."
     if state.rival_sought:
         return f"Proven. Rivals: {blocks}, none above {measure.text(state.ceiling)}."
@@ -94,15 +99,15 @@ def _proving(state: ProofState, measure: Measure) -> str:
 
 def proof_says(state: ProofState, measure: Measure) -> str:
     """What the picture of the proof means, in a line."""
-    if state.best is None and not isfinite(state.ceiling):
+    if state.empty:
         return "No transform agrees with every sighting: there is nothing to bound."
+    if fits_nowhere(state):
+        return "No turn gets above zero: wherever robot 2 may have stood, more wall contradicts than agrees."
     if not state.proven:
         return (
             f"Every turn stays below its grey ceiling, and all of them below {measure.text(state.ceiling)}. "
             "It comes down until only the best is left."
         )
-    if state.best_value <= 0:
-        return "No turn gets above zero: nothing speaks for a merge."
     best = f"Nothing on the whole circle is better than {measure.text(state.best_value)}"
     if len(state.rivals):
         return f"{best}; the best rival has {state.rival_value / state.best_value:.0%} of it."
@@ -117,8 +122,10 @@ def found_it(story: Story) -> str:
     if proven is None or answers is None:
         return ""
     state = proven.state
-    if state.best is None:
+    if state.empty:
         return "No transform at all agrees with every sighting."
+    if fits_nowhere(state):
+        return f"Proven: nothing anywhere is above {story.measure.text(0.0)}."
     if not state.proven:
         left = story.measure.text(state.ceiling)
         return f"Not proven after {state.nodes:,} blocks: somewhere there may be up to {left}."
@@ -182,9 +189,11 @@ def progress(story: Story) -> float:
 
 def optimum(proof: ProofState) -> str:
     """How the proof ended: "proven", or that it is not, and why."""
-    if proof.proven and proof.best_value > 0:
-        return "proven"
-    return f"{'' if proof.proven else 'not proven: '}{proof.stopped or 'not finished'}"
+    if proof.empty:
+        return "none: the sightings exclude each other"
+    if fits_nowhere(proof):
+        return "proven that nothing fits"
+    return "proven" if proof.proven else f"not proven: {proof.stopped or 'not finished'}"
 
 
 def remedy(result: MergeResult, config: Any = None) -> str:
@@ -196,8 +205,10 @@ def remedy(result: MergeResult, config: Any = None) -> str:
     rules = getattr(config, "verdict", VerdictConfig())
     if verdict.accepted:
         return ""
-    if proof is not None and proof.best is None:
+    if proof is not None and proof.empty:
         return "Check the numbers of the sightings, leave the odd one out, or widen the window's margin."
+    if proof is not None and fits_nowhere(proof):
+        return "Are these maps of one building? Check the observation's numbers, or widen the window."
     if proof is not None and not proof.proven:
         return "Give the proof more patience, or narrow the window, and merge again."
     if verdict.rival is not None:

@@ -13,6 +13,7 @@ from algorithms.errors import SettingError
 from algorithms.methods import METHODS
 from algorithms.pipeline import PipelineConfig
 from app.controls import field_docs, in_cells, settings_of, value_at, with_value, word_for
+from app.panels.tuning import idle
 
 
 class Rule(str, Enum):
@@ -68,6 +69,33 @@ def test_switches_enums_and_literals_become_choices():
     assert settings["rule"].choices == {"first-wins": Rule.FIRST, "last-wins": Rule.LAST}
     assert settings["kind"].choices == {"PSO": "pso", "MCO": "mco"}
     assert word_for(settings["kind"], "mco") == "MCO"
+
+
+def test_a_choice_of_words_reads_like_words_and_a_kind_says_of_what():
+    window = named(PipelineConfig())["window.kind"]
+    assert set(window.choices) == {"Coupled", "Encounter", "Origin"}
+    assert window.label == "window kind"
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_no_method_shows_a_setting_that_does_nothing_in_it(name):
+    config = METHODS[name].defaults
+    shown = {s.path[0] for s in settings_of(config) if not idle(config, s.path)}
+    assert ("agreement" in shown) == (name == "spectra-proven")
+    proofs = [s.path[-1] for s in settings_of(config) if s.path[0] == "proof" and not idle(config, s.path)]
+    assert proofs == {
+        "spectra-proven": ["whole_circle", "angle", "distance", "patience"],
+        "bilateral": [],
+    }.get(name, ["whole_circle"])
+
+
+def test_a_setting_comes_back_with_the_one_it_belongs_to():
+    config = METHODS["spectra-swarm"].defaults
+    assert idle(config, ("agreement", "blur"))
+    assert not idle(with_value(config, ("refine", "objective"), "agreement"), ("agreement", "blur"))
+    assert not idle(with_value(config, ("proof", "whole_circle"), True), ("proof", "patience"))
+    assert not idle(config, ("swarm", "tau"))
+    assert idle(with_value(config, ("refine", "optimiser"), "mco"), ("swarm", "tau"))
 
 
 def test_a_value_is_changed_wherever_it_is_nested():

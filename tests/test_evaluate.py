@@ -172,6 +172,35 @@ def test_rough_takes_the_badly_measured_observation(cases):
     assert told["report"]["verdict"]["deviation"] != fine["report"]["verdict"]["deviation"]
 
 
+def test_both_runs_every_case_with_either_observation_and_prints_a_table_for_each(cases, tmp_path, capsys):
+    (cases / "flat_2" / "observation_rough.yaml").unlink()  # a case need not have one
+    (cases / "bad_1" / "map2.pgm").unlink()
+    assert main(["evaluate", str(cases), "--both", "--json", str(tmp_path / "out.json")]) == 1
+    told = json.loads((tmp_path / "out.json").read_text())
+    ran = [(entry["case"], entry["observation"]) for entry in told["cases"]]
+    good, rough = "observation.yaml", "observation_rough.yaml"
+    assert [case for case, file in ran if file == good] == [
+        *("bad_1", "flat_1", "flat_2", "more/flat_3", "neg_1"),
+    ]
+    assert [case for case, file in ran if file == rough] == ["bad_1", "flat_1", "more/flat_3", "neg_1"]
+    assert told["totals"]["overall"]["n"] == 9
+    assert told["totals_by_observation"][good]["flat"]["n"] == 3
+    assert told["totals_by_observation"][rough]["flat"]["n"] == 2
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == good
+    assert lines[lines.index(rough) - 1] == ""
+    for title in (good, rough):
+        assert lines[lines.index(title) + 1].split()[:4] == ["group", "n", "right", "fine"]
+    assert sum(line.startswith("failed: bad_1: ") for line in lines) == 2
+
+
+def test_rough_and_both_exclude_each_other(cases, capsys):
+    with pytest.raises(SystemExit) as left:
+        main(["evaluate", str(cases), "--rough", "--both"])
+    assert left.value.code == 2
+    assert "not allowed with" in capsys.readouterr().err
+
+
 def test_a_bug_in_one_case_is_told_as_one(cases, monkeypatch):
     monkeypatch.setattr(methods, "merge", lambda *_args: 1 / 0)
     told = run_case(cases / "flat_1", order(cases))

@@ -12,7 +12,7 @@ import pytest
 from algorithms.casefiles import Truth, observations_to_bytes
 from algorithms.errors import InputFileError
 from algorithms.mapio import map_to_bytes
-from algorithms.methods import merge, run
+from algorithms.methods import DEFAULT_METHOD, METHODS, merge, run
 from algorithms.pose import Pose2
 from algorithms.steps import CandidatesDetail, HoughDetail, MergeResult
 from app import charts
@@ -20,10 +20,12 @@ from app.export import archive
 from app.inputs import Inputs
 from app.panels.files import Upload, inputs_from
 from app.panels.observation import observations_html
-from app.panels.result import numbers, result_html
+from app.panels.result import numbers, result_html, times
 from app.panels.tables import box, table
 from app.story import Story
 from app.words import progress, sentence
+
+DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 
 
 @pytest.fixture(scope="module")
@@ -107,6 +109,37 @@ def test_eq_23_says_which_overlap_it_is_over(result, inputs):
     without = dict(numbers(result, replace(inputs, truth=None)))
     assert "eq. (23), at the estimated T" in without
     assert "error to the truth" not in without
+
+
+def test_the_numbers_say_what_the_verdict_rests_on(result, inputs):
+    told = dict(numbers(result, inputs, DEFAULTS))
+    assert told["agreement (m of wall)"] == f"{result.value:.2f}"
+    assert told["wall in view of both"].endswith(" m")
+    assert told["contradicted, patches slipped"].endswith("%")
+    assert told["contradicted, as the maps are"].endswith("%")
+    assert told["optimum"] == "proven"
+    assert told["found by the search"] == "yes"
+    assert "rival in doubt" not in told
+    assert dict(times(result))["proof"]
+
+
+def test_a_method_without_a_proof_is_told_by_gamma_and_says_nothing_of_an_optimum(inputs):
+    unproven = merge(inputs.ref, inputs.mov, inputs.observations, "spectra-swarm")
+    told = dict(numbers(unproven, inputs, METHODS["spectra-swarm"].defaults))
+    assert float(told["Γ, eq. (17)"]) == pytest.approx(unproven.value, rel=1e-3)
+    assert not {"optimum", "found by the search", "agreement (m of wall)"} & set(told)
+
+
+def test_a_rival_in_doubt_has_a_row_of_its_own(result, inputs):
+    doubted = replace(result, verdict=replace(result.verdict, ambiguity=0.9, rival=Pose2()))
+    told = dict(numbers(doubted, inputs, DEFAULTS))
+    assert told["next best place"] == "90% of the best"
+    assert "turned" in told["rival in doubt"]
+
+
+def test_long_words_in_a_table_may_break_and_numbers_may_not():
+    assert "white-space:normal" in table([("optimum", "not proven: not all searched: 3,000,000 blocks")])
+    assert "white-space:normal" not in table([("T: Δx", "14.634 m")])
 
 
 def test_words_in_tables_are_never_html():

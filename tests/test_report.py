@@ -32,8 +32,34 @@ def test_the_report_has_the_keys_that_other_programs_read(result):
     assert set(told["T_ref_mov"]) == {"x", "y", "theta"}
     assert np.shape(told["covariance"]) == (3, 3)
     assert {"accepted", "reason", "acceptance_index", "overlap_cells", "ambiguity"} <= set(told["verdict"])
+    assert {"shared_wall", "contradiction", "rigid_contradiction", "rival"} <= set(told["verdict"])
     assert told["timings_s"]["load"] == 0.5
     assert {"augment", "spectra", "search", "refine", "fuse"} <= set(told["timings_s"])
+
+
+def test_the_report_says_how_the_proof_ended(result):
+    told = json.loads(report.report_json(report.report_of(result)))["proof"]
+    assert set(told) == {"nodes", "gap", "proven", "stopped", "swarm_found_it", "rivals"}
+    assert told["proven"] is result.proven_optimal is True
+    assert told["nodes"] == result.proof.nodes > 0
+    assert told["gap"] == 0
+    assert told["swarm_found_it"] is True
+    one = replace(result.proof, rivals=np.array([[1.0, 2.0, 3.0]]), rival_values=np.array([4.0]))
+    (rival,) = report.proof_of(replace(result, proof=one))["rivals"]
+    assert rival == {"T_ref_mov": {"x": 1.0, "y": 2.0, "theta": 3.0}, "value": 4.0}
+
+
+def test_a_proof_that_met_nothing_has_no_gap_in_json(result):
+    nothing = replace(result.proof, best=None, best_value=-math.inf, proven=False)
+    told = report.report_json(report.report_of(replace(result, proof=nothing)))
+    assert json.loads(told, parse_constant=pytest.fail)["proof"]["gap"] is None
+
+
+def test_a_method_without_a_proof_reports_none(small_case):
+    unproven = merge(small_case.ref, small_case.mov, small_case.observations, "spectra-swarm")
+    told = report.report_of(unproven)
+    assert told["proof"] is None
+    assert told["proven_optimal"] is False
 
 
 def test_the_report_says_what_was_found(result):

@@ -7,14 +7,15 @@ from threading import Event
 
 import numpy as np
 import pytest
+from proofs import proof_state
 
 from algorithms.errors import MapMergeError
 from algorithms.gridmap import FREE, GridMap
 from algorithms.observation import Encounter, Observation
 from algorithms.pose import Pose2
 from algorithms.search import SearchState
-from algorithms.steps import AnswersDetail, ObservationDetail, RefineDetail, Step
-from algorithms.window import Box
+from algorithms.steps import AnswersDetail, ObservationDetail, ProofDetail, RefineDetail, Step
+from algorithms.window import Box, WindowConfig, coupled_window
 from app.player import DWELL, FRAME, Waiting, dwell
 from app.session import Job, Session
 
@@ -207,6 +208,17 @@ def test_the_first_iterations_of_the_swarm_are_told_slowest():
         return dwell(Step("refine", RefineDetail(index, 4, box, state), 0.0), 1.0, again=False)
 
     assert stay(0, 0) > stay(0, 5) > stay(0, 50) > stay(1, 0) > 0
+
+
+@pytest.mark.parametrize("looks", [8, 15, 25, 50])
+def test_a_proof_is_told_in_about_a_second_however_many_looks_it_takes(looks):
+    def stay(nodes: int) -> float:
+        step = Step("prove", ProofDetail(proof_state(nodes=nodes), coupled_window([], WindowConfig())), 0.0)
+        return dwell(step, 1.0, again=False)
+
+    told = [stay(1600 * (look + 1)) for look in range(looks)]
+    assert told == sorted(told, reverse=True)
+    assert 0.5 < sum(told) < 1.6
 
 
 def test_a_new_speed_holds_from_the_step_at_hand_on(start, ear):

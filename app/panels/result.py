@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import degrees, sqrt
+from math import degrees, isfinite, sqrt
 from typing import Any
 
 import numpy as np
@@ -57,7 +57,7 @@ def numbers(result: MergeResult, inputs: Inputs, config: Any = None) -> list[tup
         ("T: Δθ", f"{degrees(T.theta):.2f} ± {degrees(turn):.2f}°"),
         ("robot 2 known to", f"± {at_robot:.3f} m"),
     ]
-    if result.value is not None:
+    if result.value is not None and isfinite(result.value):
         measure = measure_of(config)
         digits = ".2f" if measure.unit else ".5g"
         rows.append((measure.row, f"{result.value:{digits}}"))

@@ -1,0 +1,95 @@
+"""The numbers behind the picture of the proof and the climb of the swarm."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from proofs import proof_state
+
+from algorithms.certificate import ProofState
+from algorithms.pose import FloatArray, wrap_angles
+from app import charts
+from app.measure import AGREEMENT
+
+values = st.one_of(st.just(-inf), st.floats(-50, 120))
+
+
+@st.composite
+def states(draw: st.DrawFn) -> ProofState:
+    """Proofs over circles of a few or of many sectors, in the order that the certificate tells them."""
+    count = draw(st.integers(1, 40))
+    step = 2 * np.pi / count
+    ceilings = np.array(draw(st.lists(values, min_size=count, max_size=count)))
+    found = np.minimum(ceilings, np.array(draw(st.lists(values, min_size=count, max_size=count))))
+    rivals = draw(st.lists(st.tuples(st.just(0.0), st.just(0.0), st.floats(-3.14, 3.14)), max_size=3))
+    return proof_state(
+        turns=wrap_angles((np.arange(count) + 0.5) * step),
+        ceilings=ceilings,
+        found=found,
+        best=draw(st.one_of(st.none(), st.just(np.array([0.0, 0.0, draw(st.floats(-3.14, 3.14))])))),
+        rivals=np.array(rivals).reshape(-1, 3),
+        rival_values=np.full(len(rivals), 3.0),
+        floor=draw(values),
+    )
+
+
+def inside(x: FloatArray, y: FloatArray, at: float) -> float:
+    """Height of a stair at a place."""
+    return float(y[np.searchsorted(x, at, side="right") - 1])
+
+
+@given(states())
+def test_every_curve_of_a_proof_lies_on_the_circle_and_in_its_range_without_infinities(state):
+    low, top = charts.proof_range(state, 90.0)
+    x, ceiling, found, floor, best, rivals = charts.proof(state, top)
+    assert (np.diff(x) >= 0).all()
+    assert x[0] == pytest.approx(-180)
+    assert x[-1] == pytest.approx(180)
+    for curve in (ceiling, found, floor):
+        assert np.isfinite(curve).all()
+        assert (curve >= low).all()
+        assert (curve <= top).all()
+    assert (found <= ceiling).all()
+    assert np.isfinite(best).sum() == (state.best is not None)
+    assert np.isfinite(rivals).sum() == (len(state.rivals) if state.best is not None else 0)
+
+
+@given(states())
+def test_in_the_middle_of_every_sector_stands_its_own_ceiling(state):
+    top = charts.proof_range(state, 90.0)[1]
+    x, ceiling, found, *_ = charts.proof(state, top)
+    for turn, bound, met in zip(np.degrees(state.turns), state.ceilings, state.found, strict=True):
+        assert inside(x, ceiling, turn) == pytest.approx(np.clip(bound, 0, top))
+        assert inside(x, found, turn) == pytest.approx(np.clip(met, 0, top))
+
+
+def test_the_optimum_is_marked_at_its_turn_and_its_value():
+    x, _, _, _, best, rivals = charts.proof(proof_state(), 30.0)
+    assert x[np.isfinite(best)] == pytest.approx(np.degrees(0.5))
+    assert best[np.isfinite(best)] == pytest.approx(20.0)
+    assert rivals[np.isfinite(rivals)] == pytest.approx(15.0)
+
+
+def test_the_axis_of_a_proof_stands_still_while_the_ceiling_comes_down():
+    first = charts.proof_range(proof_state(ceiling=90.0), 90.0)
+    assert charts.proof_range(proof_state(ceiling=21.0), 90.0) == first
+    assert charts.proof_range(proof_state(best_value=-inf, ceiling=-inf), -inf) == (0.0, 1.0)
+
+
+def test_the_table_names_the_optimum_and_its_rivals():
+    assert charts.proof_rows(proof_state(), AGREEMENT) == [
+        ("optimum", "28.6°", "20.0", "100%"),
+        ("rival 1", "-149.4°", "15.0", "75%"),
+    ]
+    assert charts.proof_rows(proof_state(best=None), AGREEMENT) == []
+    assert charts.proof_rows(proof_state(proven=False), AGREEMENT)[0][0] == "best so far"
+
+
+def test_a_climb_that_begins_outside_of_the_window_has_no_infinite_point():
+    x, *lines = charts.courses([[-inf, -3.0, 5.0], [-inf]], 3)
+    assert x.tolist() == [1, 2, 3]
+    assert [line.tolist() for line in lines] == [[0, -3, 5], [0, 0, 0], [0, 0, 0]]
