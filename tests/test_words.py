@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from proofs import proof_state
 
+from algorithms.certificate import ProofState
 from algorithms.methods import METHODS, run
 from algorithms.pose import Pose2
 from algorithms.steps import MergeResult, ProofDetail, ProvenDetail, Step
