@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import atan2, hypot
 
 import numpy as np
 from hypothesis import strategies as st
 
-from algorithms.gridmap import GridMap
-from algorithms.observation import Observation
-from algorithms.pose import Pose2, wrap_angle
+from algorithms.agreement import AgreementConfig, make_agreement
+from algorithms.augment import AugmentConfig, augment
+from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.objective import Lookup, Objective, make_objective
+from algorithms.observation import Encounter, Observation
+from algorithms.pose import Pose2, rotation, wrap_angle
+from algorithms.window import CoupledWindow, WindowConfig, coupled_window
 
 finite = {"allow_nan": False, "allow_infinity": False}
 angles = st.floats(-np.pi, np.pi, **finite)
@@ -91,3 +96,77 @@ def flat_pair(
     mov = drawn_map(T_mov_world, mov_resolution, seen=(2.5, -1, 10, 8), name="mov")
     seen = sighting(T_ref_world, T_mov_world, OBSERVER, OBSERVED)
     return ref, mov, seen, T_ref_world @ T_mov_world.inverse()
+
+
+seeds = st.integers(0, 2**32 - 1)
+
+
+@st.composite
+def small_maps(draw: st.DrawFn, side: int = 24) -> GridMap:
+    """Floors with walls and blocks strewn over them, on a raster that lies anywhere, anyhow."""
+    rng = np.random.default_rng(draw(seeds))
+    height, width = draw(st.integers(1, side)), draw(st.integers(1, side))
+    cells = np.full((height, width), draw(st.sampled_from([FREE, UNKNOWN])), dtype=np.int8)
+    for _ in range(draw(st.integers(0, 4))):
+        row, col, tall, wide = rng.integers(0, side, 4)
+        cells[row : row + tall, col : col + wide] = rng.choice([FREE, FREE, OCCUPIED, 45, UNKNOWN])
+    longest = draw(st.sampled_from([2, side]))
+    for _ in range(draw(st.integers(1, 9))):
+        row, col, length = rng.integers((0, 0, 1), (height, width, longest))
+        tall, wide = (length, 1) if rng.random() < 0.5 else (1, length)
+        cells[row : row + tall, col : col + wide] = OCCUPIED
+    return GridMap(cells, draw(st.sampled_from([0.05, 0.08, 0.1, 0.2])), draw(poses))
+
+
+@st.composite
+def encounters_in(draw: st.DrawFn, ref: GridMap, mov: GridMap, most: int = 2) -> list[Encounter]:
+    """Meetings on both maps that one transform explains up to their own errors."""
+
+    def place(grid: GridMap) -> np.ndarray:
+        share = np.array([draw(st.floats(0, 1)), draw(st.floats(0, 1))])
+        return grid.origin.apply(share * (grid.width, grid.height) * grid.resolution)
+
+    turn, first_ref, first_mov = rotation(draw(angles)), place(ref), place(mov)
+    found: list[Encounter] = []
+    for _ in range(draw(st.integers(1, most))):
+        x_mov = place(mov) if found else first_mov
+        sigma = np.array([draw(st.sampled_from([0.01, 0.05, 0.2])), draw(st.sampled_from([0.01, 0.1]))])
+        axes = rotation(draw(angles))
+        error = axes @ (sigma * (draw(st.floats(-1, 1)), draw(st.floats(-1, 1))))
+        x_ref = first_ref + turn @ (x_mov - first_mov) + error
+        found.append(Encounter(x_ref, x_mov, axes @ np.diag(sigma**2) @ axes.T))
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What a search is given."""
+
+    ref: GridMap
+    mov: GridMap
+    encounters: list[Encounter]
+    window: CoupledWindow
+    objective: Objective
+
+
+@st.composite
+def problems(draw: st.DrawFn, side: int = 24, deviations: tuple[float, ...] = (1.0, 2.0, 3.5)) -> Problem:
+    """Two small maps, their meetings, and one of the objectives, as the paper's raster reads it."""
+    ref, mov = draw(small_maps(side)), draw(small_maps(side))
+    met = draw(encounters_in(ref, mov))
+    margin = draw(st.sampled_from([0.02, 0.1]))
+    window = coupled_window(met, WindowConfig("coupled", margin, draw(st.sampled_from(deviations))))
+    lift = AugmentConfig(
+        spread=draw(st.sampled_from([0.5, 1.0, 4.0])), aspect=draw(st.sampled_from([1.0, 3.0])), tilt=30.0
+    )
+    if draw(st.booleans()):
+        sigma = lift.covariance()
+        pair = augment(ref, met[0].x_ref, sigma, 100.0), augment(mov, met[0].x_mov, sigma, 100.0)
+        return Problem(ref, mov, met, window, make_objective(*pair, Lookup.NEAREST))
+    config = AgreementConfig(
+        blur=draw(st.sampled_from([0.02, 0.1, 0.5])), penalty=draw(st.sampled_from([0.0, 1.0, 3.0]))
+    )
+    counted = window if draw(st.booleans()) else None
+    return Problem(
+        ref, mov, met, window, make_agreement(ref, mov, met, lift, config, counted, Lookup.NEAREST)
+    )

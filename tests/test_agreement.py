@@ -1,0 +1,151 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from drawn import flat_pair, problems, small_maps
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from algorithms.agreement import AgreementConfig, distance_to_walls, make_agreement, surface
+from algorithms.augment import AugmentConfig
+from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.objective import Lookup
+from algorithms.observation import Encounter, encounter
+from algorithms.pose import Pose2
+from algorithms.window import WindowConfig, coupled_window
+
+REF, MOV, SEEN, T = flat_pair()
+AT = encounter(SEEN)
+WIDE = AugmentConfig(spread=20.0)  # every wall of a small hall counts in full, or nearly
+MIDDLE = Encounter(np.array([4.0, 4.0]), np.array([4.0, 4.0]), np.eye(2) * 0.01)
+
+
+def hall(walls=(), side=8.0, cell=0.05, floor=FREE):
+    """Floor with walls on it: (x0, y0, x1, y1) boxes in metres."""
+    cells = np.full((round(side / cell),) * 2, floor, dtype=np.int8)
+    for x0, y0, x1, y1 in walls:
+        cells[round(y0 / cell) : round(y1 / cell), round(x0 / cell) : round(x1 / cell)] = OCCUPIED
+    return GridMap(cells, cell)
+
+
+def value(ref, mov, pose=None, config=None, lift=WIDE, encounters=(MIDDLE,), window=None):
+    objective = make_agreement(
+        ref, mov, encounters, lift, config or AgreementConfig(), window, Lookup.NEAREST
+    )
+    return float(objective((pose or Pose2()).array()[None])[0])
+
+
+def test_two_equal_maps_agree_in_all_the_wall_that_either_has():
+    wall = hall([(2.0, 4.0, 6.0, 4.05)])  # one cell thick: every cell of it can be seen
+    assert value(wall, wall) == pytest.approx(2 * 4.0, rel=0.01)
+
+
+def test_a_wall_in_the_others_free_floor_takes_back_the_penalty_times_its_length():
+    wall, bare = hall([(2.0, 4.0, 6.0, 4.05)]), hall()
+    for penalty in (0.0, 1.0, 2.5):
+        assert value(wall, bare, config=AgreementConfig(penalty=penalty)) == pytest.approx(
+            -penalty * 4.0, rel=0.01, abs=1e-6
+        )
+
+
+def test_the_unknown_says_nothing():
+    wall, blind = hall([(2.0, 4.0, 6.0, 4.05)]), hall(floor=UNKNOWN)
+    assert value(wall, blind) == 0
+    assert value(blind, wall) == 0
+
+
+def test_a_wall_a_blur_beside_another_counts_as_much_as_a_normal_says():
+    ref = hall([(2.0, 4.0, 6.0, 4.05)], floor=UNKNOWN)
+    ref_seen = GridMap(np.where(ref.cells == OCCUPIED, OCCUPIED, FREE).astype(np.int8), ref.resolution)
+    config = AgreementConfig(blur=0.1, penalty=0.0)
+    beside = value(ref_seen, ref_seen, Pose2(0.0, 0.1, 0.0), config)
+    assert beside == pytest.approx(np.exp(-0.5) * 8.0, rel=0.02)
+
+
+@settings(max_examples=25)
+@given(st.floats(-2, 2), st.floats(-2, 2), st.floats(-np.pi, np.pi))
+def test_swapping_the_maps_and_inverting_the_transform_changes_nothing(x, y, turn):
+    pose = T @ Pose2(x, y, turn)
+    back = Encounter(AT.x_mov, AT.x_ref, AT.covariance)
+    there = value(REF, MOV, pose, encounters=[AT])
+    assert value(MOV, REF, pose.inverse(), encounters=[back]) == pytest.approx(there, abs=1e-3)
+
+
+@given(st.floats(1, 1000))
+def test_the_intensity_of_the_augmentation_does_not_matter(intensity):
+    lift = AugmentConfig(spread=4.0)
+    assert value(REF, MOV, T, lift=replace(lift, intensity=intensity), encounters=[AT]) == value(
+        REF, MOV, T, lift=lift, encounters=[AT]
+    )
+
+
+def test_near_walls_count_more_than_far_ones_and_the_spread_says_what_is_near():
+    near, far = hall([(3.0, 4.5, 5.0, 4.55)]), hall([(3.0, 7.5, 5.0, 7.55)])
+    little, much = AugmentConfig(spread=1.5), AugmentConfig(spread=20.0)
+    assert value(near, near, lift=little) > 4 * value(far, far, lift=little)
+    assert value(near, near, lift=much) == pytest.approx(value(far, far, lift=much), rel=0.03)
+
+
+@settings(max_examples=25)
+@given(st.data())
+def test_a_second_encounter_adds_weight_and_takes_none(data):
+    grid = data.draw(small_maps())
+    places = [
+        grid.origin.apply(np.array(data.draw(st.tuples(st.floats(0, 3), st.floats(0, 3))))) for _ in range(2)
+    ]
+    met = [Encounter(place, place, np.eye(2) * 0.01) for place in places]
+    lift = AugmentConfig(spread=0.5)
+    alone = value(grid, grid, lift=lift, encounters=met[:1])
+    assert value(grid, grid, lift=lift, encounters=met) >= alone - 1e-4
+
+
+def test_what_deviates_from_a_sighting_costs_its_share_of_wall():
+    window = coupled_window([MIDDLE], WindowConfig("coupled", margin=0.1, deviations=3.5))
+    wall = hall([(2.0, 4.0, 6.0, 4.05)])
+    config = AgreementConfig(evidence=0.25)
+    sigma = np.sqrt(window.covariances[0][0, 0])
+    moved = Pose2(2 * sigma, 0.0, 0.0)  # along the wall, so that the wall itself hardly changes its mind
+    free = value(wall, wall, moved, config)
+    assert value(wall, wall, moved, config, window=window) == pytest.approx(free - 0.25 * 0.5 * 4, abs=1e-6)
+    assert value(wall, wall, window=window, config=config) == pytest.approx(value(wall, wall), abs=1e-6)
+
+
+def test_a_thick_wall_has_two_sides_and_no_inside():
+    cells = hall([(2.0, 3.0, 6.0, 5.0)])
+    seen = surface(cells.occupied, cells.free)
+    edge = 2 * (80 + 40) - 4  # cells
+    assert np.count_nonzero(seen) == edge
+    half = GridMap(np.where(np.arange(160)[:, None] < 80, cells.cells, UNKNOWN).astype(np.int8), 0.05)
+    assert np.count_nonzero(surface(half.occupied, half.free)) < edge
+
+
+def test_the_distance_is_that_between_the_centres_of_cells():
+    walls = np.zeros((5, 6), dtype=bool)
+    walls[2, 1] = True
+    distance = distance_to_walls(walls)
+    assert distance[2, 1] == 0
+    assert distance[2, 4] == 3
+    assert distance[4, 3] == pytest.approx(np.hypot(2, 2))
+    assert distance_to_walls(np.zeros((3, 3), dtype=bool)).min() > 1e5
+
+
+@settings(max_examples=40)
+@given(problems(), st.data())
+def test_no_transform_agrees_in_more_wall_than_there_is(problem, data):
+    objective = problem.objective
+    if len(objective.sides) == 1:  # Γ
+        return
+    poses = np.array(
+        [[data.draw(st.floats(-60, 60)), data.draw(st.floats(-60, 60)), data.draw(st.floats(-3, 3))]]
+    )
+    wall = sum(float(side.weights.sum()) for side in objective.sides)
+    assert objective(poses)[0] <= wall * (1 + 1e-6)
+
+
+def test_the_known_pose_beats_every_other_of_a_coarse_circle():
+    objective = make_agreement(REF, MOV, [AT], AugmentConfig(spread=4.0), AgreementConfig())
+    turns = T.theta + np.arange(5, 356, 5) * np.pi / 180
+    others = [Pose2(theta=turn).apply(AT.x_mov) for turn in turns]
+    poses = np.array([[*(AT.x_ref - there), turn] for there, turn in zip(others, turns, strict=True)])
+    right = objective(T.array()[None])[0]
+    assert right > 2 * objective(poses).max()
