@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.kernels import fast_kernel, spread
-from algorithms.objective import Float32Array, Lookup, Objective, Side
+from algorithms.objective import PAD, Float32Array, Lookup, Objective, Side
 from algorithms.pose import FloatArray, wrap_angles
 from algorithms.window import CoupledWindow
 
@@ -131,6 +131,21 @@ def _from_pivot(side: Side, points: FloatArray, window: CoupledWindow) -> FloatA
     return np.asarray(points + (side.anchor - pivot), dtype=np.float64)
 
 
+def _within_reach(side: Side, lattice: Lattice) -> tuple[Float32Array, FloatArray]:
+    """The part of a side's table that some transform of the lattice may look up, and its first (2,)
+    column and row: the encounter's surroundings, not the building.
+    """
+    window = lattice.window
+    pivot = window.x_mov[0] if side.backward else window.x_ref[0]
+    middle = side.grid.grid_coordinates(pivot) - side.corner + PAD
+    reach = (lattice.reach + lattice.disc + lattice.spread(lattice.levels)) / side.grid.resolution + 2
+    size = np.array(side.table.shape[::-1])
+    low = np.clip(np.floor(middle - reach).astype(int), 0, size - 1)
+    high = np.clip(np.ceil(middle + reach).astype(int) + 1, low + 1, size)
+    part = side.table[low[1] : high[1], low[0] : high[0]]
+    return np.ascontiguousarray(part), low.astype(np.float64)
+
+
 def _merged(
     points: FloatArray, weights: FloatArray, edge: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -154,21 +169,20 @@ class _Pyramid:
 
     def __init__(self, side: Side, lattice: Lattice) -> None:
         self.side = side
-        self.margin = RADII[-1]
-        wide = np.pad(side.table, self.margin)
+        table, self.shift = _within_reach(side, lattice)
+        self.shape = table.shape
         levels = [self._points(side, lattice, level) for level in range(1, lattice.levels + 1)]
         used = np.unique([radius for *_, radii in levels for radius in np.unique(radii)]).astype(int)
-        tables = np.empty((len(used), *wide.shape), dtype=np.float32)
-        source, reached = wide, 0
-        for table, radius in zip(tables, used, strict=True):
+        tables = np.empty((len(used), *table.shape), dtype=np.float32)
+        source, reached = table, 0
+        for maxima, radius in zip(tables, used, strict=True):
             # a maximum of maxima: the square grows by what is new
             square = np.ones((2 * (radius - reached) + 1,) * 2, dtype=np.uint8)
-            cv2.dilate(source, square, dst=table)
-            source, reached = table, radius
-        self.shape = wide.shape
+            cv2.dilate(source, square, dst=maxima)
+            source, reached = maxima, radius
         self.flat = tables.ravel()
         self.levels = [
-            (x, y, weights, (np.searchsorted(used, radii) * wide.size).astype(np.uint32))
+            (x, y, weights, (np.searchsorted(used, radii) * table.size).astype(np.uint32))
             for x, y, weights, radii in levels
         ]
         self.weight = float(np.abs(side.weights).sum() * np.abs(side.table).max(initial=0.0))
@@ -201,7 +215,7 @@ class _Pyramid:
         if level == 0:
             return self.side(poses, Lookup.NEAREST)
         motions = self.side.motions(poses)
-        motions[:, 2:] += self.margin
+        motions[:, 2:] -= self.shift
         single = motions.astype(np.float32)
         x, y, weights, offset = self.levels[level - 1]
         values = np.zeros(len(poses))
