@@ -238,6 +238,7 @@
     hud.dataset.theme = S.dark ? "dark" : "light";
     put(".mm-case", h.case); put(".mm-state span", h.state);
     hud.querySelector(".mm-state").dataset.mood = h.mood || "idle";
+    hud.querySelector(".mm-state").classList.toggle("mm-long", (h.state || "").length > 110);
     const bar = hud.querySelector(".mm-bar");
     bar.style.visibility = h.progress === null || h.progress === undefined ? "hidden" : "visible";
     bar.firstChild.style.width = `${100 * (h.progress || 0)}%`;
@@ -274,6 +275,7 @@
     [data-theme=dark] .mm-title{color:#9CA3AF} [data-theme=dark] .mm-title b{color:#56B4E9}
     .mm-state{font-size:15px;font-weight:550;display:flex;gap:8px;align-items:baseline;min-height:20px}
     .mm-state span{display:-webkit-box;-webkit-line-clamp:2;-webkit-box-orient:vertical;overflow:hidden}
+    .mm-state.mm-long{font-size:13px} .mm-long span{-webkit-line-clamp:3}
     .mm-state i{width:9px;height:9px;border-radius:50%;flex:none;background:#9CA3AF}
     .mm-state[data-mood=running] i{background:#0072B2;animation:mm-pulse 1s infinite}
     .mm-state[data-mood=accepted] i{background:#009E73} .mm-state[data-mood=accepted] span{color:#006B4E}

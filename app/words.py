@@ -192,7 +192,7 @@ def optimum(proof: ProofState) -> str:
     if proof.empty:
         return "none: the sightings exclude each other"
     if fits_nowhere(proof):
-        return "proven that nothing fits"
+        return "nothing fits"
     return "proven" if proof.proven else f"not proven: {proof.stopped or 'not finished'}"
 
 

@@ -168,7 +168,7 @@ class MapView:
         self._clear("aug", "rival")
         window = story.get(WindowDetail)
         coupled = window is not None and isinstance(window.window, CoupledWindow)
-        discs = signs.discs(window.coupled, layout, colours) if window and coupled else None
+        discs = signs.discs(window.coupled, layout, colours, below=True) if window and coupled else None
         self._stage.layer("window", discs)
         best = layout.placed(detail.box.transform(state.best))
         self._place(best, glide * FOLLOW_MS)

@@ -153,8 +153,13 @@ def _paper_window(
     return [path(corners, colours.margin, alpha=1.0 if strong else QUIET, **how, **label)]
 
 
-def discs(w: CoupledWindow, layout: Layout, colours: Palette, strong: bool = True) -> list[Item]:
-    """The coupled window: for every sighting the disc in which T may put the seen robot."""
+def discs(
+    w: CoupledWindow, layout: Layout, colours: Palette, strong: bool = True, below: bool = False
+) -> list[Item]:
+    """The coupled window: for every sighting the disc in which T may put the seen robot.
+
+    below : its name stands at its foot; something else is written above it
+    """
     items = []
     for number, (x_ref, covariance) in enumerate(zip(w.x_ref, w.covariances, strict=True), 1):
         ring = ellipse(x_ref - layout.anchor_ref, covariance, w.k)
@@ -162,9 +167,9 @@ def discs(w: CoupledWindow, layout: Layout, colours: Palette, strong: bool = Tru
         if not strong:
             how["d"] = [2, 3]
         if number == 1:
-            top = ring[int(ring[:, 1].argmax())]
-            how |= {"t": f"coupled window, {w.k:g} σ", "tp": top, "dy": -11, "align": "center"}
-            how["tc"] = css(colours.margin)
+            edge = ring[int(ring[:, 1].argmin() if below else ring[:, 1].argmax())]
+            name = {"t": f"coupled window, {w.k:g} σ", "tc": css(colours.margin)}
+            how |= name | {"tp": edge, "dy": 13 if below else -11, "align": "center"}
         alpha = 1.0 if strong and number == 1 else QUIET
         items.append(path(ring, colours.margin, alpha=alpha, **how))
     return items

@@ -23,6 +23,7 @@ from app.server import make_server  # noqa: E402
 
 SIZE = (1280, 800)
 SAMPLE = "office_r2_r1"
+ALIKE = "corridor_r3_r2"  # two places that look alike when turned
 
 
 def main(folder: Path, names: list[str]) -> None:
@@ -36,6 +37,7 @@ def main(folder: Path, names: list[str]) -> None:
         for name, initial, script in (
             ("", case, a_merge),
             ("refused", Case("a wrong sighting", case.ref, case.mov, (wrong,), "", None), a_refusal),
+            ("rival", read_case(samples()[ALIKE]), a_refusal),
             ("empty", None, an_empty_page),
         ):
             server = make_server(port=0, initial=initial)
@@ -86,6 +88,11 @@ def a_merge(tab: Tab, keep: Callable[[str], None], _: str) -> None:
     tab.page.get_by_role("button", name="Merge", exact=True).scroll_into_view_if_needed()
     tab.page.wait_for_timeout(300)
     keep("merged")
+    tab.press("Proof")
+    tab.press("Swarm space")
+    tab.page.wait_for_timeout(1500)
+    keep("proof")
+    tab.press("Result")
     tab.press("Heights")
     tab.page.wait_for_timeout(2500)
     keep("heights")
@@ -96,7 +103,7 @@ def a_merge(tab: Tab, keep: Callable[[str], None], _: str) -> None:
 
 
 def a_refusal(tab: Tab, keep: Callable[[str], None], name: str) -> None:
-    """A sighting that is wrong by some metres."""
+    """A sighting that is wrong by some metres, or a rival that fits nearly as well."""
     tab.press("Instant")
     tab.press("Merge")
     tab.wait_for("refused")
