@@ -12,6 +12,7 @@ import resource
 import subprocess
 import sys
 from collections.abc import Callable
+from itertools import product
 from pathlib import Path
 from time import perf_counter
 
@@ -19,15 +20,20 @@ import cv2
 import numpy as np
 import pytest
 
+from algorithms.agreement import make_agreement
 from algorithms.augment import AugmentedMap, augment
+from algorithms.blocks import Lattice
 from algorithms.casefiles import write_observations
+from algorithms.certificate import ProofConfig, ProofState, prove
 from algorithms.gridmap import GridMap
 from algorithms.mapio import write_map
-from algorithms.methods import merge
+from algorithms.methods import DEFAULT_METHOD, METHODS, merge
 from algorithms.objective import Lookup, Objective, make_objective
+from algorithms.observation import encounter
 from algorithms.pose import Pose2
 from algorithms.simulator.large import simulate_large
-from algorithms.simulator.scenario import simulate
+from algorithms.simulator.scenario import Case, simulate
+from algorithms.window import CoupledWindow, coupled_window
 
 SIDE, WALLS, PARTICLES = 1000, 8_000, 400
 
@@ -143,6 +149,58 @@ def bench_whole_merge(pair, benchmark):
         maps=f"{pair.ref.width}×{pair.ref.height} and {pair.mov.width}×{pair.mov.height}",
         **{f"{stage} ms": float(np.median([s[stage] for s in stages])) * 1000 for stage in stages[0]},
     )
+
+
+def search_of(case: Case) -> tuple[Objective, CoupledWindow]:
+    """What the default method proves the best of."""
+    config = METHODS[DEFAULT_METHOD].defaults
+    seen = [encounter(observation) for observation in case.observations]
+    window = coupled_window(seen, config.window)
+    objective = make_agreement(
+        case.ref, case.mov, seen, config.augment, config.agreement, window, Lookup.NEAREST
+    )
+    return objective, window
+
+
+def proof_of(objective: Objective, window: CoupledWindow) -> ProofState:
+    """The best of the whole circle, and its rivals."""
+    *_, last = prove(objective, window, ProofConfig(), floor=0.5, worth=0.0)
+    assert last.proven
+    return last
+
+
+@pytest.mark.parametrize("which", ["500 × 500", "1500 × 1500"])
+def bench_proof_against_exhaustive_search(which, pair, benchmark):
+    """Every transform of the lattice in the window, by the same kernel; a sample of them is timed."""
+    case = pair if which == "500 × 500" else simulate_large(1500)
+    objective, window = search_of(case)
+    lattice = Lattice(objective, window)
+    shifts = np.array([(0, column, row) for column, row in product(range(lattice.side), repeat=2)])
+    inside = window.contains(lattice.poses(lattice.coordinates(shifts, 0)))
+    shifts = shifts[inside]
+    rng = np.random.default_rng(0)
+    sample = shifts[rng.integers(len(shifts), size=2000)]
+    sample[:, 0] = rng.integers(lattice.turns, size=2000)
+    poses = lattice.poses(lattice.coordinates(sample, 0))
+    ours, reference = in_turns(lambda: proof_of(objective, window), lambda: objective(poses), 9)
+    exhaustive = reference / len(poses) * len(shifts) * lattice.turns
+    benchmark.extra_info.update(
+        maps=f"{case.ref.width}×{case.ref.height} and {case.mov.width}×{case.mov.height}",
+        ratio=exhaustive / ours,
+        reference=f"all {len(shifts) * lattice.turns:,} transforms",
+        blocks=proof_of(objective, window).nodes,
+    )
+    benchmark(proof_of, objective, window)
+    assert exhaustive / ours >= 20
+
+
+def bench_proof_against_swarm(pair, benchmark):
+    """The stage "prove" against the stage "refine", a swarm of 400 on each of four candidates."""
+    rounds = [merge(pair.ref, pair.mov, pair.observations).timings_s for _ in range(10)][1:]
+    ours, reference = (float(np.median([times[stage] for times in rounds])) for stage in ("prove", "refine"))
+    benchmark.extra_info.update(ratio=reference / ours, reference="swarm of 400, four candidates")
+    benchmark(proof_of, *search_of(pair))
+    assert reference / ours >= 1
 
 
 def bench_huge_pair(tmp_path: Path, benchmark):
