@@ -40,7 +40,6 @@ class Story:
     swarms: list[RefineDetail] = field(default_factory=list)
     shifts: list[ShiftDetail] = field(default_factory=list)
     ceiling: float = float("-inf")
-    seconds: dict[str, float] = field(default_factory=dict)
     _newest: dict[type, Detail] = field(default_factory=dict)
 
     def tell(self, step: Step) -> None:
@@ -58,8 +57,6 @@ class Story:
             self.swarms[detail.index] = detail
         elif isinstance(detail, ProofDetail) and isfinite(detail.state.ceiling):
             self.ceiling = max(self.ceiling, detail.state.ceiling)
-        elif isinstance(detail, MergeResult):
-            self.seconds = dict(detail.timings_s)
 
     def get(self, kind: type[D]) -> D | None:
         """The newest detail of a kind, None where the run has not come to it."""

@@ -3,6 +3,7 @@
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -137,6 +138,25 @@ def test_a_merge_leaves_its_files_and_ends_with_0(case_folder, tmp_path, capsys)
     assert said.out.startswith(report["verdict"]["reason"])
     assert said.err == ""  # no bar where nobody looks at it
     assert yaml.safe_load((out / "transform.yaml").read_text())["T_ref_mov"] == report["T_ref_mov"]
+
+
+def test_a_merge_says_what_was_maximised_and_whether_a_better_place_is_ruled_out(
+    case_folder, tmp_path, capsys
+):
+    assert main(["merge", *inputs(case_folder), "--out", str(tmp_path)]) == 0
+    assert re.search(
+        r"^agreement \d+\.\d m, proven \([\d,]+ blocks bounded\)$", capsys.readouterr().out, re.M
+    )
+    main(["merge", *inputs(case_folder), "--out", str(tmp_path), "--method", "spectra-swarm"])
+    assert re.search(r"^Γ [\d.]+$", capsys.readouterr().out, re.M)
+
+
+def test_a_refusal_is_told_with_what_would_help(case_folder, tmp_path, capsys):
+    asked = ["merge", *inputs(case_folder), "--out", str(tmp_path)]
+    assert main([*asked, "--verdict.wall", "200"]) == 1
+    said = capsys.readouterr().out
+    assert "too little to tell right from wrong" in said
+    assert "Let one of the robots drive on" in said
 
 
 def test_the_merged_map_that_is_left_is_the_one_that_the_library_makes(case_folder, small_case, tmp_path):
