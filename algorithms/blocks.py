@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 
 from algorithms.kernels import fast_kernel, spread
 from algorithms.objective import PAD, Float32Array, Lookup, Objective, Side
-from algorithms.pose import FloatArray, wrap_angles
+from algorithms.pose import FloatArray, rotation, wrap_angles
 from algorithms.window import CoupledWindow
 
 IntArray = NDArray[np.int64]
 
 LEVELS = 4  # the coarsest blocks are 16 × 16 × 16 transforms
 RADII = (1, 2, 3, 4, 6, 8, 11, 16, 22, 32)  # cells; a table of maxima is made for each that is needed
-MERGE_FROM = 2  # from this level on, points that lie close together are looked up as one
+MERGE_FROM = 1  # from this level on, points that lie close together are looked up as one
 
 # Float32 sums of many terms: a bound and the value that it bounds are summed in different orders.
 ROUNDING = 1e-5
@@ -58,6 +58,8 @@ class Lattice:
         blocks = 2 * ceil(self.disc / (2**self.levels * self.cell) - 0.5) + 1
         self.side = max(1, blocks) * 2**self.levels
         self._pivot_ref = pivot_ref
+        # shifts along the ref grid's own axes: there a block of them is a square of its cells
+        self.yaw = objective.sides[0].grid.origin.theta
 
     @property
     def step(self) -> float:
@@ -79,7 +81,9 @@ class Lattice:
         return float(shift + swing + _cluster(level, self.cell) * sqrt(2))
 
     def coordinates(self, nodes: IntArray, level: int) -> FloatArray:
-        """(P, 3) shift of the pivot in x, y and turn at the middles of (P, 3) blocks; metres, radians."""
+        """(P, 3) shift of the pivot along the ref grid's axes, and turn, at the middles of (P, 3) blocks;
+        metres, radians.
+        """
         middle = (nodes + 0.5) * 2**level - 0.5
         out = np.empty((len(nodes), 3))
         out[:, :2] = (middle[:, 1:] - self.side // 2) * self.cell
@@ -90,10 +94,11 @@ class Lattice:
         """(P, 3) x, y, theta of T_ref_mov from ``coordinates``; the angle wrapped."""
         c, s = np.cos(coordinates[:, 2]), np.sin(coordinates[:, 2])
         x, y = self.window.pivot
+        goes_to = coordinates[:, :2] @ rotation(self.yaw).T + self._pivot_ref
         return np.column_stack(
             [
-                coordinates[:, 0] + self._pivot_ref[0] - c * x + s * y,
-                coordinates[:, 1] + self._pivot_ref[1] - s * x - c * y,
+                goes_to[:, 0] - c * x + s * y,
+                goes_to[:, 1] - s * x - c * y,
                 wrap_angles(coordinates[:, 2]),
             ]
         )
@@ -196,9 +201,10 @@ class _Pyramid:
         edge = _cluster(level, lattice.cell)
         if edge and len(points):
             points, weights, blur = _merged(points, weights, edge)
-        shift = lattice.half(level) * sqrt(2)
+        shift = lattice.half(level)  # along either axis of the table
         lever = np.linalg.norm(_from_pivot(side, points, lattice.window), axis=1)
         if side.backward:  # T⁻¹ p = C(−Δθ) (p − Δ): the turn swings the shift, too
+            shift *= sqrt(2)
             lever += lattice.disc + shift
         moved = shift + _chord(lattice.half_turn(level)) * lever + blur
         radii = np.array(RADII)[np.searchsorted(RADII, np.ceil(moved / side.grid.resolution + HAIR))]
