@@ -57,6 +57,11 @@ def _line(label: str, colour: str, width: float = 1.5, **more: Any) -> uplot.Ser
     return uplot.Series(label=label, stroke=colour, width=width, points={"show": False}, **more)
 
 
+def _entitle(plot: Any, title: str) -> None:
+    if plot.title != title:  # a chart is built anew for a new title
+        plot.title = title
+
+
 class PlotDock:
     """Follows the run until the person chooses a page of it; the next Merge follows again."""
 
@@ -261,11 +266,11 @@ class PlotDock:
         measure = story.measure
         if refine is not None and self._new("climb", refine):
             self._climb.data = charts.courses(story.courses, LINES)
-            self._climb.title = f"Best {measure.row} so far"
+            _entitle(self._climb, f"Best {measure.row} so far")
         if found is not None and self._new("candidates", (found, refine)):
             rows = charts.candidate_rows(found.candidates, story.courses, measure)
             sign = measure.unit or measure.name
-            head = ("candidate", "Δθ", "Δx (m)", "Δy (m)", f"{sign}, look", f"{sign}, swarm")
+            head = ("rank", "Δθ", "Δx (m)", "Δy (m)", f"{sign}, look", f"{sign}, swarm")
             self._candidates.content = table(rows, head)
         if proof is not None and self._new("proof", proof):
             self._prove(story, proof.state)
@@ -293,7 +298,7 @@ class PlotDock:
                 "x": uplot.Scale(time=False, range=(-180.0, 180.0)),
                 "y": uplot.Scale(range=span),
             }
-        self._proof.title = f"Best {measure.row} at every turn"
+        _entitle(self._proof, f"Best {measure.row} at every turn")
         self._proof.data = charts.proof(state, span[1])
         self._proof_says.content = box(words.proof_says(state, measure), "plain")
         rows = charts.proof_rows(state, measure)
