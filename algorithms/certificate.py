@@ -260,7 +260,7 @@ def prove(
             nodes=search.nodes,
             best=poses[0] if len(poses) else None,
             best_value=sums[0] if sums else -np.inf,
-            ceiling=max(search.top, leading[0], least),
+            ceiling=max(search.top, search.single.top, least),
             rivals=poses[1:],
             rival_values=np.array(sums[1:]),
             floor=least,

@@ -119,22 +119,25 @@ def small_maps(draw: st.DrawFn, side: int = 24) -> GridMap:
 
 
 @st.composite
-def encounters_in(draw: st.DrawFn, ref: GridMap, mov: GridMap, most: int = 2) -> list[Encounter]:
-    """Meetings on both maps that one transform explains up to their own errors."""
+def encounters_in(
+    draw: st.DrawFn, ref: GridMap, mov: GridMap, T_ref_mov: Pose2 | None = None
+) -> list[Encounter]:
+    """One or two meetings on both maps that one transform explains up to their own errors."""
 
     def place(grid: GridMap) -> np.ndarray:
         share = np.array([draw(st.floats(0, 1)), draw(st.floats(0, 1))])
         return grid.origin.apply(share * (grid.width, grid.height) * grid.resolution)
 
-    turn, first_ref, first_mov = rotation(draw(angles)), place(ref), place(mov)
+    x_mov = place(mov)
+    if T_ref_mov is None:
+        turn = draw(angles)
+        T_ref_mov = Pose2(*(place(ref) - rotation(turn) @ x_mov).tolist(), turn)
     found: list[Encounter] = []
-    for _ in range(draw(st.integers(1, most))):
-        x_mov = place(mov) if found else first_mov
+    for x in (x_mov, place(mov))[: draw(st.integers(1, 2))]:
         sigma = np.array([draw(st.sampled_from([0.01, 0.05, 0.2])), draw(st.sampled_from([0.01, 0.1]))])
         axes = rotation(draw(angles))
         error = axes @ (sigma * (draw(st.floats(-1, 1)), draw(st.floats(-1, 1))))
-        x_ref = first_ref + turn @ (x_mov - first_mov) + error
-        found.append(Encounter(x_ref, x_mov, axes @ np.diag(sigma**2) @ axes.T))
+        found.append(Encounter(T_ref_mov.apply(x) + error, x, axes @ np.diag(sigma**2) @ axes.T))
     return found
 
 
@@ -151,9 +154,14 @@ class Problem:
 
 @st.composite
 def problems(draw: st.DrawFn, side: int = 24, deviations: tuple[float, ...] = (1.0, 2.0, 3.5)) -> Problem:
-    """Two small maps, their meetings, and one of the objectives, as the paper's raster reads it."""
-    ref, mov = draw(small_maps(side)), draw(small_maps(side))
-    met = draw(encounters_in(ref, mov))
+    """Two small maps, of one place or of two, their meetings, and one of the objectives, as the paper's
+    raster reads it.
+    """
+    ref, mov, truth = draw(small_maps(side)), draw(small_maps(side)), None
+    if draw(st.booleans()):
+        mov = GridMap(ref.cells, ref.resolution, mov.origin)
+        truth = ref.origin @ mov.origin.inverse()
+    met = draw(encounters_in(ref, mov, truth))
     margin = draw(st.sampled_from([0.02, 0.1]))
     window = coupled_window(met, WindowConfig("coupled", margin, draw(st.sampled_from(deviations))))
     lift = AugmentConfig(
@@ -164,7 +172,7 @@ def problems(draw: st.DrawFn, side: int = 24, deviations: tuple[float, ...] = (1
         pair = augment(ref, met[0].x_ref, sigma, 100.0), augment(mov, met[0].x_mov, sigma, 100.0)
         return Problem(ref, mov, met, window, make_objective(*pair, Lookup.NEAREST))
     config = AgreementConfig(
-        blur=draw(st.sampled_from([0.02, 0.1, 0.5])), penalty=draw(st.sampled_from([0.0, 1.0, 3.0]))
+        blur=draw(st.sampled_from([0.02, 0.1, 0.5])), penalty=draw(st.sampled_from([0.0, 0.3, 1.0, 3.0]))
     )
     counted = window if draw(st.booleans()) else None
     return Problem(
