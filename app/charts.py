@@ -124,7 +124,7 @@ def proof(state: ProofState, top: float) -> Columns:
     values = [] if state.best is None else [state.best_value, *state.rival_values]
     # a mark has a place of its own on the axis, between the edges of its sector
     at = np.degrees([pose[2] for pose in poses]).reshape(-1)
-    inside = np.clip(np.searchsorted(high, at), 0, len(which) - 1)
+    inside = np.clip(np.searchsorted(high, at, side="right"), 0, len(which) - 1)
     x, sector = np.concatenate([x, at]), np.concatenate([sector, which[inside]])
     marks = np.full((2, len(x)), np.nan)
     for k, value in enumerate(values):

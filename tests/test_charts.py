@@ -93,3 +93,18 @@ def test_a_climb_that_begins_outside_of_the_window_has_no_infinite_point():
     x, *lines = charts.courses([[-inf, -3.0, 5.0], [-inf]], 3)
     assert x.tolist() == [1, 2, 3]
     assert [line.tolist() for line in lines] == [[0, -3, 5], [0, 0, 0], [0, 0, 0]]
+
+
+def test_a_mark_between_two_sectors_leaves_no_spike_in_the_stair():
+    turns, best = np.array([-0.5, 0.5]) * np.pi, np.zeros(3)
+    state = proof_state(
+        turns=turns,
+        ceilings=np.array([1.0, 5.0]),
+        found=np.array([1.0, 5.0]),
+        best=best,
+        rivals=np.zeros((0, 3)),
+        rival_values=np.zeros(0),
+    )
+    x, ceiling, *_ = charts.proof(state, 30.0)
+    assert x[x == 0].size == 3  # the end of one, the beginning of the other, the mark
+    assert ceiling.tolist() == sorted(ceiling.tolist())
