@@ -43,7 +43,7 @@ from algorithms.steps import (
     WindowDetail,
 )
 from algorithms.swarm import SwarmConfig, settled_within, swarm
-from algorithms.verdict import Rival, VerdictConfig, judge, others
+from algorithms.verdict import HALF, Rival, VerdictConfig, judge, others
 from algorithms.window import (
     Box,
     BoxConfig,
@@ -58,7 +58,7 @@ from algorithms.window import (
 
 GIVE_UP_AFTER = 15  # iterations
 GIVE_UP_BELOW = 0.5  # of the best value so far
-RIVAL_FLOOR = 0.5  # of the best value: what is below is no rival
+RIVAL_FLOOR = HALF  # of the best value: what is below is no rival
 LEAST_DEVIATION = 0.01  # metres; no pair of rasters is known to fit better
 
 OPTIMISERS: dict[str, Optimiser] = {"pso": swarm, "mco": monte_carlo}

@@ -15,6 +15,7 @@ from algorithms.fuse import Fusion
 from algorithms.observation import Encounter
 from algorithms.pose import FloatArray, Pose2, pose_error
 
+HALF = 0.5  # of the best value
 SAME_PLACE = 0.5  # metres; answers farther apart are said to be apart, nearer ones turned
 
 
@@ -30,8 +31,11 @@ class VerdictConfig:
     bent: Annotated[float, Bounds(0, 1, 0.01, "", "", "bent")] = 0.42
     """Share of the contradictions that slipping must take away for maps to count as bent. It takes away
     half and more where one place was mapped by hand, two fifths at most of two buildings."""
-    wall: Annotated[float, Bounds(0, 200, 1, "m", "", "shared wall")] = 15.0
+    wall: Annotated[float, Bounds(0, 200, 1, "m", "", "shared wall")] = 18.0
     """Wall that both robots should have seen, below which nothing can be said."""
+    plenty: Annotated[float, Bounds(0, 200, 1, "m", "", "plenty of wall")] = 30.0
+    """Wall that both robots should have seen, below which any other answer with half the value is a
+    reason to refuse: so little fits in several places by chance."""
     bent_wall: Annotated[float, Bounds(0, 500, 5, "m", "", "shared wall, bent")] = 60.0
     """The same for bent maps: what is vague must be long."""
     ambiguity: Annotated[float, Bounds(0, 1, 0.01, "", "", "rival")] = 0.8
@@ -121,10 +125,14 @@ def judge(
         )
     rival = next((rival for rival in rivals or () if _ambiguous(weighed, rival, config)), None)
     if rival is not None:
-        found.append(
-            f"two answers fit almost equally well, {_apart(rival.T_ref_mov, T_ref_mov, encounters[0])}: "
-            "a second observation would decide"
-        )
+        apart = _apart(rival.T_ref_mov, T_ref_mov, encounters[0])
+        doubt = f"two answers fit almost equally well, {apart}"
+        if rival.share <= config.ambiguity:
+            cause = (
+                "is contradicted less" if shared >= config.plenty else "is not ruled out by so little wall"
+            )
+            doubt = f"another answer, {apart}, {cause}"
+        found.append(f"{doubt}: a second observation would decide")
     if deviation > config.deviations:
         found.append(f"it puts the seen robot {deviation:.1f} standard deviations from where it was seen")
     if found:
@@ -170,6 +178,8 @@ def _ambiguous(weighed: Evidence, rival: Rival, config: VerdictConfig) -> bool:
     is to be feared even with half the value, where the answer itself is contradicted.
     """
     clean = config.contradiction
+    if weighed.agreeing + weighed.contradicting < config.plenty:
+        return rival.share > HALF
     if rival.share > config.ambiguity:
         return rival.evidence.contradiction <= max(clean, 3 * weighed.contradiction)
     return rival.evidence.contradiction <= clean < weighed.contradiction

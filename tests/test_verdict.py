@@ -51,7 +51,7 @@ def test_too_little_wall_in_common_is_refused_whatever_agrees():
     assert "only 8 m of wall were seen by both robots" in verdict.reason
 
 
-@given(st.floats(0, 1), st.floats(0, 1), st.floats(16, 500))
+@given(st.floats(0, 1), st.floats(0, 1), st.floats(19, 500))
 def test_more_contradiction_never_turns_a_refusal_into_a_merge(contradiction, more, metres):
     little = verdict_on(after_slipping(contradiction, 0.9, metres))
     much = verdict_on(after_slipping(min(1.0, contradiction + more), 0.9, metres))
@@ -93,7 +93,17 @@ def test_a_rival_that_the_rest_of_the_maps_contradicts_is_none():
 def test_a_weaker_rival_counts_where_it_is_clean_and_the_answer_is_not():
     rival = Rival(TURNED, 0.6, CLEAN)
     assert verdict_on(rivals=[rival]).accepted
-    assert not verdict_on(after_slipping(0.2, 0.45, 120.0), rivals=[rival]).accepted
+    doubted = verdict_on(after_slipping(0.2, 0.45, 120.0), rivals=[rival])
+    assert not doubted.accepted
+    assert "another answer, 180° apart, is contradicted less" in doubted.reason
+
+
+def test_where_little_wall_speaks_any_rival_of_half_the_value_counts():
+    rival = Rival(TURNED, 0.6, after_slipping(0.5, 0.5, 100.0))
+    assert verdict_on(after_slipping(0.0, 0.0, 40.0), rivals=[rival]).accepted
+    little = verdict_on(after_slipping(0.0, 0.0, 20.0), rivals=[rival])
+    assert not little.accepted
+    assert "is not ruled out by so little wall" in little.reason
 
 
 def test_any_of_several_rivals_is_enough():
