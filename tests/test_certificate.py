@@ -80,7 +80,7 @@ def dusty(first=0, second=1):
     return make_agreement(*pair, met, lift, AgreementConfig(), window, Lookup.NEAREST), window
 
 
-def coarse_flat(T_ref_world, T_mov_world, gamma=False, **noise):
+def coarse_flat(T_ref_world, T_mov_world, gamma=False, config=None, **noise):
     """The flat in cells of 0.1 m, both ways of weighing it, and a sighting that may be off."""
     ref = drawn_map(T_ref_world, 0.1, seen=(-1, -1, 6.7, 8))
     mov = drawn_map(T_mov_world, 0.1, seen=(2.5, -1, 10, 8))
@@ -92,7 +92,7 @@ def coarse_flat(T_ref_world, T_mov_world, gamma=False, **noise):
             augment(grid, x, lift.covariance(), 100.0) for grid, x in ((ref, at.x_ref), (mov, at.x_mov))
         ]
         return make_objective(*levels, Lookup.NEAREST), window
-    return make_agreement(ref, mov, [at], lift, AgreementConfig(), None, Lookup.NEAREST), window
+    return make_agreement(ref, mov, [at], lift, config or AgreementConfig(), None, Lookup.NEAREST), window
 
 
 def last(states):
@@ -156,14 +156,15 @@ def test_what_is_told_on_the_way_is_never_too_low(problem, config):
     check_told(Everything.few_of(problem), prove(problem.objective, problem.window, config), config)
 
 
-@pytest.mark.parametrize("distance", [0.1, 0.2, 1.0])
-@pytest.mark.parametrize("angle", [2.0, 3.0, 30.0])
-def test_nor_do_rivals_hide_right_beside_the_best(angle, distance):
-    # where the maps agree smoothly, the best rival is the one that is just far enough off
-    objective, window = coarse_flat(Pose2(3, -4, 0.3), Pose2(-12, 5, -1.7))
+@pytest.mark.parametrize(
+    ("angle", "distance"), [(6.0, 5.0), (11.0, 5.0), (16.0, 5.0), (90.0, 0.15), (90.0, 0.2)]
+)
+def test_nor_does_a_rival_hide_right_beside_the_best(angle, distance):
+    # where all is smooth the best rival is the one that is only just far enough off
+    objective, window = coarse_flat(Pose2(3, -4, 0.3), Pose2(-12, 5, -1.7), config=AgreementConfig(1.0, 0.0))
     every, config = Everything(objective, window), ProofConfig(angle=angle, distance=distance)
-    states = list(prove(objective, window, config))
-    check_answers(every, states[-1], config, floor=0.0)
+    states = list(prove(objective, window, config, floor=0.5))
+    check_answers(every, states[-1], config, floor=0.5)
     check_told(every, states, config)
 
 
