@@ -2,9 +2,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from drawn import flat_pair, problems, small_maps
+from drawn import angles, encounters_in, flat_pair, poses, problems, small_maps
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from algorithms.agreement import AgreementConfig, distance_to_walls, make_agreement, surface
 from algorithms.augment import AugmentConfig
@@ -149,3 +150,100 @@ def test_the_known_pose_beats_every_other_of_a_coarse_circle():
     poses = np.array([[*(AT.x_ref - there), turn] for there, turn in zip(others, turns, strict=True)])
     right = objective(T.array()[None])[0]
     assert right > 2 * objective(poses).max()
+
+
+@settings(max_examples=40)
+@given(small_maps(side=12), st.floats(0, 5))
+def test_a_map_laid_on_itself_agrees_in_every_wall_that_was_seen_from_somewhere(grid, penalty):
+    middle = grid.centres(np.array([grid.height // 2]), np.array([grid.width // 2]))[0]
+    met = [Encounter(middle, middle, np.eye(2) * 0.01)]
+    seen = 0
+    for row, col in np.argwhere(grid.occupied):
+        seen += grid.free[max(0, row - 1) : row + 2, max(0, col - 1) : col + 2].any()
+    found = value(grid, grid, config=AgreementConfig(penalty=penalty), encounters=met)
+    assert found == pytest.approx(2 * seen * grid.resolution, rel=0.02, abs=1e-6)
+
+
+@settings(max_examples=30)
+@given(st.data(), st.sampled_from(list(Lookup)))
+def test_swapping_any_two_maps_changes_nothing_either(data, lookup):
+    ref, mov = data.draw(small_maps()), data.draw(small_maps())
+    met = data.draw(encounters_in(ref, mov))
+    back = [Encounter(at.x_mov, at.x_ref, at.covariance) for at in met]
+    turn = data.draw(angles)
+    T_turned = Pose2(theta=turn)
+    T_ref_mov = Pose2(*(met[0].x_ref - T_turned.apply(met[0].x_mov)).tolist(), turn)
+    lift, config = AugmentConfig(spread=1.0, aspect=2.0, tilt=20.0), AgreementConfig()
+    there = make_agreement(ref, mov, met, lift, config, lookup=lookup)(T_ref_mov.array()[None])
+    again = make_agreement(mov, ref, back, lift, config, lookup=lookup)(T_ref_mov.inverse().array()[None])
+    assert there == pytest.approx(again, rel=1e-3, abs=1e-3)
+
+
+@settings(max_examples=25)
+@given(st.floats(-1, 1), st.floats(-1, 1), angles, st.floats(0, 5))
+def test_a_wall_in_free_floor_takes_back_the_same_wherever_it_lies_and_however(x, y, turn, penalty):
+    bare, wall = hall(), hall([(3.0, 4.0, 5.0, 4.05)])
+    at_middle = Pose2(4.0 + x, 4.0 + y, turn) @ Pose2(-4.0, -4.0)
+    config = AgreementConfig(penalty=penalty)
+    assert value(bare, wall, at_middle, config) == pytest.approx(-2.0 * penalty, rel=0.02, abs=1e-6)
+    assert value(wall, bare, at_middle, config) == pytest.approx(-2.0 * penalty, rel=0.02, abs=1e-6)
+
+
+@settings(max_examples=25)
+@given(small_maps())
+def test_what_the_other_robot_saw_beyond_says_nothing(annex):
+    known = hall([(0.0, 0.0, 3.0, 0.05), (1.0, 1.0, 1.05, 2.5)], side=3.0)
+    ref = np.full((160, 160), UNKNOWN, dtype=np.int8)
+    ref[:60, :60] = known.cells
+    mov = ref.copy()
+    mov[100 : 100 + annex.height, 100 : 100 + annex.width] = annex.cells  # 2 m on, 20 blurs
+    without, beyond = GridMap(ref, 0.05), GridMap(mov, 0.05)
+    for pose in (Pose2(), Pose2(0.07, -0.03, 0.02)):
+        assert value(without, beyond, pose) == pytest.approx(value(without, without, pose), abs=1e-4)
+        assert value(beyond, without, pose) == pytest.approx(value(without, without, pose), abs=1e-4)
+
+
+@settings(max_examples=20)
+@given(st.tuples(*4 * [st.integers(0, 40)]), poses)
+def test_unknown_ground_around_a_map_changes_nothing(margins, T_new):
+    bottom, top, left, right = margins
+    cells = np.pad(REF.cells, ((bottom, top), (left, right)), constant_values=UNKNOWN)
+    corner = Pose2(-left * REF.resolution, -bottom * REF.resolution)
+    wide = GridMap(cells, REF.resolution, T_new @ REF.origin @ corner)
+    at = Encounter(T_new.apply(AT.x_ref), AT.x_mov, AT.covariance)
+    lift = AugmentConfig(spread=2.0)
+    plain = make_agreement(REF, MOV, [AT], lift, AgreementConfig())(T.array()[None])
+    moved = make_agreement(wide, MOV, [at], lift, AgreementConfig())((T_new @ T).array()[None])
+    assert moved == pytest.approx(plain, rel=1e-3)
+
+
+@pytest.mark.parametrize("cells", [2, 3, 8])
+def test_both_sides_of_a_thick_wall_agree_and_of_a_thin_one_the_only_one_it_has(cells):
+    thin = hall([(4.0, 0.0, 4.05, 8.0)])
+    thick = hall([(4.0, 0.0, 4.0 + 0.05 * cells, 8.0)])
+    assert value(thick, thick) == pytest.approx(2 * value(thin, thin), rel=0.01)
+
+
+@given(st.floats(-40, 40), st.floats(-40, 40), st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), angles)
+def test_the_sightings_pull_is_the_same_wherever_the_sighting_is(x, y, dx, dy, turn):
+    def pull(x_ref):
+        at = Encounter(x_ref, AT.x_mov, np.diag([0.2, 0.05]) ** 2)
+        window = coupled_window([at], WindowConfig("coupled"))
+        there = x_ref + (dx, dy) - Pose2(theta=turn).apply(AT.x_mov)
+        poses = np.array([[*there, turn]])
+        lift, config = AugmentConfig(), AgreementConfig()
+        with_it, without = (make_agreement(REF, MOV, [at], lift, config, w)(poses) for w in (window, None))
+        return float(with_it[0] - without[0])
+
+    moved = pull(AT.x_ref + (x, y))
+    assert moved == pytest.approx(pull(AT.x_ref), abs=1e-6)
+    assert moved <= 0
+
+
+@given(arrays(bool, st.tuples(st.integers(1, 8), st.integers(1, 8))))
+def test_no_wall_is_nearer_than_the_distance_says_and_one_is_as_near(walls):
+    distance = distance_to_walls(walls)
+    at = np.argwhere(walls)
+    for row, col in np.ndindex(walls.shape):
+        nearest = np.hypot(*(at - (row, col)).T).min() if len(at) else 1e6
+        assert distance[row, col] == pytest.approx(nearest, abs=1e-4)
