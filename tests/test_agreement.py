@@ -229,6 +229,7 @@ def test_both_sides_of_a_thick_wall_agree_and_of_a_thin_one_the_only_one_it_has(
     assert value(thick, thick) == pytest.approx(2 * value(thin, thin), rel=0.01)
 
 
+@settings(max_examples=30)
 @given(st.floats(-40, 40), st.floats(-40, 40), st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), angles)
 def test_the_sightings_pull_is_the_same_wherever_the_sighting_is(x, y, dx, dy, turn):
     def pull(x_ref):

@@ -165,7 +165,7 @@ def smooth():
     return objective, rough, Everything(objective, rough)
 
 
-@pytest.mark.parametrize(("angle", "distance"), [(25.0, 5.0), (28.0, 5.0), (90.0, 0.5), (90.0, 0.54)])
+@pytest.mark.parametrize(("angle", "distance"), [(25.0, 5.0), (90.0, 0.5)])
 def test_nor_does_a_rival_hide_right_beside_the_best(angle, distance):
     objective, window, every = smooth()
     config = ProofConfig(angle=angle, distance=distance)
