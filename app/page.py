@@ -98,7 +98,12 @@ class Page:
     # --- what a person asks for -------------------------------------------------------------------
 
     def _load(self, inputs: Inputs) -> None:
+        """Show these inputs in place of everything there was."""
         self.session.stop()
+        with self.session.drawing:
+            self._show_inputs(inputs)
+
+    def _show_inputs(self, inputs: Inputs) -> None:
         try:
             layout = lay_out(inputs.ref, inputs.mov, inputs.at)
         except MapMergeError as error:
@@ -223,9 +228,10 @@ class Page:
     def _report(self, error: MapMergeError) -> None:
         """Tell the person what is wrong with an input, in this tab."""
         title = "Too large" if isinstance(error, TooLargeError) else "This cannot be used"
-        self._notify(title, str(error), "orange")
-        self._stage.hud(state=str(error), mood="failed", progress=None)
-        self._stage.flush()
+        with self.session.drawing:
+            self._notify(title, str(error), "orange")
+            self._stage.hud(state=str(error), mood="failed", progress=None)
+            self._stage.flush()
 
     def _notify(self, title: str, text: str, colour: Literal["orange", "red"]) -> None:
         """Show a notice in place of the last one: what it said has been mended or overtaken."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from threading import RLock
 from typing import Any
 
 import numpy as np
@@ -29,18 +30,21 @@ class Stage:
         self._client = client
         self._pending: dict[str, Any] = {}
         self._hud: dict[str, Any] = {}
+        self._lock = RLock()  # widgets call from many threads; what gathers while one sends is not lost
         self._run(_SCRIPT)
 
     def layer(self, name: str, items: list[Item] | None) -> None:
         """Replace a layer of ink; None removes it."""
-        self._pending.setdefault("layers", {})[name] = items or None
+        with self._lock:
+            self._pending.setdefault("layers", {})[name] = items or None
 
     def hud(self, **words: Any) -> None:
         """Change words above the map: case, state, mood, progress, legend, anchor."""
-        changed = {key: value for key, value in words.items() if self._hud.get(key, self) != value}
-        self._hud.update(changed)
-        if changed:
-            self._pending.setdefault("hud", {}).update(changed)
+        with self._lock:
+            changed = {key: value for key, value in words.items() if self._hud.get(key, self) != value}
+            self._hud.update(changed)
+            if changed:
+                self._pending.setdefault("hud", {}).update(changed)
 
     @property
     def mood(self) -> str:
@@ -49,36 +53,42 @@ class Stage:
 
     def place_mov(self, at: Pose2, milliseconds: float = 0) -> None:
         """Turn and slide map 2's anchor to a pose of the scene, in this time."""
-        self._pending["mov"] = {"x": at.x, "y": at.y, "theta": at.theta, "ms": milliseconds}
+        with self._lock:
+            self._pending["mov"] = {"x": at.x, "y": at.y, "theta": at.theta, "ms": milliseconds}
 
     def look_down(self, rect: Rect, follow: bool = False) -> None:
         """Show a rectangle of the map from above, north up.
 
         follow : also where the person has moved the camera since the last time
         """
-        self._pending["look"] = {"view": "map", "box": list(rect)}
-        self._pending["follow"] = follow or self._pending.get("follow", False)
+        with self._lock:
+            self._pending["look"] = {"view": "map", "box": list(rect)}
+            self._pending["follow"] = follow or self._pending.get("follow", False)
 
     def look_at(self, view: str, centre: FloatArray, radius: float, polar: float, azimuth: float) -> None:
         """Show a ball of the scene in 3-D; radians, polar from straight above."""
-        self._pending["look"] = {
+        look = {
             "view": view,
             "centre": centre.tolist(),
             "radius": radius,
             "polar": polar,
             "azimuth": azimuth,
         }
-        self._pending["follow"] = True
+        with self._lock:
+            self._pending.update(look=look, follow=True)
 
     def theme(self, palette: Palette) -> None:
         """Light or dark ink, and the colour of what no map knows."""
-        self._pending["dark"] = palette.dark
-        self._pending["background"] = css(palette.unknown)
+        with self._lock:
+            self._pending.update(dark=palette.dark, background=css(palette.unknown))
 
     def flush(self) -> None:
         """Send what has gathered."""
-        if self._pending:
+        with self._lock:
+            if not self._pending:
+                return
             message, self._pending = self._pending, {}
+            # sent under the lock, too: an older word must not arrive after a newer one
             self._run(f"window.mapmeld && window.mapmeld.apply({json.dumps(message, default=_plain)})")
 
     def _run(self, source: str) -> None:

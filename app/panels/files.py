@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from html import escape
 from pathlib import PurePath
+from threading import RLock
 
 import viser
 
@@ -67,6 +68,9 @@ class FilesPanel:
     ) -> None:
         self._load, self._report = load, report
         self._uploads: dict[str, Upload] = {}
+        # viser calls back from a thread of its own for each file: two that were dropped together must
+        # not be read, and shown, across each other
+        self._turn = RLock()
         samples = paths.samples()
         names = [chosen] if chosen and chosen not in samples else []
         with gui.add_folder("Maps", order=10.0):
@@ -86,36 +90,39 @@ class FilesPanel:
         self._taken = chosen or NONE
 
     def _take_sample(self) -> None:
-        name = self._sample.value
-        folder = paths.samples().get(name)
-        if folder is None or name == self._taken:
-            return
-        self._taken = name
-        try:
-            case = read_case(folder)
-        except MapMergeError as error:
-            self._report(error)
-            return
-        self._load(Inputs.of(case))
+        with self._turn:
+            name = self._sample.value
+            folder = paths.samples().get(name)
+            if folder is None or name == self._taken:
+                return
+            self._taken = name
+            try:
+                case = read_case(folder)
+            except MapMergeError as error:
+                self._report(error)
+                return
+            self._load(Inputs.of(case))
 
     def _take_upload(self, key: str, file: viser.UploadedFile) -> None:
-        before = self._uploads.get(key)
-        # the last part only, and short: it is shown to a person, nothing else
-        self._uploads[key] = Upload(PurePath(file.name.replace("\\", "/")).name[:80] or key, file.content)
-        try:
-            inputs = inputs_from(self._uploads)
-        except MapMergeError as error:
-            del self._uploads[key]
-            if before is not None:
-                self._uploads[key] = before
-            self._show(inputs_from(self._uploads), bad=key)
-            self._report(error)
-            return
-        self._show(inputs)
+        with self._turn:
+            before = self._uploads.get(key)
+            # the last part only, and short: it is shown to a person, nothing else
+            self._uploads[key] = Upload(PurePath(file.name.replace("\\", "/")).name[:80] or key, file.content)
+            try:
+                inputs = inputs_from(self._uploads)
+            except MapMergeError as error:
+                del self._uploads[key]
+                if before is not None:
+                    self._uploads[key] = before
+                self._show(inputs_from(self._uploads), bad=key)
+                self._report(error)
+                return
+            self._show(inputs)
 
     def _forget(self) -> None:
-        self._uploads.clear()
-        self._show(Inputs())
+        with self._turn:
+            self._uploads.clear()
+            self._show(Inputs())
 
     def _show(self, inputs: Inputs, bad: str = "") -> None:
         """What was on the page gives way to the uploads: nobody merges other maps than they think."""
