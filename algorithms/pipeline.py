@@ -307,7 +307,7 @@ def _prove(
     searched = refined.answers[0].T_ref_mov
     start = searched if state.best is None else Pose2.from_array(state.best)
     smooth = replace(found.objective, lookup=Lookup.BILINEAR)
-    peak = polish(smooth, start, window.pivot, config.augment.spread)
+    peak = polish(smooth, start, window, config.augment.spread)
     distance, angle = pose_error(searched, peak.T_ref_mov, window.pivot)
     found_it = distance <= config.proof.distance and angle <= radians(config.proof.angle)
     yield ProvenDetail(state, peak, found_it and state.best is not None)

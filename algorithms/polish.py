@@ -11,6 +11,7 @@ import numpy as np
 
 from algorithms.objective import Objective
 from algorithms.pose import FloatArray, Pose2, rotation
+from algorithms.window import CoupledWindow
 
 ROUNDS = (1.0, 0.5, 0.25, 0.125)  # cells; width of the stencil, round by round
 LEASH = 1.5  # cells from where it began: farther off is another answer, for the search to find
@@ -29,12 +30,14 @@ class Peak:
     curvature: FloatArray
 
 
-def polish(objective: Objective, T_ref_mov: Pose2, pivot: FloatArray, reach: float) -> Peak:
+def polish(objective: Objective, T_ref_mov: Pose2, window: CoupledWindow, reach: float) -> Peak:
     """Climb from a transform on the lattice to the top nearby; never to a lower value.
 
-    pivot : (2,) metres, mov frame; turns are about it
-    reach : distance over which a turn moves a cell by one cell; metres
+    window : turns are about its pivot, and it is not left: what the search was kept from is not reached
+             by a step off its edge
+    reach  : distance over which a turn moves a cell by one cell; metres
     """
+    pivot = window.pivot
     cell = objective.cell
     scale = np.array([cell, cell, cell / reach])
     at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
@@ -46,7 +49,8 @@ def polish(objective: Objective, T_ref_mov: Pose2, pivot: FloatArray, reach: flo
         if np.linalg.eigvalsh(hessian)[-1] < 0:
             tried.append(-np.linalg.solve(hessian, gradient))
         places = np.clip(at + np.array(tried) * scale * width, low, high)
-        found = objective(_transforms(places, pivot))
+        transforms = _transforms(places, pivot)
+        found = np.where(window.contains(transforms), objective(transforms), -np.inf)
         best = int(found.argmax())
         if found[best] > value:
             at, value = places[best], float(found[best])

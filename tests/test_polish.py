@@ -1,3 +1,5 @@
+from math import cos, pi, sin
+
 import numpy as np
 import pytest
 from drawn import flat_pair
@@ -10,10 +12,12 @@ from algorithms.gridmap import FREE, OCCUPIED, GridMap
 from algorithms.observation import Observation, encounter
 from algorithms.polish import covariance_of, polish
 from algorithms.pose import Pose2, pose_error
+from algorithms.window import CoupledWindow, WindowConfig, coupled_window
 
 REF, MOV, SEEN, T = flat_pair()
 AT = encounter(SEEN)
 AGREEMENT = make_agreement(REF, MOV, [AT], AugmentConfig(spread=4.0), AgreementConfig())
+WINDOW = coupled_window([AT], WindowConfig())
 WIDEST = np.array([0.3, 0.3, 0.2])
 LEAST = np.array([0.01, 0.01, 0.001])
 
@@ -29,7 +33,7 @@ def beside(x, y, turn):
 @settings(max_examples=25)
 @given(st.floats(-0.07, 0.07), st.floats(-0.07, 0.07), st.floats(-0.012, 0.012))
 def test_from_a_neighbour_on_the_lattice_it_climbs_to_within_a_third_of_a_cell(x, y, turn):
-    peak = polish(AGREEMENT, beside(x, y, turn), AT.x_mov, 4.0)
+    peak = polish(AGREEMENT, beside(x, y, turn), WINDOW, 4.0)
     distance, angle = pose_error(peak.T_ref_mov, T, AT.x_mov)
     assert distance < 0.018
     assert angle < np.deg2rad(0.25)
@@ -38,10 +42,25 @@ def test_from_a_neighbour_on_the_lattice_it_climbs_to_within_a_third_of_a_cell(x
 @given(st.floats(-2, 2), st.floats(-2, 2), st.floats(-3, 3))
 def test_it_never_ends_lower_than_it_began_and_tells_the_value_where_it_ends(x, y, turn):
     start = beside(x, y, turn)
-    peak = polish(AGREEMENT, start, AT.x_mov, 4.0)
+    peak = polish(AGREEMENT, start, WINDOW, 4.0)
     before, after = AGREEMENT(np.array([start.array(), peak.T_ref_mov.array()]))
     assert peak.value >= before - 1e-9
     assert peak.value == pytest.approx(after, abs=1e-4)
+
+
+@given(st.floats(0.05, 1.0), st.floats(-pi, pi), st.floats(-0.02, 0.02))
+def test_it_does_not_step_off_the_edge_of_the_window(sigma, way, turn):
+    """The top, beyond the edge, is what the search was kept from."""
+    edge = CoupledWindow(
+        (T.apply(AT.x_mov) + 4.0 * sigma * np.array([cos(way), sin(way)]))[None],
+        AT.x_mov[None],
+        np.eye(2)[None] * sigma**2,
+        k=3.9,
+    )
+    off = 0.11 * sigma
+    start = beside(off * cos(way), off * sin(way), turn)
+    assert edge.contains(start.array()[None]).all()
+    assert edge.contains(polish(AGREEMENT, start, edge, 4.0).T_ref_mov.array()[None]).all()
 
 
 def covariance_at_robot(T_ref_mov, covariance):
@@ -51,7 +70,7 @@ def covariance_at_robot(T_ref_mov, covariance):
 
 
 def test_the_covariance_is_that_of_a_sharp_peak_in_a_flat_full_of_walls():
-    peak = polish(AGREEMENT, T, AT.x_mov, 4.0)
+    peak = polish(AGREEMENT, T, WINDOW, 4.0)
     covariance = covariance_of(peak, AT.x_mov, 0.5, WIDEST, LEAST)
     assert np.allclose(covariance, covariance.T)
     assert np.all(np.linalg.eigvalsh(covariance) > 0)
@@ -61,7 +80,7 @@ def test_the_covariance_is_that_of_a_sharp_peak_in_a_flat_full_of_walls():
 
 
 def test_more_wall_per_measurement_is_a_wider_covariance():
-    peak = polish(AGREEMENT, T, AT.x_mov, 4.0)
+    peak = polish(AGREEMENT, T, WINDOW, 4.0)
     narrow, wide = (covariance_of(peak, AT.x_mov, metres, WIDEST, LEAST) for metres in (0.25, 1.0))
     assert np.all(np.linalg.eigvalsh(wide - narrow) > -1e-12)
     assert np.trace(wide) > np.trace(narrow)
@@ -73,7 +92,7 @@ def test_along_a_bare_corridor_nothing_is_known_but_what_the_sighting_says():
     grid = GridMap(cells, 0.05)
     at = encounter(Observation(Pose2(13.0, 1.5), 15.0, 1.5, 2.0, 0.0))
     objective = make_agreement(grid, grid, [at], AugmentConfig(spread=2.0), AgreementConfig())
-    peak = polish(objective, Pose2(), at.x_mov, 2.0)
+    peak = polish(objective, Pose2(), coupled_window([at], WindowConfig()), 2.0)
     covariance = covariance_of(peak, at.x_mov, 0.5, WIDEST, LEAST)
     x, y = (peak.T_ref_mov.apply(at.x_mov) - peak.T_ref_mov.xy).tolist()
     jacobian = np.array([[1, 0, -y], [0, 1, x], [0, 0, 1]])
