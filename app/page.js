@@ -298,6 +298,17 @@
     .mm-legend i.mm-star,.mm-legend i.mm-diamond{border-radius:1px;transform:rotate(45deg);width:8px;height:8px;outline:1px solid #374151}`;
   document.head.append(style);
 
+  // --- what the page tells ----------------------------------------------------------------------
+  // An event with the fields that app/channel.py expects of it. Sent past viser's own throttle, which
+  // keeps only the last message of every 50 ms; the number tells two equal events apart.
+  let told = 0;
+  S.tell = (name, fields) => {
+    const m = viewer();
+    if (!m || !S.channel) return;
+    told += 1;
+    m.sendMessage({ type: "GuiUpdateMessage", uuid: S.channel, updates: { value: JSON.stringify([told, name, fields || {}]) } });
+  };
+
   // --- what the server sends --------------------------------------------------------------------
   S.reset = () => { Object.assign(S, blank()); canvas = null; };
   S.pixel = (point, frame) => { // where a point of the scene is in the window; for tests
@@ -330,6 +341,7 @@
       S.look = message.look;
       if (S.follow || turning) aim(true);
     }
+    if (message.channel) S.channel = message.channel;
     if (message.background && viewer() && viewer().canvas) viewer().canvas.style.background = message.background;
     S.background = message.background || S.background;
     S.applied += 1; S.dirty = true;

@@ -12,6 +12,7 @@ from algorithms.casefiles import Case
 from algorithms.errors import MapMergeError, TooLargeError
 from algorithms.steps import AugmentDetail, MergeResult, RefineDetail
 from app import words
+from app.channel import Channel
 from app.inputs import Inputs
 from app.layout import lay_out
 from app.legend import legend
@@ -40,6 +41,7 @@ class Page:
         self._client = client
         self._palette: Palette = LIGHT
         self._stage = Stage(client)
+        self._channel = Channel(client.gui, self._stage)
         self._maps = MapView(client, self._stage)
         self._heights = HeightsView(client, self._stage)
         self._swarm = SwarmSpaceView(self._stage)
@@ -56,6 +58,7 @@ class Page:
 
     def close(self) -> None:
         """The tab is gone."""
+        self._channel.close()
         self.session.close()
 
     # --- widgets ----------------------------------------------------------------------------------

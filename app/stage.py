@@ -82,6 +82,11 @@ class Stage:
         with self._lock:
             self._pending.update(dark=palette.dark, background=css(palette.unknown))
 
+    def listen(self, uuid: str) -> None:
+        """Have the page tell its events to this field; see app/channel.py."""
+        with self._lock:
+            self._pending["channel"] = uuid
+
     def flush(self) -> None:
         """Send what has gathered."""
         with self._lock:
