@@ -8,11 +8,7 @@
   if (window.mapmeld) { window.mapmeld.reset(); return; }
   const viewer = () => window.__viserMutable;
   const FOV = 4 * Math.PI / 180; // far and narrow: as good as parallel
-  const ORDER = ["floor", "window", "aug", "box", "trail", "swarm", "rival", "sight", "robots", "best", "axes", "readout"];
-  const lerp = (a, b, u) => a + (b - a) * u;
-  const LIGHTER = { "#0072b2": "#56b4e9", "#009e73": "#34d399", "#d55e00": "#fb923c" }; // words on dark ground
-  const smooth = (u) => u * u * (3 - 2 * u);
-  const wrap = (a) => a - 2 * Math.PI * Math.round(a / (2 * Math.PI));
+  const { lerp, smooth, wrap, words, glide, layers, scaleBar } = mapmeldInk;
 
   const blank = () => ({
     layers: {}, view: "map", follow: true, look: null, dark: false, hud: {}, dirty: true,
@@ -92,91 +88,18 @@
   }
   const metre = (camera) => ink.clientHeight / 2 / Math.tan(FOV / 2) / Math.max(1e-6, camera.position.z); // px
 
-  // --- ink --------------------------------------------------------------------------------------
-  function words(g, text, x, y, colour, size, align) {
-    g.font = `${size || 12}px system-ui, "Segoe UI", sans-serif`;
-    g.textAlign = align || "left"; g.textBaseline = "middle";
-    g.lineJoin = "round"; g.lineWidth = 4; g.setLineDash([]);
-    g.strokeStyle = S.dark ? "rgba(17,24,39,.85)" : "rgba(255,255,255,.9)";
-    g.strokeText(text, x, y); g.fillStyle = (S.dark && LIGHTER[colour]) || colour; g.fillText(text, x, y);
-  }
-  const SHAPES = {
-    robot(g, r) { g.moveTo(1.35 * r, 0); g.lineTo(-0.85 * r, 0.8 * r); g.lineTo(-0.45 * r, 0); g.lineTo(-0.85 * r, -0.8 * r); g.closePath(); },
-    diamond(g, r) { g.moveTo(r, 0); g.lineTo(0, r); g.lineTo(-r, 0); g.lineTo(0, -r); g.closePath(); },
-    dot(g, r) { g.arc(0, 0, r, 0, 7); },
-    star(g, r) { for (let i = 0; i < 10; i++) { const q = i % 2 ? 0.45 * r : r, a = Math.PI * (i / 5 - 0.5); g.lineTo(q * Math.cos(a), q * Math.sin(a)); } g.closePath(); },
-  };
-  function mark(g, camera, item) {
-    const [x, y] = project(camera, item.f, item.p), r = item.r || 8;
-    const turn = item.a === undefined ? 0 : item.a + (item.f === "mov" ? S.mov.theta : 0);
-    g.save(); g.translate(x, y); g.rotate(-turn); g.setLineDash([]); g.beginPath();
-    if (item.s === "none") { /* words alone */ } else if (item.s === "cross" || item.s === "ring") {
-      if (item.s === "ring") g.arc(0, 0, r, 0, 7);
-      else { g.moveTo(-r, 0); g.lineTo(r, 0); g.moveTo(0, -r); g.lineTo(0, r); }
-      g.lineWidth = 5; g.strokeStyle = S.dark ? "#111827" : "#fff"; g.stroke();
-      g.lineWidth = 2; g.strokeStyle = item.c; g.stroke();
-    } else {
-      SHAPES[item.s](g, r);
-      g.lineWidth = 4; g.strokeStyle = item.rim || (S.dark ? "#111827" : "#fff"); g.lineJoin = "round"; g.stroke();
-      g.fillStyle = item.c; g.fill();
-      if (item.rim) { g.lineWidth = 1.5; g.stroke(); }
-    }
-    g.restore();
-    if (item.t) words(g, item.t, x + (item.dx ?? r + 5), y + (item.dy ?? 0), item.tc || item.c, item.size, item.align);
-  }
-  function path(g, camera, item) {
-    g.beginPath();
-    let last = null;
-    for (const p of item.p) { const [x, y] = project(camera, item.f, p); last ? g.lineTo(x, y) : g.moveTo(x, y); last = [x, y]; }
-    if (item.close) g.closePath();
-    if (item.fill) { g.fillStyle = item.fill; g.fill(); }
-    if (item.c) {
-      if (item.halo) { g.setLineDash([]); g.lineWidth = (item.w || 1.5) + 3; g.strokeStyle = S.dark ? "rgba(17,24,39,.8)" : "rgba(255,255,255,.85)"; g.stroke(); }
-      g.setLineDash(item.d || []); g.lineWidth = item.w || 1.5; g.strokeStyle = item.c; g.stroke();
-    }
-    if (item.t && last) { const at = project(camera, item.f, item.tp || item.p[0]); words(g, item.t, at[0] + (item.dx || 0), at[1] + (item.dy || 0), item.tc || item.c, item.size || 11, item.align); }
-  }
-  // A cloud glides from its last state to its new one, so that the eye can follow single particles.
-  function cloud(g, camera, item, time) {
-    const u = item.old ? Math.min(1, (time - item.at) / item.ms) : 1;
-    if (u < 1) S.dirty = true;
-    const n = item.n, p = item.p, q = item.old || p, r = item.r || 3, k = item.n3 ? 3 : 2;
-    g.setLineDash([]); g.globalAlpha = item.alpha || 0.85;
-    g.fillStyle = item.c; g.strokeStyle = item.c; g.lineWidth = 1.2;
-    const at = [];
-    for (let i = 0; i < p.length; i += n) {
-      const point = [];
-      for (let j = 0; j < k; j++) point.push(lerp(q[i + j], p[i + j], u));
-      const s = project(camera, item.f, point);
-      at.push(s);
-      g.beginPath(); g.arc(s[0], s[1], r, 0, 7); g.fill();
-      if (!item.n3 && n > 2) { // the tick looks where map 2's x axis would
-        const a = lerp(q[i + 2], p[i + 2], u);
-        g.beginPath(); g.moveTo(s[0], s[1]); g.lineTo(s[0] + (r + 6) * Math.cos(a), s[1] - (r + 6) * Math.sin(a)); g.stroke();
-      }
-    }
-    g.globalAlpha = 1;
-    item.shown = at;
-  }
-  function scaleBar(g, camera) {
-    const px = metre(camera), most = 130 / px, power = 10 ** Math.floor(Math.log10(most));
-    const length = [5, 2, 1].map((k) => k * power).find((k) => k <= most), wide = length * px;
-    const x = 18, y = ink.clientHeight - 22, colour = S.dark ? "#F9FAFB" : "#111827";
-    for (const [width, stroke] of [[6, S.dark ? "#111827" : "#fff"], [2, colour]]) {
-      g.beginPath(); g.moveTo(x, y - 5); g.lineTo(x, y); g.lineTo(x + wide, y); g.lineTo(x + wide, y - 5);
-      g.setLineDash([]); g.lineJoin = "miter"; g.lineWidth = width; g.strokeStyle = stroke; g.stroke();
-    }
-    const label = length >= 1 ? `${length} m` : length >= 0.01 ? `${Math.round(length * 100)} cm` : `${+(length * 1000).toPrecision(1)} mm`;
-    words(g, label, x + wide / 2, y - 12, colour, 12, "center");
-    const nx = x + wide + 26; // north: the y axis of map 1
-    g.beginPath(); g.moveTo(nx, y - 16); g.lineTo(nx + 5, y); g.lineTo(nx, y - 4); g.lineTo(nx - 5, y); g.closePath();
-    g.lineWidth = 4; g.strokeStyle = S.dark ? "#111827" : "#fff"; g.stroke(); g.fillStyle = colour; g.fill();
-    words(g, "N", nx, y - 24, colour, 11, "center");
-    if (S.hud.readout) words(g, S.hud.readout, x, y - 54, colour, 12);
+  // --- ink: how it is drawn is in ink.js ----------------------------------------------------------
+  const viewOf = (camera) => ({
+    project: (frame, p) => project(camera, frame, p),
+    mov: S.mov, metre: metre(camera), wide: ink.clientWidth, high: ink.clientHeight, dark: S.dark,
+  });
+  function readings(g, view, camera, colour) { // what a click and the pointer read off the map
+    const x = 18, y = view.high - 22;
+    if (S.hud.readout) words(g, view, S.hud.readout, x, y - 54, colour, 12);
     if (pointer && S.hud.anchor) {
-      const x1 = (pointer[0] - ink.clientWidth / 2) / px + camera.position.x + S.hud.anchor[0];
-      const y1 = (ink.clientHeight / 2 - pointer[1]) / px + camera.position.y + S.hud.anchor[1];
-      words(g, `x ${x1.toFixed(2)} m   y ${y1.toFixed(2)} m   in map 1`, x, y - 34, colour, 11);
+      const x1 = (pointer[0] - view.wide / 2) / view.metre + camera.position.x + S.hud.anchor[0];
+      const y1 = (view.high / 2 - pointer[1]) / view.metre + camera.position.y + S.hud.anchor[1];
+      words(g, view, `x ${x1.toFixed(2)} m   y ${y1.toFixed(2)} m   in map 1`, x, y - 34, colour, 11);
     }
   }
   function paint(time) {
@@ -206,13 +129,9 @@
     const g = ink.getContext("2d");
     g.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     g.clearRect(0, 0, ink.clientWidth, ink.clientHeight);
-    const names = Object.keys(S.layers).sort((a, b) => ORDER.indexOf(a) - ORDER.indexOf(b));
-    for (const name of names) for (const item of S.layers[name]) {
-      if (item.k === "path") path(g, camera, item);
-      else if (item.k === "cloud") cloud(g, camera, item, time);
-      else mark(g, camera, item);
-    }
-    if (S.view === "map") scaleBar(g, camera);
+    const view = viewOf(camera);
+    if (layers(g, view, S.layers, time)) S.dirty = true;
+    if (S.view === "map") readings(g, view, camera, scaleBar(g, view));
   }
 
   // --- words over the map -----------------------------------------------------------------------
@@ -319,12 +238,7 @@
     const now = performance.now();
     for (const [name, items] of Object.entries(message.layers || {})) {
       const old = S.layers[name];
-      for (const [i, item] of (items || []).entries()) {
-        const before = old && old[i];
-        if (item.k === "cloud" && before && before.k === "cloud" && before.p.length === item.p.length && item.glide === before.glide) {
-          item.old = before.p; item.at = now; item.ms = Math.min(160, Math.max(30, now - (before.at || now - 60)));
-        } else if (item.k === "cloud") { item.at = now; item.ms = 1; }
-      }
+      for (const [i, item] of (items || []).entries()) glide(item, old && old[i], now);
       if (items) S.layers[name] = items; else delete S.layers[name];
     }
     if (message.mov) {

@@ -24,7 +24,7 @@ from app.panels.result import result_html
 from app.panels.run import HEIGHTS, MAP, SWARM, RunPanel, Wishes
 from app.panels.tuning import TuningPanel
 from app.session import Job, Session
-from app.stage import Stage, mark
+from app.stage import Stage, TabStage, mark
 from app.story import Story
 from app.views.heights import HeightsView
 from app.views.maps import MapView
@@ -40,7 +40,7 @@ class Page:
     def __init__(self, client: viser.ClientHandle, initial: Case | None) -> None:
         self._client = client
         self._palette: Palette = LIGHT
-        self._stage = Stage(client)
+        self._stage: Stage = TabStage(client)
         self._channel = Channel(client.gui, self._stage)
         self._maps = MapView(client, self._stage)
         self._heights = HeightsView(client, self._stage)

@@ -18,20 +18,27 @@ from algorithms.pose import FloatArray, Pose2
 from app.layout import Rect
 from app.palette import Palette, Rgb, css
 
-_SCRIPT = (Path(__file__).parent / "page.js").read_text(encoding="utf-8")
+# ink.js first: page.js draws with it, and so does a saved replay
+SCRIPTS = ("ink.js", "page.js")
+_SCRIPT = "\n".join((Path(__file__).parent / name).read_text(encoding="utf-8") for name in SCRIPTS)
 
 Item = dict[str, Any]
 
 
 class Stage:
-    """The browser's side of one tab; see page.js for what each item may hold."""
+    """What is to be drawn, gathered until it is flushed; see ink.js for what each item may hold.
 
-    def __init__(self, client: viser.ClientHandle) -> None:
-        self._client = client
+    Where it goes is up to the subclass: to a tab (TabStage), or into a recording.
+    """
+
+    def __init__(self) -> None:
         self._pending: dict[str, Any] = {}
         self._hud: dict[str, Any] = {}
         self._lock = RLock()  # widgets call from many threads; what gathers while one sends is not lost
-        self._run(_SCRIPT)
+
+    def send(self, message: dict[str, Any]) -> None:
+        """Take over what has gathered."""
+        raise NotImplementedError
 
     def layer(self, name: str, items: list[Item] | None) -> None:
         """Replace a layer of ink; None removes it."""
@@ -94,14 +101,28 @@ class Stage:
                 return
             message, self._pending = self._pending, {}
             # sent under the lock, too: an older word must not arrive after a newer one
-            self._run(f"window.mapmeld && window.mapmeld.apply({json.dumps(message, default=_plain)})")
+            self.send(message)
+
+
+class TabStage(Stage):
+    """The browser's side of one tab."""
+
+    def __init__(self, client: viser.ClientHandle) -> None:
+        super().__init__()
+        self._client = client
+        self._run(_SCRIPT)
+
+    def send(self, message: dict[str, Any]) -> None:
+        """Have the tab draw it."""
+        self._run(f"window.mapmeld && window.mapmeld.apply({json.dumps(message, default=plain)})")
 
     def _run(self, source: str) -> None:
         # viser's own way to run a script in one tab; it keeps order with the scene's messages
         self._client._websock_connection.queue_message(RunJavascriptMessage(source=source))
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """Arrays and their numbers as JSON can hold them."""
     if isinstance(value, np.ndarray):
         return np.round(value.astype(float), 4).tolist()
     if isinstance(value, np.generic):

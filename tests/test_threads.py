@@ -15,7 +15,7 @@ import viser
 
 from app.inputs import Inputs
 from app.panels.files import FilesPanel
-from app.stage import Stage
+from app.stage import TabStage
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def sent():
 @pytest.fixture
 def stage(sent):
     connection = SimpleNamespace(queue_message=lambda message: sent.append(message.source))
-    return Stage(SimpleNamespace(_websock_connection=connection))
+    return TabStage(SimpleNamespace(_websock_connection=connection))
 
 
 @pytest.fixture

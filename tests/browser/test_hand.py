@@ -7,7 +7,7 @@ from driver import settle
 
 from app.channel import Channel, Numbers
 from app.guard import guarded_server
-from app.stage import Stage
+from app.stage import TabStage
 
 pytestmark = pytest.mark.browser
 
@@ -20,7 +20,7 @@ def test_everything_the_page_tells_arrives_in_order(browser):
 
         @server.on_client_connect
         def _(client) -> None:
-            stage = Stage(client)
+            stage = TabStage(client)
             Channel(client.gui, stage).on("count", lambda at: told.append(at), at=Numbers(2, 2))
             stage.flush()
 
