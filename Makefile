@@ -8,7 +8,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help run test bench samples screenshots clean
+.PHONY: help run test bench samples screenshots equations clean
 
 help:
 	@echo "make run          open the tool on a sample, in the browser (ARGS=--no-browser: only serve it)"
@@ -16,6 +16,7 @@ help:
 	@echo "make bench        time the stages of a merge"
 	@echo "make samples      simulate the maps in sample_maps again"
 	@echo "make screenshots  take the README's pictures again"
+	@echo "make equations    typeset the equations in static/equations again"
 	@echo "make clean        remove the environment and everything that was made"
 
 run: $(VENV)/ready
@@ -38,6 +39,10 @@ samples: $(VENV)/ready
 screenshots: $(VENV)/ready-to-test
 	@chromium="$$($(BIN)/python tests/chromium.py)" && \
 	  CHROMIUM="$$chromium" $(BIN)/python tests/browser/screenshots.py $(or $(ARGS),static/screenshots swarm merged)
+
+equations: $(VENV)/ready
+	@$(PIP) install -e '.[equations]'
+	@$(BIN)/python tests/equations.py
 
 clean:
 	rm -rf $(VENV) build dist out *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis .benchmarks

@@ -70,7 +70,8 @@ def _bytes(step: Step) -> int:
     if not isinstance(step.detail, RefineDetail):
         return 0
     state = step.detail.state
-    return state.poses.nbytes + state.values.nbytes + state.own_poses.nbytes + state.own_values.nbytes
+    arrays = (state.poses, state.values, state.own_poses, state.own_values, state.pulls)
+    return sum(array.nbytes for array in arrays if array is not None)
 
 
 def _with_gaps(steps: list[Step]) -> list[Step]:

@@ -236,12 +236,14 @@ def _search(
         rng = np.random.default_rng([seed, 0, index])
         poses = rng.uniform(box.low, box.high, (config.swarm.particles, 3))
         poses[0] = box.centre
-        looked.append(replace(candidate, value=float(_values(objective, window, box, poses).max())))
+        looked.append(replace(candidate, value=float(values_in(objective, window, box, poses).max())))
     looked.sort(key=lambda candidate: -_known(candidate.value))
     yield CandidatesDetail(tuple(looked), objective, window)
 
 
-def _values(objective: Objective, window: Window | CoupledWindow, box: Box, poses: FloatArray) -> FloatArray:
+def values_in(
+    objective: Objective, window: Window | CoupledWindow, box: Box, poses: FloatArray
+) -> FloatArray:
     """(P,) values of (P, 3) coordinates in a box; −inf outside a coupled window."""
     transforms = box.transforms(poses)
     values = objective(transforms)
@@ -265,7 +267,7 @@ def _refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Itera
         rng = np.random.default_rng([seed, 1, index])
 
         def value(poses: FloatArray, box: Box = box) -> FloatArray:
-            return _values(found.objective, found.window, box, poses)
+            return values_in(found.objective, found.window, box, poses)
 
         for state in optimise(value, box, config.swarm, settled, rng):
             if _hopeless(state, answers):

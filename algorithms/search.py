@@ -23,6 +23,9 @@ class SearchState:
     own_poses, own_values : (P, 3), (P,) best that each particle has met; for samples, themselves
     best, best_value      : (3,) best met by anyone so far; never gets worse
     stopped               : why the search ended; None while it goes on
+    pulls                 : (3, P, 3) what brought the particles here from where they stood one iteration
+                            before: their own motion, the pull of the swarm's best, that of their own
+                            best, each times ω, eq. (21); None before the first move, and for samples
     """
 
     iteration: int
@@ -33,6 +36,7 @@ class SearchState:
     best: FloatArray
     best_value: float
     stopped: str | None = None
+    pulls: FloatArray | None = None
 
 
 Optimiser = Callable[..., Iterator[SearchState]]

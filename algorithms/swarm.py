@@ -53,6 +53,7 @@ def swarm(
     poses = rng.uniform(box.low, box.high, shape)
     velocity = np.zeros(shape)
     own, own_values = poses.copy(), np.full(config.particles, -np.inf)
+    pulls: FloatArray | None = None
     for iteration in range(config.iterations):
         values = value(poses)
         better = values > own_values
@@ -69,13 +70,14 @@ def swarm(
             stopped = f"all {config.iterations} iterations used; the swarm had not settled"
         yield SearchState(
             iteration, poses.copy(), values, own.copy(), own_values.copy(), best.copy(),
-            float(own_values.max()), stopped,
+            float(own_values.max()), stopped, pulls,
         )  # fmt: skip
         if stopped:
             return
         kappa_best, kappa_own = rng.random((2, *shape))
-        pull = kappa_best * config.tau * to_best + kappa_own * config.tau * to_own
-        velocity = config.omega * (velocity + pull)  # eq. (21)
+        by_best, by_own = kappa_best * config.tau * to_best, kappa_own * config.tau * to_own
+        pulls = config.omega * np.stack([velocity, by_best, by_own])
+        velocity = config.omega * (velocity + (by_best + by_own))  # eq. (21)
         moved = poses + velocity  # eq. (22)
         poses = keep_inside(moved, box)
         at_border = (moved < box.low) | (moved > box.high)

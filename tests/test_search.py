@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -113,3 +115,19 @@ def test_an_angle_that_runs_round_keeps_its_direction(poses):
 def test_monte_carlo_draws_as_many_samples_as_the_swarm_has_particle_steps():
     assert len(search(monte_carlo, particles=30, iterations=7)) == 7
     assert search(monte_carlo, particles=30, iterations=7)[0].poses.shape == (30, 3)
+
+
+def test_the_three_pulls_are_what_moves_a_particle():
+    states = search(swarm, seed=3, particles=20, iterations=12)
+    assert states[0].pulls is None
+    for before, after in itertools.pairwise(states):
+        moved = before.poses + after.pulls.sum(axis=0)  # eqs. (21), (22)
+        assert np.allclose(keep_inside(moved, BOX), after.poses)
+        _, to_best, to_own = after.pulls
+        most = 0.73 * 2.05
+        assert np.all(np.abs(to_best) <= most * np.abs(before.best - before.poses) + 1e-12)
+        assert np.all(np.abs(to_own) <= most * np.abs(before.own_poses - before.poses) + 1e-12)
+    free = np.all((states[1].poses > BOX.low) & (states[1].poses < BOX.high), axis=1)
+    came = states[1].poses - states[0].poses
+    assert free.any()
+    assert np.allclose(states[2].pulls[0][free], 0.73 * came[free])
