@@ -2,11 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from algorithms.casefiles import Case, Truth
 from algorithms.gridmap import GridMap
 from algorithms.observation import Encounter, Observation, encounter, name_of
+
+
+@dataclass(frozen=True)
+class Upload:
+    """One file as the browser sent it; its name is never used as a path."""
+
+    name: str
+    content: bytes
+
+
+@dataclass(frozen=True, eq=False)
+class Files:
+    """Where inputs came from.
+
+    sample  : name of the sample; "" where they are uploads
+    uploads : files by what they are for
+    """
+
+    sample: str = ""
+    uploads: Mapping[str, Upload] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)

@@ -221,6 +221,7 @@
   // An event with the fields that app/channel.py expects of it. Sent past viser's own throttle, which
   // keeps only the last message of every 50 ms; the number tells two equal events apart.
   let told = 0;
+  S.heard = []; // functions of further scripts that are told every message of the server
   S.tell = (name, fields) => {
     const m = viewer();
     if (!m || !S.channel) return;
@@ -258,6 +259,7 @@
     if (message.channel) S.channel = message.channel;
     if (message.background && viewer() && viewer().canvas) viewer().canvas.style.background = message.background;
     S.background = message.background || S.background;
+    for (const hear of S.heard) hear(message);
     S.applied += 1; S.dirty = true;
     showHud();
   };

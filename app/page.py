@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from threading import RLock
 from typing import Any, Literal
 
 import numpy as np
@@ -13,7 +14,9 @@ from algorithms.errors import MapMergeError, TooLargeError
 from algorithms.steps import AugmentDetail, MergeResult, RefineDetail
 from app import words
 from app.channel import Channel
+from app.desk import Desk
 from app.inputs import Inputs
+from app.keep import Keep, Kept
 from app.layout import lay_out
 from app.legend import legend
 from app.palette import DARK, LIGHT, Palette
@@ -26,6 +29,7 @@ from app.panels.tuning import TuningPanel
 from app.session import Job, Session
 from app.stage import Stage, TabStage, mark
 from app.story import Story
+from app.timeline import Timeline
 from app.views.heights import HeightsView
 from app.views.maps import MapView
 from app.views.plots import PlotDock
@@ -37,7 +41,7 @@ log = logging.getLogger(__name__)
 class Page:
     """Listens to its session and draws; the callbacks of its widgets only ask."""
 
-    def __init__(self, client: viser.ClientHandle, initial: Case | None) -> None:
+    def __init__(self, client: viser.ClientHandle, initial: Case | None, keep: Keep) -> None:
         self._client = client
         self._palette: Palette = LIGHT
         self._stage: Stage = TabStage(client)
@@ -51,13 +55,42 @@ class Page:
         self._result: MergeResult | None = None  # of the last run that came to its end
         self._config: Any = None  # it ran with
         self._merged = False  # from the first Merge on, a moved slider runs the whole method again
+        self._asked = False  # whether anything was asked for at all
+        self._keep, self._key, self._gone = keep, "", False
+        self._turn = RLock()  # wishes come one after the other; taken before session.drawing
         self.session = Session(self)
         inputs = Inputs.of(initial) if initial else Inputs()
         self._build(inputs.name)
-        self._load(inputs)
+        self._channel.on("hello", lambda **who: self._greet(inputs, **who), key=str, again=bool)
+        self._stage.flush()  # the page says hello when it has read where to
+
+    def _greet(self, initial: Inputs, key: str, again: bool) -> None:
+        """The page is there: what it left behind comes back; otherwise it begins."""
+        with self._turn:
+            if self._gone:
+                return
+            self._key, kept = self._keep.enter(key, again, self._leave)
+            self._stage.remember(self._key)
+            if kept is None:
+                self._load(initial)
+            else:
+                self._run.dark = kept.dark
+                self._timeline.resume(kept.history)
 
     def close(self) -> None:
-        """The tab is gone."""
+        """The tab is gone; what it leaves behind is kept for a while."""
+        with self._turn:
+            self._gone = True
+            if self._key:
+                self._keep.leave(self._key)
+            self._end()
+
+    def _leave(self) -> Kept | None:
+        self._end()
+        history = self._timeline.history
+        return None if history is None else Kept(history, self._run.dark)
+
+    def _end(self) -> None:
         self._channel.close()
         self.session.close()
 
@@ -81,10 +114,11 @@ class Page:
                 dark=self._switch,
             ),
         )
-        self._files = FilesPanel(gui, self._load, self._report, chosen)
+        self._files = FilesPanel(gui, self._load, self._report, chosen, self._turn)
         self._observation = ObservationPanel(gui)
-        self._tuning = TuningPanel(gui, self._changed, self._report)
+        self._tuning = TuningPanel(gui, self._changed, self._report, self._turn)
         self._export = ExportPanel(client)
+        self._timeline = Timeline(gui, self._channel, self._turn, self._restore)
         self._plots = PlotDock(client, self._press)
         client.scene.on_click()(self._read_out)
 
@@ -103,19 +137,45 @@ class Page:
     def _load(self, inputs: Inputs) -> None:
         """Show these inputs in place of everything there was."""
         self.session.stop()
-        with self.session.drawing:
-            self._show_inputs(inputs)
+        with self._turn, self.session.drawing:
+            if self._show_inputs(inputs):
+                self._timeline.note(self._desk())
 
-    def _show_inputs(self, inputs: Inputs) -> None:
+    def _desk(self) -> Desk:
+        """What is on the page, before anything has come of it."""
+        tuning, goal = self._tuning, "merge" if self._merged else "candidates" if self._asked else None
+        return Desk(self._inputs, self._files.files, tuning.method, tuning.config, self._run.seed, goal)
+
+    def _restore(self, desk: Desk) -> None:
+        """Put a desk back: as it was, or worked out again where that has been let go of."""
+        self.session.stop()
+        self._tuning.restore(desk.method, desk.config)
+        self._run.restore(desk.method, desk.seed)
+        self._files.restore(desk.files)
+        with self.session.drawing:
+            bare = desk.goal is None or (desk.goal == "candidates" and self._result is not None)
+            if desk.inputs is not self._inputs or bare:
+                self._show_inputs(desk.inputs)
+            self._merged, self._asked = desk.goal == "merge", desk.goal is not None
+            if desk.outcome is not None and desk.result is not None:
+                self._answered(desk.outcome, desk.result, desk.config, live=False)
+                self._stage.flush()
+            elif desk.goal is not None:
+                job = self._job(goal=desk.goal)
+                if job is not None:
+                    self.session.request(job)
+
+    def _show_inputs(self, inputs: Inputs) -> bool:
         try:
             layout = lay_out(inputs.ref, inputs.mov, inputs.at)
         except MapMergeError as error:
             self._report(error)
-            return
+            return False
         if self._notice is not None:
             self._notice.remove()
             self._notice = None
-        self._inputs, self._result, self._story, self._merged = inputs, None, Story(), False
+        self._inputs, self._result, self._story = inputs, None, Story()
+        self._merged = self._asked = False
         self._observation.show(inputs)
         self._plots.clear()
         self._heights.hide()
@@ -139,6 +199,7 @@ class Page:
             legend=legend(self._palette, MAP, self._story),
         )
         self._stage.flush()
+        return True
 
     def _job(self, **how: Any) -> Job | None:
         i = self._inputs
@@ -157,8 +218,13 @@ class Page:
     def _merge(self) -> None:
         self._tuning.sync()
         job = self._job(pace=self._run.pace, again=True)
-        if job is not None:
-            self._merged = True
+        if job is None:
+            return
+        with self._turn, self.session.drawing:
+            self._merged = self._asked = True
+            desk, before = self._desk(), self._timeline.desk
+            if before is None or before.outcome is None or not before.same_wish(desk):
+                self._timeline.note(desk, "merge")
             self._plots.follow()
             self._stage.look_down(self._maps.layout.view(), follow=True)
             if self._run.view != MAP:
@@ -167,15 +233,17 @@ class Page:
 
     def _changed(self) -> None:
         """A setting was moved: what is on the screen is out of date."""
-        live = self.session.busy and self._merged
-        goal = "merge" if self._merged else "candidates"
-        job = self._job(goal=goal, pace=self._run.pace if live else 0.0)
-        if job is None:
-            return
-        if self._result is not None:
-            self._plots.tell(result_html(self._result, self._inputs, self._config, faded=True))
-            self._export.offer(None)
-        self.session.request(job)
+        with self._turn, self.session.drawing:
+            live = self.session.busy and self._merged
+            goal = "merge" if self._merged else "candidates"
+            job = self._job(goal=goal, pace=self._run.pace if live else 0.0)
+            self._asked = self._asked or job is not None
+            if not self._timeline.note(self._desk()) or job is None:
+                return
+            if self._result is not None:
+                self._plots.tell(result_html(self._result, self._inputs, self._config, faded=True))
+                self._export.offer(None)
+            self.session.request(job)
 
     def _set_speed(self) -> None:
         self.session.set_pace(self._run.pace or 0.01)  # a run that is told at a pace comes to its end so
@@ -265,25 +333,29 @@ class Page:
 
     def ended(self, job: Job, story: Story) -> None:
         """The run came to its goal."""
-        self._story = story
         self._run.stop.disabled = True
         result = story.get(MergeResult)
         with self._client.atomic():
-            self._plots.show(story, follow=job.goal == "merge")
             if result is None:
+                self._story = story
+                self._plots.show(story, follow=False)
                 self._maps_preview(job)
                 self._stage.hud(state=words.UP_TO_DATE, mood="idle", progress=None)
             else:
-                self._result = result
-                self._config = job.config
-                self._plots.tell(result_html(result, self._inputs, job.config))
-                self._export.offer(result)
-                accepted = result.verdict.accepted
-                self._draw(story, live=job.pace > 0)
-                self._stage.hud(mood="accepted" if accepted else "refused", progress=None)
-                self._say(story, result)
+                self._answered(story, result, job.config, live=job.pace > 0)
+                self._timeline.amend(story)
             self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
             self._stage.flush()
+
+    def _answered(self, story: Story, result: MergeResult, config: Any, live: bool) -> None:
+        """Show an answer and everything that led to it."""
+        self._story, self._result, self._config = story, result, config
+        self._plots.show(story, follow=True)
+        self._plots.tell(result_html(result, self._inputs, config))
+        self._export.offer(result)
+        self._draw(story, live=live)
+        self._stage.hud(mood="accepted" if result.verdict.accepted else "refused", progress=None)
+        self._say(story, result)
 
     def stopped(self, job: Job, story: Story) -> None:
         """Someone pressed Stop."""

@@ -13,6 +13,7 @@ import viser
 from algorithms.casefiles import Case
 from algorithms.errors import MapMergeError
 from app.guard import guarded_server
+from app.keep import Keep
 from app.page import Page
 
 log = logging.getLogger(__name__)
@@ -42,13 +43,14 @@ def make_server(host: str = "127.0.0.1", port: int = 8080, initial: Case | None 
     camera.position, camera.look_at, camera.up = (0.0, 0.0, 600.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)
     camera.fov, camera.near, camera.far = radians(4), 10.0, 5000.0
     pages: dict[int, Page] = {}
+    keep = Keep()
 
     @server.on_client_connect
     def _(client: viser.ClientHandle) -> None:
         if len(pages) >= MOST_TABS:
             client.gui.add_markdown(f"{MOST_TABS} tabs are open already. Close one, then reload this page.")
             return
-        pages[client.client_id] = Page(client, initial)
+        pages[client.client_id] = Page(client, initial, keep)
 
     @server.on_client_disconnect
     def _(client: viser.ClientHandle) -> None:

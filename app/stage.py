@@ -19,7 +19,7 @@ from app.layout import Rect
 from app.palette import Palette, Rgb, css
 
 # ink.js first: page.js draws with it, and so does a saved replay
-SCRIPTS = ("ink.js", "page.js")
+SCRIPTS = ("ink.js", "page.js", "hand.js")
 _SCRIPT = "\n".join((Path(__file__).parent / name).read_text(encoding="utf-8") for name in SCRIPTS)
 
 Item = dict[str, Any]
@@ -93,6 +93,11 @@ class Stage:
         """Have the page tell its events to this field; see app/channel.py."""
         with self._lock:
             self._pending["channel"] = uuid
+
+    def remember(self, key: str) -> None:
+        """Have the tab keep the key to what it leaves behind; see app/keep.py."""
+        with self._lock:
+            self._pending["key"] = key
 
     def flush(self) -> None:
         """Send what has gathered."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from html import escape
 from pathlib import PurePath
 from threading import RLock
@@ -14,19 +13,11 @@ from algorithms.casefiles import observations_from_bytes, read_case
 from algorithms.errors import MapMergeError
 from algorithms.mapio import map_from_bytes
 from app import paths
-from app.inputs import Inputs
+from app.inputs import Files, Inputs, Upload
 from app.palette import QUIET
 
 NONE = "(choose)"
 Report = Callable[[MapMergeError], None]
-
-
-@dataclass(frozen=True)
-class Upload:
-    """One file as the browser sent it; its name is never used as a path."""
-
-    name: str
-    content: bytes
 
 
 # key -> label of the button, what the picker offers
@@ -64,13 +55,18 @@ class FilesPanel:
     """Chooses what is merged. ``load`` gets the inputs, ``report`` what is wrong with a file."""
 
     def __init__(
-        self, gui: viser.GuiApi, load: Callable[[Inputs], None], report: Report, chosen: str
+        self,
+        gui: viser.GuiApi,
+        load: Callable[[Inputs], None],
+        report: Report,
+        chosen: str,
+        turn: RLock | None = None,
     ) -> None:
         self._load, self._report = load, report
         self._uploads: dict[str, Upload] = {}
         # viser calls back from a thread of its own for each file: two that were dropped together must
         # not be read, and shown, across each other
-        self._turn = RLock()
+        self._turn = turn or RLock()
         samples = paths.samples()
         names = [chosen] if chosen and chosen not in samples else []
         with gui.add_folder("Maps", order=10.0):
@@ -88,6 +84,20 @@ class FilesPanel:
                     button.on_upload(lambda _, key=key, button=button: self._take_upload(key, button.value))
                 gui.add_button("Forget uploads", color=QUIET).on_click(lambda _: self._forget())
         self._taken = chosen or NONE
+
+    @property
+    def files(self) -> Files:
+        """Where what is on the page came from."""
+        return Files("" if self._taken == NONE else self._taken, dict(self._uploads))
+
+    def restore(self, files: Files) -> None:
+        """Show again where inputs came from, and load nothing."""
+        with self._turn:
+            self._uploads = dict(files.uploads)
+            self._status.content = self._table()
+            self._taken = files.sample or NONE
+            if self._sample.value != self._taken:
+                self._sample.value = self._taken
 
     def _take_sample(self) -> None:
         with self._turn:

@@ -46,18 +46,19 @@ class RunPanel:
         self._view.on_click(lambda _: wishes.view())
         with gui.add_folder("Run", order=50):
             titles = {method.title: name for name, method in METHODS.items()}
-            method = gui.add_dropdown(
+            self._method = gui.add_dropdown(
                 "Method", tuple(titles), hint="The way to merge; each has its own defaults."
             )
-            method.on_update(lambda _: wishes.method(titles[method.value]))
+            self._method.on_update(lambda _: wishes.method(titles[self._method.value]))
             self._seed = gui.add_number(
                 "Seed", 0, min=0, max=2**31 - 1, step=1, hint="The same seed gives the same swarm."
             )
-            self._seed.on_update(lambda _: wishes.changed())
+            # where it is set from here, nobody has wished for anything
+            self._seed.on_update(lambda event: wishes.changed() if event.client_id is not None else None)
             self._follow = gui.add_checkbox("Camera follows", True, hint="The camera goes with the run.")
             gui.add_button("Show everything", color=QUIET).on_click(lambda _: wishes.fit())
-            dark = gui.add_checkbox("Dark", False, hint="Light writing on a dark page.")
-            dark.on_update(lambda _: wishes.dark(dark.value))
+            self._dark = gui.add_checkbox("Dark", False, hint="Light writing on a dark page.")
+            self._dark.on_update(lambda _: wishes.dark(self._dark.value))
 
     @property
     def view(self) -> str:
@@ -78,6 +79,24 @@ class RunPanel:
     def seed(self) -> int:
         """Where the luck of the swarm comes from."""
         return int(self._seed.value)
+
+    @property
+    def dark(self) -> bool:
+        """Whether the page is dark."""
+        return self._dark.value
+
+    @dark.setter
+    def dark(self, dark: bool) -> None:
+        if self._dark.value != dark:
+            self._dark.value = dark
+
+    def restore(self, method: str, seed: int) -> None:
+        """Show this method and this seed."""
+        title = METHODS[method].title
+        if self._method.value != title:
+            self._method.value = title
+        if self._seed.value != seed:
+            self._seed.value = seed
 
     @property
     def follow(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from threading import RLock, get_ident
 from typing import Any
 
 import viser
@@ -62,7 +63,11 @@ class TuningPanel:
     """Owns the config. ``changed`` is called with it after every change by the person."""
 
     def __init__(
-        self, gui: viser.GuiApi, changed: Callable[[], None], report: Callable[[MapMergeError], None]
+        self,
+        gui: viser.GuiApi,
+        changed: Callable[[], None],
+        report: Callable[[MapMergeError], None],
+        turn: RLock | None = None,
     ) -> None:
         self._gui, self._changed, self._report = gui, changed, report
         self._handles: dict[Path, Any] = {}
@@ -70,18 +75,33 @@ class TuningPanel:
         self._folders: dict[str, Any] = {}
         self._notes: dict[str, Any] = {}
         self._cells: tuple[float, ...] = ()
+        self._turn = turn or RLock()  # widgets call back from many threads
+        self._writer = 0  # a value that is written calls back at once, half-way through the others
         self.method = DEFAULT_METHOD
         self.config: Any = METHODS[self.method].defaults
         self._build()
 
     def choose(self, method: str) -> None:
         """Take another method, at its defaults."""
-        if method != self.method:
-            self.method, self.config = method, METHODS[method].defaults
-            for folder in self._folders.values():
-                folder.remove()
-            self._build()
-            self._changed()
+        with self._turn:
+            if method == self.method:
+                return
+            self._take(method, METHODS[method].defaults)
+        self._changed()
+
+    def restore(self, method: str, config: Any) -> None:
+        """Show this method with these settings."""
+        with self._turn:
+            if method != self.method:
+                self._take(method, METHODS[method].defaults)
+            self.config = config
+            self._write(config)
+
+    def _take(self, method: str, config: Any) -> None:
+        self.method, self.config = method, config
+        for folder in self._folders.values():
+            folder.remove()
+        self._build()
 
     def resolutions(self, *cells: float) -> None:
         """Metres per cell of the maps, so that lengths are shown in cells, too."""
@@ -170,35 +190,45 @@ class TuningPanel:
             self._write(self.config)
 
     def _read(self) -> None:
-        try:
-            config = self.read()
-        except SettingError as error:
-            self._report(error)
-            self._write(self.config)
+        if self._writer == get_ident():
             return
-        if config != self.config:
+        with self._turn:
+            try:
+                config = self.read()
+            except SettingError as error:
+                self._report(error)
+                self._write(self.config)
+                return
+            if config == self.config:
+                return
             self.config = config
             self._show_cells()
             self._hide_idle()
-            self._changed()
+        self._changed()
 
     def _reset(self, mine: tuple[Path, ...]) -> None:
-        config = self.config
-        for path in mine:
-            config = with_value(config, path, self._settings[path].default)
-        if config != self.config:
+        with self._turn:
+            config = self.config
+            for path in mine:
+                config = with_value(config, path, self._settings[path].default)
+            if config == self.config:
+                return
             self.config = config
             self._write(config)
-            self._show_cells()
-            self._hide_idle()
-            self._changed()
+        self._changed()
 
     def _write(self, config: Any) -> None:
-        for path, handle in self._handles.items():
-            value, setting = value_at(config, path), self._settings[path]
-            shown = word_for(setting, value) if setting.choices is not None else value
-            if handle.value != shown:
-                handle.value = shown
+        self._writer = get_ident()
+        try:
+            for path, handle in self._handles.items():
+                value, setting = value_at(config, path), self._settings[path]
+                shown = word_for(setting, value) if setting.choices is not None else value
+                if handle.value != shown:
+                    handle.value = shown
+        finally:
+            self._writer = 0
+        self._show_cells()
+        self._hide_idle()
 
     def _hide_idle(self) -> None:
         """Show the settings that do something, and the folders that hold one."""
