@@ -34,8 +34,8 @@ class VerdictConfig:
     wall: Annotated[float, Bounds(0, 200, 1, "m", "", "shared wall")] = 18.0
     """Wall that both robots should have seen, below which nothing can be said."""
     plenty: Annotated[float, Bounds(0, 200, 1, "m", "", "plenty of wall")] = 30.0
-    """Wall that both robots should have seen, below which any other answer with half the value is a
-    reason to refuse: so little fits in several places by chance."""
+    """Wall that both robots should have seen, below which a rival counts with less than that share, at
+    the least wall with half of it, whatever contradicts it: so little fits in several places by chance."""
     bent_wall: Annotated[float, Bounds(0, 500, 5, "m", "", "shared wall, bent")] = 60.0
     """The same for bent maps: what is vague must be long."""
     ambiguity: Annotated[float, Bounds(0, 1, 0.01, "", "", "rival")] = 0.8
@@ -178,8 +178,10 @@ def _ambiguous(weighed: Evidence, rival: Rival, config: VerdictConfig) -> bool:
     is to be feared even with half the value, where the answer itself is contradicted.
     """
     clean = config.contradiction
-    if weighed.agreeing + weighed.contradicting < config.plenty:
-        return rival.share > HALF
+    shared = weighed.agreeing + weighed.contradicting
+    if shared < config.plenty:
+        limit = np.interp(shared, (config.wall, config.plenty), (HALF, config.ambiguity))
+        return rival.share > float(limit)
     if rival.share > config.ambiguity:
         return rival.evidence.contradiction <= max(clean, 3 * weighed.contradiction)
     return rival.evidence.contradiction <= clean < weighed.contradiction

@@ -98,7 +98,16 @@ def test_a_weaker_rival_counts_where_it_is_clean_and_the_answer_is_not():
     assert "another answer, 180° apart, is contradicted less" in doubted.reason
 
 
-def test_where_little_wall_speaks_any_rival_of_half_the_value_counts():
+@given(st.floats(18, 100), st.floats(18, 100), st.floats(0.5, 1), st.floats(0.5, 1))
+def test_less_wall_and_a_nearer_rival_never_turn_a_refusal_into_a_merge(wall, other, share, higher):
+    least, most = sorted((wall, other))
+    near, nearer = sorted((share, higher))
+    doubted = verdict_on(after_slipping(0, 0, least), rivals=[Rival(TURNED, nearer, CLEAN)])
+    assured = verdict_on(after_slipping(0, 0, most), rivals=[Rival(TURNED, near, CLEAN)])
+    assert assured.accepted or not doubted.accepted
+
+
+def test_where_little_wall_speaks_a_rival_counts_whatever_contradicts_it():
     rival = Rival(TURNED, 0.6, after_slipping(0.5, 0.5, 100.0))
     assert verdict_on(after_slipping(0.0, 0.0, 40.0), rivals=[rival]).accepted
     little = verdict_on(after_slipping(0.0, 0.0, 20.0), rivals=[rival])
