@@ -303,7 +303,7 @@ def prove(
     if not answers and search.empty:
         yield state("the window holds no transform of the lattice")
     elif not answers:
-        yield state(f"proven: no transform has a value above {worth:g}")
+        yield state(f"no transform has a value above {worth:g}")
     elif not proven:
         proven = True
         leading = (-np.inf, None)
