@@ -1,0 +1,113 @@
+"""Parts of maps as pixels, laid anywhere and seen at any size: no thin wall is lost.
+
+Row 0 is the top: these pixels are for a screen.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.augment import AugmentedMap
+from algorithms.gridmap import OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap
+from algorithms.pose import FloatArray, Pose2
+from app.layout import Rect
+from app.palette import Palette, Rgb, viridis
+
+Pixels = NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class View:
+    """A rectangle of the plane on a raster of pixels.
+
+    rect          : x low, y low, x high, y high; metres
+    wide, high    : pixels
+    """
+
+    rect: Rect
+    wide: int
+    high: int
+
+    def blank(self, palette: Palette) -> Pixels:
+        """Nothing known."""
+        return np.full((self.high, self.wide, 3), palette.unknown, dtype=np.uint8)
+
+    def places(self) -> FloatArray:
+        """(H·W, 2) middles of the pixels; metres."""
+        x0, y0, x1, y1 = self.rect
+        x = x0 + (np.arange(self.wide) + 0.5) / self.wide * (x1 - x0)
+        y = y1 - (np.arange(self.high) + 0.5) / self.high * (y1 - y0)
+        return np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+
+    def pixels_of(self, points: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp], BoolArray]:
+        """Row and column of (N, 2) points, and which of them are in view."""
+        x0, y0, x1, y1 = self.rect
+        col = np.floor((points[:, 0] - x0) / (x1 - x0) * self.wide).astype(np.intp)
+        row = np.floor((y1 - points[:, 1]) / (y1 - y0) * self.high).astype(np.intp)
+        return row, col, (row >= 0) & (row < self.high) & (col >= 0) & (col < self.wide)
+
+
+def around(centre: FloatArray, half: float, aspect: float = 1.0) -> Rect:
+    """A rectangle about a place, ``half`` metres to the left and right, 1/aspect of it up and down."""
+    x, y = centre.tolist()
+    return x - half, y - half / aspect, x + half, y + half / aspect
+
+
+def _cells_below(grid: GridMap, view: View, T: Pose2) -> tuple[NDArray[np.int8], BoolArray]:
+    at = np.floor(grid.grid_coordinates(T.inverse().apply(view.places()))).astype(np.intp)
+    inside = np.all((at >= 0) & (at < (grid.width, grid.height)), axis=1)
+    values = np.full(len(at), UNKNOWN, dtype=np.int8)
+    values[inside] = grid.cells[at[inside, 1], at[inside, 0]]
+    return values.reshape(view.high, view.wide), inside
+
+
+def known(grid: GridMap, view: View, T: Pose2 | None = None) -> BoolArray:
+    """(H, W) where a map that lies at T knows something."""
+    return np.asarray(_cells_below(grid, view, T or Pose2())[0] != UNKNOWN)
+
+
+def walls(grid: GridMap, view: View, T: Pose2 | None = None) -> BoolArray:
+    """(H, W) where a map that lies at T has a wall."""
+    T = T or Pose2()
+    values, _ = _cells_below(grid, view, T)
+    mask = np.asarray(values >= OCCUPIED_FROM)
+    row, col, seen = view.pixels_of(T.apply(grid.points))  # from afar a pixel holds many cells
+    mask[row[seen], col[seen]] = True
+    return mask
+
+
+def draw_map(
+    view: View,
+    palette: Palette,
+    grid: GridMap,
+    colour: Rgb,
+    T: Pose2 | None = None,
+    onto: Pixels | None = None,
+) -> Pixels:
+    """A map's floor and walls; ``onto`` pixels that are there already, whose walls are kept."""
+    pixels = view.blank(palette) if onto is None else onto
+    blank = np.all(pixels == palette.unknown, axis=-1)
+    pixels[known(grid, view, T) & blank] = palette.free
+    pixels[walls(grid, view, T)] = colour
+    return pixels
+
+
+def draw_levels(view: View, palette: Palette, lifted: AugmentedMap, T: Pose2 | None = None) -> Pixels:
+    """A map's walls in the colours of their levels, eq. (4); walls too far to count keep a faint grey."""
+    T = T or Pose2()
+    faint = tuple((2 * a + b) // 3 for a, b in zip(palette.free, palette.margin, strict=True))
+    pixels = draw_map(view, palette, lifted.grid, faint, T)  # type: ignore[arg-type]
+    share = np.zeros(pixels.shape[:2])
+    levels = np.zeros(lifted.grid.cells.shape)
+    levels[lifted.rows, lifted.cols] = lifted.levels / lifted.peak
+    at = np.floor(lifted.grid.grid_coordinates(T.inverse().apply(view.places()))).astype(np.intp)
+    inside = np.all((at >= 0) & (at < (lifted.grid.width, lifted.grid.height)), axis=1)
+    share.ravel()[inside] = levels[at[inside, 1], at[inside, 0]]
+    row, col, seen = view.pixels_of(T.apply(lifted.points))
+    np.maximum.at(share, (row[seen], col[seen]), lifted.levels[seen] / lifted.peak)
+    up = share > 0.004
+    pixels[up] = viridis(share[up])
+    return pixels

@@ -1,0 +1,206 @@
+"""The pictures of the lesson: whole SVGs of what the run found, light and dark, wherever a dial stands."""
+
+from __future__ import annotations
+
+from itertools import product
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from algorithms.augment import augment
+from algorithms.casefiles import Case
+from algorithms.gridmap import FREE, OCCUPIED, GridMap
+from algorithms.methods import METHODS, run
+from algorithms.pose import Pose2
+from algorithms.spectra import hough_transform
+from algorithms.steps import HoughDetail, MergeResult, ShiftDetail
+from app.inputs import Inputs
+from app.layout import lay_out
+from app.lesson import equations
+from app.lesson.numbers import NUMBERS, numbers_of
+from app.lesson.study import FEW, Study
+from app.lesson.texts import PLACEHOLDER, files, filled, lesson_folder, read_step
+from app.palette import DARK, LIGHT
+from app.pictures.book import PICTURES, Dial, place_of, shown
+from app.pictures.judgement import gauges
+from app.pictures.raster import View, around, walls
+from app.pictures.sheet import Plot, Sheet, ticks
+from app.pictures.spectra import strongest
+
+CONFIG = METHODS["spectra-proven"].defaults
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def study_of(case: Case) -> Study:
+    inputs = Inputs.of(case)
+    steps = run("spectra-proven", case.ref, case.mov, case.observations, CONFIG)
+    return Study(inputs, CONFIG, 0, tuple(steps))
+
+
+@pytest.fixture(scope="module")
+def study(small_case) -> Study:
+    return study_of(small_case)
+
+
+@pytest.fixture(scope="module")
+def refused(strangers) -> Study:
+    """Maps of two buildings: nothing fits, and every picture has to stand that."""
+    return study_of(strangers)
+
+
+def corners(dials: tuple[Dial, ...]) -> list[tuple[int, ...]]:
+    """Where every dial stands at its start, and at its ends."""
+    return list(product(*(sorted({dial.start, 0, dial.count - 1}) for dial in dials)))
+
+
+@pytest.mark.parametrize("which", ["study", "refused"])
+@pytest.mark.parametrize("palette", [LIGHT, DARK], ids=["light", "dark"])
+@pytest.mark.parametrize("name", PICTURES)
+def test_every_picture_is_whole_wherever_its_dials_stand(request, which, name, palette):
+    study = request.getfixturevalue(which)
+    picture = PICTURES[name]
+    layout = lay_out(study.inputs.ref, study.inputs.mov, study.inputs.at)
+    for at in corners(picture.dials(study)):
+        drawn = picture.draw(study, at, palette)
+        root = ElementTree.fromstring(drawn)
+        assert root.attrib["aria-label"]
+        words = [e.text for e in root.iter(f"{SVG}text")]
+        assert words
+        for bad in ("nan", "inf", "None"):
+            assert not [text for text in words if bad in text]
+            assert f'"{bad}' not in drawn
+        assert picture.story(study, at).last is not None
+        for item in picture.ink(study, at, layout, palette):
+            assert np.isfinite(item["p"]).all()
+
+
+@pytest.mark.parametrize("path", files(lesson_folder()), ids=lambda path: path.stem)
+def test_every_text_that_comes_along_names_pictures_equations_and_numbers_that_are_there(path, study):
+    step = read_step(path, PICTURES, NUMBERS)
+    assert step.picture
+    assert step.equations
+    assert step.trials
+    for trial in step.trials:
+        assert trial.answer
+    numbers = numbers_of(study)
+    for text in (step.body, *(trial.answer for trial in step.trials)):
+        assert not PLACEHOLDER.search(filled(text, numbers))
+        assert "…" not in filled(text, numbers).replace(text, "")
+    assert set(step.equations) <= set(equations.names())
+
+
+def test_every_picture_and_every_equation_is_in_the_lesson():
+    steps = [read_step(path, PICTURES, NUMBERS) for path in files(lesson_folder())]
+    assert {step.picture for step in steps} == set(PICTURES)
+    assert {name for step in steps for name in step.equations} == set(equations.names())
+
+
+def test_every_number_is_known_at_the_end_of_a_run_and_none_before_its_stage(study, small_case):
+    numbers = numbers_of(study)
+    assert set(numbers) == set(NUMBERS)
+    assert not [words for words in numbers.values() if "nan" in words]
+    early = numbers_of(Study(Inputs.of(small_case), CONFIG))
+    assert "range_m" in early
+    assert "verdict" not in early
+
+
+def test_the_accumulator_that_is_shown_is_what_the_spectrum_is_summed_from(study):
+    first, second, _ = study.votes
+    match = study.get(HoughDetail).match
+    for votes, spectrum in ((first, match.ref), (second, match.mov)):
+        energy = (votes**2).sum(axis=1)  # eq. (11)
+        assert np.allclose(energy / energy.sum(), spectrum)
+
+
+@settings(max_examples=25)
+@given(theta=st.floats(0, np.pi - 0.01), rho=st.floats(-2, 2))
+def test_the_strongest_line_is_the_wall_that_was_drawn(theta, rho):
+    size, cell = 160, 0.05
+    grid = GridMap(np.full((size, size), FREE, np.int8), cell, Pose2(-4, -4))
+    along = np.arange(-2.5, 2.5, cell / 3)
+    normal = np.array([np.cos(theta), np.sin(theta)])
+    points = rho * normal + along[:, None] * (-normal[1], normal[0])
+    at = np.floor(grid.grid_coordinates(points)).astype(int)
+    inside = np.all((at >= 0) & (at < size), axis=1)
+    cells = grid.cells.copy()
+    cells[at[inside, 1], at[inside, 0]] = OCCUPIED
+    lifted = augment(GridMap(cells, cell, Pose2(-4, -4)), np.zeros(2), np.eye(2) * 9, 100)
+    (found, distance), *_ = strongest(hough_transform(lifted, 360, cell), cell, 1)
+    c = np.cos(found - theta)  # past 180° a line has the other sign of ρ
+    assert abs(c) > np.cos(np.radians(3))
+    assert distance * np.sign(c) == pytest.approx(rho, abs=0.15)
+
+
+def test_the_same_line_is_not_found_twice_across_the_end_of_the_circle():
+    votes = np.zeros((180, 101))
+    votes[0, 60] = 5.0  # θ = 0°, ρ = +10 bins
+    votes[179, 40] = 4.0  # θ = 179°, ρ = −10 bins: nearly the same line
+    votes[90, 50] = 3.0
+    assert [theta for theta, _ in strongest(votes, 0.1)] == pytest.approx([0.0, np.pi / 2])
+
+
+@pytest.mark.parametrize("pixels", [20, 90, 800])
+def test_no_wall_is_lost_however_small_the_picture(pixels, study):
+    grid = study.inputs.ref
+    low, high = grid.corners().min(axis=0), grid.corners().max(axis=0)
+    view = View(around((low + high) / 2, float((high - low).max()) / 2), pixels, pixels)
+    mask = walls(grid, view)
+    row, col, seen = view.pixels_of(grid.points)
+    assert seen.all()
+    assert mask[row, col].all()
+
+
+def test_up_is_up_in_a_picture():
+    cells = np.full((10, 10), FREE, np.int8)
+    cells[8, 2] = OCCUPIED  # high up, at the left
+    mask = walls(GridMap(cells, 1.0), View((0, 0, 10, 10), 10, 10))
+    assert np.argwhere(mask).tolist() == [[1, 2]]
+
+
+def test_the_swarm_of_the_lesson_is_small_and_tells_its_pulls(study):
+    assert len(study.few[0].poses) == FEW
+    assert all(state.pulls is not None for state in study.few[1:])
+    assert study.few[-1].stopped
+
+
+def test_the_map_shows_the_candidate_that_the_dial_stands_at(study):
+    told = study.all(ShiftDetail)
+    for k in range(len(told)):
+        story = PICTURES["shift"].story(study, (k,))
+        assert story.shifts[-1] is told[k]
+
+
+def test_every_gauge_keeps_its_limit_in_an_accepted_merge_and_one_does_not_in_a_refused(study, refused):
+    assert study.get(MergeResult).verdict.accepted
+    assert all(gauge.kept for gauge in gauges(study))
+    assert not refused.get(MergeResult).verdict.accepted
+    assert not all(gauge.kept for gauge in gauges(refused))
+
+
+def test_words_in_a_picture_are_never_markup():
+    sheet = Sheet(20)
+    sheet.text(0, 10, "<img src=x onerror=1> & Δθ")
+    (text,) = ElementTree.fromstring(sheet.svg('a "title" <b>')).iter(f"{SVG}text")
+    assert text.text == "<img src=x onerror=1> & Δθ"
+
+
+@given(low=st.floats(-1e4, 1e4), width=st.floats(1e-3, 1e4), most=st.integers(1, 12))
+def test_ticks_are_few_round_and_inside(low, width, most):
+    found = ticks(low, low + width, most)
+    slack = 1e-6 * (abs(low) + width)
+    assert len(found) <= most + 1
+    assert all(low - slack <= value <= low + width + slack for value in found)
+
+
+def test_a_plot_puts_its_corners_on_its_corners():
+    plot = Plot(Sheet(100), 10, 20, 200, 50, (-1, 1), (0, 5))
+    assert plot.at([(-1, 0), (1, 5)]).tolist() == [[10, 70], [210, 20]]
+
+
+@given(count=st.integers(1, 50), place=st.integers(0, 49), step=st.sampled_from([0.5, 1.0]))
+def test_a_dial_knows_its_place_by_its_number(count, place, step):
+    dial = Dial("", count, 0, -3.0, step)
+    assert place_of(dial, shown(dial, place)) == min(place, count - 1)
