@@ -17,6 +17,7 @@ help:
 	@echo "make samples      simulate the maps in sample_maps again"
 	@echo "make screenshots  take the README's pictures again"
 	@echo "make equations    typeset the equations in static/equations again"
+	@echo "make replays      record the pages in static/replays again"
 	@echo "make clean        remove the environment and everything that was made"
 
 run: $(VENV)/ready
@@ -43,6 +44,10 @@ screenshots: $(VENV)/ready-to-test
 equations: $(VENV)/ready
 	@$(PIP) install -e '.[equations]'
 	@$(BIN)/python tests/equations.py
+
+replays: $(VENV)/ready
+	@for name in $(or $(ARGS),office_r2_r1 corridor_r3_r2); do \
+	  $(BIN)/mapmeld replay $$name --out static/replays/$$name.html || exit; done
 
 clean:
 	rm -rf $(VENV) build dist out *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis .benchmarks

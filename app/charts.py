@@ -14,6 +14,14 @@ from app.measure import Measure
 
 Columns = tuple[FloatArray, ...]
 
+# title, and what the x axis is; {} stands for what is maximised
+HOUGH = ("Hough spectra, eq. (11)", "direction (°)")
+TURNS = ("Their correlation, eq. (12)", "turn Δθ (°), or that + 180°")
+SHIFT_X = ("Correlation, window shaded", "Δx (m)")
+SHIFT_Y = ("Correlation, window shaded", "Δy (m)")
+CLIMB = ("Best {} so far", "iteration")
+PROOF = ("Best {} at every turn", "turn Δθ (°), the whole circle")
+
 
 def _to_one(values: FloatArray) -> FloatArray:
     top = float(values.max(initial=0.0))
@@ -43,6 +51,12 @@ def turn_correlation(match: HoughMatch, chosen: float | None) -> Columns:
         k = int(np.abs(np.mod(x - degrees(chosen) + 90, 180) - 90).argmin())
         best[k] = match.correlation[k]
     return x, match.correlation, marks, best
+
+
+def turn_range(match: HoughMatch) -> tuple[float, float]:
+    """Axis of the correlation: every direction has some lines, drawn from zero the peaks would be ripples."""
+    low = float(match.correlation.min())
+    return (low - 0.05 * (1 - low), 1 + 0.1 * (1 - low)) if low < 0.99 else (0.0, 1.1)
 
 
 def shift_spectra(match: ShiftMatch) -> Columns:

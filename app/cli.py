@@ -21,6 +21,7 @@ EXIT_INTERRUPTED = 130
 COMMANDS = {
     "serve": "watch a merge in the browser",
     "merge": "merge two maps into a folder of files",
+    "replay": "merge two maps and save the run as one HTML page that plays offline",
     "evaluate": "run a method on every case in a folder and count what came out right",
     "samples": "simulate pairs of maps with known truth",
 }
@@ -36,6 +37,8 @@ Examples:
   mapmeld merge map1.yaml map2.yaml --observation observation.yaml --out result
                                      leaves merged.yaml, merged.pgm, transform.yaml,
                                      report.json and overlay.png in result/
+  mapmeld replay office_r2_r1 --out merge.html
+                                     the same as a recording for a talk or a lesson
   mapmeld evaluate cases --jobs 4 --json results.json
                                      every case folder under cases/, and how many came out right"""
 

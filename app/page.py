@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from functools import partial
 from threading import RLock
 from typing import Any, Literal
 
@@ -26,6 +27,7 @@ from app.panels.observation import ObservationPanel
 from app.panels.result import result_html
 from app.panels.run import HEIGHTS, MAP, SWARM, RunPanel, Wishes
 from app.panels.tuning import TuningPanel
+from app.replay import replay_of
 from app.session import Job, Session
 from app.stage import Stage, TabStage, mark
 from app.story import Story
@@ -353,6 +355,10 @@ class Page:
         self._plots.show(story, follow=True)
         self._plots.tell(result_html(result, self._inputs, config))
         self._export.offer(result)
+        i = self._inputs
+        if i.ref is not None and i.mov is not None:
+            job = Job(i.ref, i.mov, i.observations, config, result.method, result.seed)
+            self._export.replay.offer(i.name, partial(replay_of, job, self.session.told_again, i))
         self._draw(story, live=live)
         self._stage.hud(mood="accepted" if result.verdict.accepted else "refused", progress=None)
         self._say(story, result)

@@ -16,6 +16,13 @@ STEPS_FORMAT = "{desc:<9}|{bar}| {percentage:3.0f}% {elapsed}"
 
 def result_of(steps: Iterator[Step]) -> MergeResult:
     """Run a method to its end with a bar that names the stage at work."""
+    *_, last = with_bar(steps)
+    assert isinstance(last.detail, MergeResult)
+    return last.detail
+
+
+def with_bar(steps: Iterator[Step]) -> Iterator[Step]:
+    """The same steps, with that bar while they are taken."""
     story, stage = Story(), ""
     with bar(total=1.0, bar_format=STEPS_FORMAT) as shown:
         for step in steps:
@@ -24,9 +31,7 @@ def result_of(steps: Iterator[Step]) -> MergeResult:
             if step.stage != stage:  # a new stage is named at once, however short it is
                 stage = step.stage
                 shown.set_description_str(stage)
-    result = story.get(MergeResult)
-    assert result is not None
-    return result
+            yield step
 
 
 def bar(**kwargs: Any) -> tqdm:

@@ -54,22 +54,22 @@ def _tinted(mask: NDArray[np.bool_], colour: Rgb, alpha: int = 255) -> Pixels:
     return pixels
 
 
-def walls(cells: CellArray, colour: Rgb, alpha: int = 255) -> Picture:
-    """The walls in one colour, everything else transparent."""
-    factor = pooling(cells.shape)
+def walls(cells: CellArray, colour: Rgb, alpha: int = 255, most: int = MOST_PIXELS) -> Picture:
+    """The walls in one colour, everything else transparent; ``most`` pixels on a side, here and below."""
+    factor = pooling(cells.shape, most)
     return Picture(_tinted(pool(cells, factor) >= OCCUPIED_FROM, colour, alpha), factor)
 
 
-def floor(cells: CellArray, palette: Palette, alpha: int = 255) -> Picture:
+def floor(cells: CellArray, palette: Palette, alpha: int = 255, most: int = MOST_PIXELS) -> Picture:
     """What is known and no wall, in the colour of free space; unknown is transparent."""
-    factor = pooling(cells.shape)
+    factor = pooling(cells.shape, most)
     return Picture(_tinted(pool(cells, factor) != UNKNOWN, palette.free, alpha), factor)
 
 
-def levels(augmented: AugmentedMap, palette: Palette) -> Picture:
+def levels(augmented: AugmentedMap, palette: Palette, most: int = MOST_PIXELS) -> Picture:
     """The walls in the colours of their levels, eq. (4); walls too far to count keep a faint grey."""
     cells = augmented.grid.cells
-    factor = pooling(cells.shape)
+    factor = pooling(cells.shape, most)
     pixels = _tinted(pool(cells, factor) >= OCCUPIED_FROM, palette.margin, 70)
     if len(augmented.levels):
         share = np.zeros(pixels.shape[:2])
@@ -82,14 +82,14 @@ def levels(augmented: AugmentedMap, palette: Palette) -> Picture:
     return Picture(pixels, factor)
 
 
-def merged_floor(fusion: Fusion, palette: Palette) -> Picture:
+def merged_floor(fusion: Fusion, palette: Palette, most: int = MOST_PIXELS) -> Picture:
     """What either map knows, in the colour of free space."""
-    return floor(fusion.merged.cells, palette)
+    return floor(fusion.merged.cells, palette, most=most)
 
 
-def merged_walls(fusion: Fusion, palette: Palette) -> Picture:
+def merged_walls(fusion: Fusion, palette: Palette, most: int = MOST_PIXELS) -> Picture:
     """Whose wall it is, where both agree on a wall, and where they contradict; the rest transparent."""
-    factor = pooling(fusion.merged.cells.shape)
+    factor = pooling(fusion.merged.cells.shape, most)
     ref, mov = pool(fusion.ref_cells, factor), pool(fusion.mov_cells, factor)
     ref_wall, mov_wall = ref >= OCCUPIED_FROM, mov >= OCCUPIED_FROM
     ref_free = (ref != UNKNOWN) & (ref <= FREE_UP_TO)

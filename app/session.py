@@ -120,6 +120,11 @@ class Session:
             if job is not None:
                 self._listener.stopped(job, self._story)
 
+    def told_again(self, job: Job) -> Iterator[Step]:
+        """The steps of a run once more, for a recording: those that are known are not computed again."""
+        memo = dict(self._memo)  # the worker goes on with its own
+        return self._run(job.method, job.ref, job.mov, job.observations, job.config, job.seed, memo)
+
     def close(self) -> None:
         """End the worker; the tab is gone."""
         with self._wake:

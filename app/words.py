@@ -43,6 +43,7 @@ _SHARE: dict[type, float] = {
 _MANY_BLOCKS = 20_000  # a proof has seldom more; nobody knows before its end how many there will be
 
 READY = "Ready. Press Merge."
+SIDE_BY_SIDE = "Two robots, two maps, no common frame."
 UP_TO_DATE = "Everything up to the candidates is up to date. Press Merge."
 
 

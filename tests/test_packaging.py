@@ -52,8 +52,10 @@ def run(installed, tmp_path, *words):
 def test_the_wheel_holds_both_packages_and_what_they_show(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
     assert {"app/cli.py", "algorithms/methods.py"} <= names
-    scripts = {f"app/{path.name}" for path in (ROOT / "app").glob("*.js")}
-    assert scripts <= names
+    kinds = ("*.js", "*.css", "*.html")
+    shown = {path.relative_to(ROOT).as_posix() for kind in kinds for path in (ROOT / "app").rglob(kind)}
+    assert shown
+    assert shown <= names
     for source, target in (("static", "app/_static"), ("sample_maps", "app/_sample_maps")):
         files = {path.relative_to(ROOT / source) for path in (ROOT / source).rglob("*") if path.is_file()}
         assert files, f"{source} is empty"

@@ -7,6 +7,7 @@ import viser
 from algorithms.steps import MergeResult
 from app.export import STEM, archive
 from app.palette import LIGHT, QUIET
+from app.panels.replay import ReplayButton
 
 
 class ExportPanel:
@@ -24,10 +25,12 @@ class ExportPanel:
                 hint="A zip: merged.yaml, merged.pgm, transform.yaml.",
             )
             self._button.on_click(lambda _: self._download())
+            self.replay = ReplayButton(client)
 
     def offer(self, result: MergeResult | None) -> None:
-        """Take this result, or none."""
+        """Take this result, or none; a replay of its run is offered apart."""
         self._result = result
+        self.replay.offer(None)
         self._button.disabled = result is None
 
     def _download(self) -> None:

@@ -27,7 +27,9 @@ GHOSTLY = 60  # of 255; twice as much on the page, which makes thin walls darker
 class Ground:
     """Map 1 lies still; map 2 hangs on the frame /world/mov, which the page turns and slides."""
 
-    def __init__(self, scene: viser.SceneApi) -> None:
+    def __init__(self, scene: viser.SceneApi, most: int = render.MOST_PIXELS) -> None:
+        """most : pixels on a side of a picture."""
+        self._most = most
         # viser turns a y-up scene half round its y axis; undone here, scene and page agree
         scene.add_frame("/world", show_axes=False, wxyz=(0.0, 0.0, 1.0, 0.0))
         scene.add_frame("/world/ref", show_axes=False)
@@ -68,10 +70,11 @@ class Ground:
         self._haunted = None
         self._mov = mov
         colours, anchors = (palette.ref, palette.mov), (layout.anchor_ref, layout.anchor_mov)
+        most = self._most
         for k, grid in enumerate((ref, mov)):
             if grid is not None:
-                self._free[k].show(render.floor(grid.cells, palette), grid, anchors[k])
-                self._walls[k].show(render.walls(grid.cells, colours[k]), grid, anchors[k])
+                self._free[k].show(render.floor(grid.cells, palette, most=most), grid, anchors[k])
+                self._walls[k].show(render.walls(grid.cells, colours[k], most=most), grid, anchors[k])
         self.show("sources")
 
     def lift(self, detail: AugmentDetail | None) -> None:
@@ -81,7 +84,7 @@ class Ground:
         self._lifted = detail
         anchors = (self._layout.anchor_ref, self._layout.anchor_mov)
         for image, augmented, anchor in zip(self._levels, (detail.ref, detail.mov), anchors, strict=True):
-            image.show(render.levels(augmented, self._palette), augmented.grid, anchor)
+            image.show(render.levels(augmented, self._palette, self._most), augmented.grid, anchor)
         self.show(self.which)
 
     def merge(self, fusion: Fusion) -> None:
@@ -89,8 +92,8 @@ class Ground:
         if fusion is not self._fused and self._layout is not None and self._palette is not None:
             self._fused = fusion
             floor, walls = self._merged
-            floor.show(render.merged_floor(fusion, self._palette), fusion.merged, self._layout.anchor_ref)
-            walls.show(render.merged_walls(fusion, self._palette), fusion.merged, self._layout.anchor_ref)
+            for image, draw in ((floor, render.merged_floor), (walls, render.merged_walls)):
+                image.show(draw(fusion, self._palette, self._most), fusion.merged, self._layout.anchor_ref)
         self.show("merged")
 
     def ghost(self, at: Pose2 | None) -> None:
@@ -98,7 +101,7 @@ class Ground:
         if at is not None and self._mov is not None and self._layout is not None and self._palette:
             if self._haunted is not self._mov:
                 self._haunted = self._mov
-                faint = render.walls(self._mov.cells, self._palette.rival, GHOSTLY)
+                faint = render.walls(self._mov.cells, self._palette.rival, GHOSTLY, self._most)
                 self._ghost.show(faint, self._mov, self._layout.anchor_mov)
             self._ghost_frame.position = (at.x, at.y, 0.0)
             self._ghost_frame.wxyz = (cos(at.theta / 2), 0.0, 0.0, sin(at.theta / 2))

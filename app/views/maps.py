@@ -27,6 +27,7 @@ from app import words
 from app.inputs import Inputs
 from app.layout import Layout, Rect, known_hull, union
 from app.palette import LIGHT, Palette, css
+from app.render import MOST_PIXELS
 from app.stage import Stage, cloud, mark
 from app.story import Story
 from app.views import signs
@@ -40,9 +41,10 @@ OF_A_RUN = ("aug", "window", "box", "swarm", "rival", "best")
 class MapView:
     """Draws a story over the ground, and says where the camera goes."""
 
-    def __init__(self, client: viser.ClientHandle, stage: Stage) -> None:
+    def __init__(self, client: viser.ClientHandle, stage: Stage, most: int = MOST_PIXELS) -> None:
+        """most : pixels on a side of a picture."""
         self._stage = stage
-        self._ground = Ground(client.scene)
+        self._ground = Ground(client.scene, most)
         self._inputs = Inputs()
         self._palette = LIGHT
         self._mov_at = Pose2()

@@ -77,15 +77,13 @@ class PlotDock:
             self._hint = gui.add_html("")
             self._hough = self._plot(
                 gui,
-                "Hough spectra, eq. (11)",
-                "direction (°)",
+                *charts.HOUGH,
                 (_line("map 1", REF), _line("map 2", MOV)),
                 190,
             )
             self._turns = self._plot(
                 gui,
-                "Their correlation, eq. (12)",
-                "turn Δθ (°), or that + 180°",
+                *charts.TURNS,
                 (_line("CC", GREY), _dots("candidates", MARK, 8), _dots("at hand", BEST, 10)),
                 190,
             )
@@ -93,7 +91,7 @@ class PlotDock:
                 label="window", width=0, fill="rgba(107,114,128,.20)", points={"show": False}
             )
             self._shifts: list[tuple[Any, Any]] = []
-            for axis, number in (("x", "(13)"), ("y", "(14)")):
+            for axis, number, names in (("x", "(13)", charts.SHIFT_X), ("y", "(14)", charts.SHIFT_Y)):
                 self._shifts.append(
                     (
                         self._plot(
@@ -105,8 +103,7 @@ class PlotDock:
                         ),
                         self._plot(
                             gui,
-                            "Correlation, window shaded",
-                            f"Δ{axis} (m)",
+                            *names,
                             (window, _line("C", GREY), _dots("shift", BEST, 9)),
                             140,
                         ),
@@ -115,8 +112,8 @@ class PlotDock:
             colours = (BEST, MARK, REF, GREY)
             self._climb = self._plot(
                 gui,
-                "Best value so far",
-                "iteration",
+                charts.CLIMB[0].format("value"),
+                charts.CLIMB[1],
                 tuple(_line(f"{k + 1}", colour, 2.2 if k == 0 else 1.3) for k, colour in enumerate(colours)),
                 230,
                 None,
@@ -125,8 +122,8 @@ class PlotDock:
             self._proof_says = gui.add_html("")
             self._proof = self._plot(
                 gui,
-                "Best value of every turn",
-                "turn Δθ (°), the whole circle",
+                charts.PROOF[0].format("value"),
+                charts.PROOF[1],
                 (
                     _line("ceiling", GREY, 1.4, fill="rgba(107,114,128,.16)"),
                     _line("best met", MARK, 1, fill="rgba(230,159,0,.55)"),
@@ -254,9 +251,7 @@ class PlotDock:
             self._hough.data = charts.hough_spectra(hough.match)
             chosen = at_hand.T_ref_mov.theta if at_hand else None
             self._turns.data = charts.turn_correlation(hough.match, chosen)
-            # every direction has some lines: drawn from zero the peaks would be ripples
-            low = float(hough.match.correlation.min())
-            around = (low - 0.05 * (1 - low), 1 + 0.1 * (1 - low)) if low < 0.99 else (0.0, 1.1)
+            around = charts.turn_range(hough.match)
             if self._new("turn scale", around):
                 self._turns.scales = {"x": uplot.Scale(time=False), "y": uplot.Scale(range=around)}
         if at_hand is not None and self._new("shift", at_hand):
@@ -266,7 +261,7 @@ class PlotDock:
         measure = story.measure
         if refine is not None and self._new("climb", refine):
             self._climb.data = charts.courses(story.courses, LINES)
-            _entitle(self._climb, f"Best {measure.row} so far")
+            _entitle(self._climb, charts.CLIMB[0].format(measure.row))
         if found is not None and self._new("candidates", (found, refine)):
             rows = charts.candidate_rows(found.candidates, story.courses, measure)
             sign = measure.unit or measure.name
@@ -298,7 +293,7 @@ class PlotDock:
                 "x": uplot.Scale(time=False, range=(-180.0, 180.0)),
                 "y": uplot.Scale(range=span),
             }
-        _entitle(self._proof, f"Best {measure.row} at every turn")
+        _entitle(self._proof, charts.PROOF[0].format(measure.row))
         self._proof.data = charts.proof(state, span[1])
         self._proof_says.content = box(words.proof_says(state, measure), "plain")
         rows = charts.proof_rows(state, measure)

@@ -1,0 +1,59 @@
+"""Button "Save replay": the run that is on the page as one HTML file that plays offline."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from threading import Lock
+
+import viser
+
+from app.palette import QUIET
+
+
+class ReplayButton:
+    """Holds the run that can be recorded; None while there is none, or it is out of date."""
+
+    def __init__(self, client: viser.ClientHandle) -> None:
+        self._client = client
+        self._name = ""
+        self._make: Callable[[], bytes] | None = None
+        self._at_work = Lock()
+        self._button = client.gui.add_button(
+            "Save replay",
+            icon=viser.Icon.MOVIE,
+            color=QUIET,
+            disabled=True,
+            hint="One HTML page that plays this run again, without a network: for a talk or a lesson.",
+        )
+        self._button.on_click(lambda _: self._save())
+
+    def offer(self, name: str | None, make: Callable[[], bytes] | None = None) -> None:
+        """Take a run, by the name of its pair and a way to make its page; or none."""
+        self._name, self._make = name or "", make
+        self._button.disabled = make is None
+
+    def _save(self) -> None:
+        name, make = self._name, self._make
+        if make is None or not self._at_work.acquire(blocking=False):
+            return  # a second click while it is being made
+        try:
+            notice = self._client.add_notification(
+                "Recording the run",
+                "It is told once more, for the file.",
+                loading=True,
+                with_close_button=False,
+            )
+            try:
+                page = make()
+            finally:
+                notice.remove()
+            self._client.send_file_download(file_name(name), page, save_immediately=True)
+        finally:
+            self._at_work.release()
+
+
+def file_name(name: str) -> str:
+    """What the file is called, after its pair: a name that every system takes."""
+    stem = re.sub(r"[^\w-]+", "_", name).strip("_")[:60]
+    return f"replay_{stem}.html" if stem else "replay.html"
