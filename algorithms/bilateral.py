@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from algorithms.chain import Chain, Memo
-from algorithms.evidence import evidence
+from algorithms.conclude import conclude
 from algorithms.fuse import Conflict, Fusion, fuse
 from algorithms.gridmap import GridMap
 from algorithms.observation import (
@@ -15,8 +15,8 @@ from algorithms.observation import (
     bilateral_transform,
     encounter,
 )
-from algorithms.steps import Answer, AnswersDetail, MergeResult, ObservationDetail, Step
-from algorithms.verdict import VerdictConfig, judge
+from algorithms.steps import Answer, AnswersDetail, ObservationDetail, Step
+from algorithms.verdict import VerdictConfig
 
 
 @dataclass(frozen=True)
@@ -61,13 +61,15 @@ def run(
         "verdict",
         (fusion, config.verdict, method),
         lambda: [
-            MergeResult(
-                T_ref_mov=best,
-                covariance=bilateral_covariance(observation),
+            conclude(
+                ref,
+                mov,
+                best,
+                fusion,
+                seen.encounters,
+                lambda _: bilateral_covariance(observation),
+                config.verdict,
                 value=None,
-                verdict=judge(fusion, evidence(ref, mov, best), best, seen.encounters, None, config.verdict),
-                fusion=fusion,
-                encounters=seen.encounters,
                 answers=found.answers,
                 method=method,
                 seed=seed,

@@ -14,14 +14,15 @@ from algorithms.augment import AugmentConfig, augment
 from algorithms.bounds import Bounds, check_bounds
 from algorithms.certificate import ProofConfig, prove
 from algorithms.chain import Chain, Memo
+from algorithms.conclude import conclude
 from algorithms.covariance import peak_covariance
-from algorithms.evidence import PATCH, Evidence, evidence
+from algorithms.evidence import PATCH, Evidence
 from algorithms.fuse import Conflict, Fusion, fuse
 from algorithms.gridmap import GridMap
 from algorithms.montecarlo import monte_carlo
 from algorithms.objective import Lookup, Objective, make_objective
 from algorithms.observation import Encounter, Observation, encounter
-from algorithms.polish import covariance_of, polish
+from algorithms.polish import Peak, covariance_of, polish
 from algorithms.pose import FloatArray, Pose2, pose_error
 from algorithms.search import Optimiser, SearchState
 from algorithms.smm import CandidateConfig, match_turns, shift_candidates
@@ -33,7 +34,6 @@ from algorithms.steps import (
     CandidatesDetail,
     Detail,
     HoughDetail,
-    MergeResult,
     ObservationDetail,
     ProofDetail,
     ProvenDetail,
@@ -43,7 +43,7 @@ from algorithms.steps import (
     WindowDetail,
 )
 from algorithms.swarm import SwarmConfig, settled_within, swarm
-from algorithms.verdict import HALF, Rival, VerdictConfig, judge, others
+from algorithms.verdict import HALF, VerdictConfig, others
 from algorithms.window import (
     Box,
     BoxConfig,
@@ -124,7 +124,7 @@ def run(
     augmented: AugmentDetail = yield from chain.stage(
         "augment",
         (ref, mov, seen, config.augment),
-        lambda: [_augment(ref, mov, seen.encounter, config.augment)],
+        lambda: [augment_both(ref, mov, seen.encounter, config.augment)],
     )
     hough: HoughDetail = yield from chain.stage(
         "spectra",
@@ -163,40 +163,38 @@ def run(
         lambda: [fuse(ref, mov, best, config.conflict)],
     )
 
-    def conclude() -> list[Detail]:
-        rivals = _rivals(refined, proven, seen.encounter, config)
-        weighed = evidence(ref, mov, best)
-        verdict = judge(
-            fusion,
-            weighed,
-            best,
-            seen.encounters,
-            [Rival(T, share, evidence(ref, mov, T)) for T, share in rivals],
-            config.verdict,
-            config.window.margin,
-            _doubts(refined, proven),
-        )
+    def judged() -> list[Detail]:
+        peak = proven.peak if proven else None
+        box = box_around(best, found.window, config.box)
         return [
-            MergeResult(
-                T_ref_mov=best,
-                covariance=_covariance(found, refined, proven, seen.encounters, weighed, config),
-                value=proven.peak.value if proven else refined.answers[0].value,
-                verdict=verdict,
-                fusion=fusion,
-                encounters=seen.encounters,
+            conclude(
+                ref,
+                mov,
+                best,
+                fusion,
+                seen.encounters,
+                lambda weighed: covariance_at(
+                    best, found.objective, peak, box, seen.encounters, weighed, config
+                ),
+                config.verdict,
+                value=peak.value if peak else refined.answers[0].value,
                 answers=refined.answers,
                 method=method,
                 seed=seed,
+                rivals=_rivals(refined, proven, seen.encounter, config),
+                margin=config.window.margin,
+                doubts=_doubts(refined, proven),
                 proof=proven.state if proven else None,
                 search_found_it=proven.search_found_it if proven else None,
                 timings_s=chain.timings_s,
             )
         ]
 
-    yield from chain.stage("verdict", (fusion, refined, proven, config.verdict, method), conclude)
+    yield from chain.stage("verdict", (fusion, refined, proven, config.verdict, method), judged)
 
 
-def _augment(ref: GridMap, mov: GridMap, at: Encounter, config: AugmentConfig) -> AugmentDetail:
+def augment_both(ref: GridMap, mov: GridMap, at: Encounter, config: AugmentConfig) -> AugmentDetail:
+    """Both maps with their levels, eqs. (4), (5)."""
     sigma = config.covariance()
     return AugmentDetail(
         augment(ref, at.x_ref, sigma, config.intensity),
@@ -224,12 +222,7 @@ def _search(
             candidate = replace(candidate, T_ref_mov=window.pulled_in(candidate.T_ref_mov))
         yield ShiftDetail(index, len(hough.match.turns), candidate)
         candidates.append(candidate)
-    if config.refine.objective == "agreement":
-        objective = make_agreement(
-            ref, mov, encounters, config.augment, config.agreement, coupled, config.refine.lookup
-        )
-    else:
-        objective = make_objective(augmented.ref, augmented.mov, config.refine.lookup)
+    objective = objective_of(ref, mov, encounters, augmented, config)
     looked = []
     for index, candidate in enumerate(candidates):
         box = box_around(candidate.T_ref_mov, window, config.box)
@@ -239,6 +232,22 @@ def _search(
         looked.append(replace(candidate, value=float(values_in(objective, window, box, poses).max())))
     looked.sort(key=lambda candidate: -_known(candidate.value))
     yield CandidatesDetail(tuple(looked), objective, window)
+
+
+def objective_of(
+    ref: GridMap,
+    mov: GridMap,
+    encounters: Sequence[Encounter],
+    augmented: AugmentDetail,
+    config: PipelineConfig,
+) -> Objective:
+    """What the settings ask to maximise."""
+    if config.refine.objective == "gamma":
+        return make_objective(augmented.ref, augmented.mov, config.refine.lookup)
+    window = coupled_window(encounters, config.window)
+    return make_agreement(
+        ref, mov, encounters, config.augment, config.agreement, window, config.refine.lookup
+    )
 
 
 def values_in(
@@ -348,24 +357,26 @@ def _rivals(
     return [(T, value / best) for T, value in elsewhere if value > RIVAL_FLOOR * best]
 
 
-def _covariance(
-    found: CandidatesDetail,
-    refined: AnswersDetail,
-    proven: ProvenDetail | None,
+def covariance_at(
+    T_ref_mov: Pose2,
+    objective: Objective,
+    peak: Peak | None,
+    box: Box,
     encounters: Sequence[Encounter],
     weighed: Evidence,
     config: PipelineConfig,
 ) -> FloatArray:
-    """Calibrated for the agreement; of Γ, which is no likelihood, the width of its peak.
+    """(3, 3) of x, y, theta; m and rad. Calibrated for the agreement where its peak is known; of Γ, which
+    is no likelihood, the width of its peak.
 
     Bent maps have no one transform: it differs from patch to patch by as much as patches slip.
+
+    box : the optimiser's, around the transform
     """
-    if proven is None or config.refine.objective == "gamma":
-        best = proven.peak.T_ref_mov if proven else refined.answers[0].T_ref_mov
-        box = box_around(best, found.window, config.box)
-        return peak_covariance(found.objective, best, box, config.augment.spread)
+    if peak is None or config.refine.objective == "gamma":
+        return peak_covariance(objective, T_ref_mov, box, config.augment.spread)
     window = coupled_window(encounters, config.window)
     widest = np.append(np.sqrt(np.diag(window.covariances[0])), radians(config.proof.angle))
     bend = weighed.slip if weighed.rigid_contradiction > config.verdict.contradiction else 0.0
     least = np.hypot(LEAST_DEVIATION, bend) * np.array([1.0, 1.0, 1 / PATCH])
-    return covariance_of(proven.peak, window.pivot, config.agreement.evidence, widest, least)
+    return covariance_of(peak, window.pivot, config.agreement.evidence, widest, least)

@@ -54,8 +54,19 @@ def polish(objective: Objective, T_ref_mov: Pose2, window: CoupledWindow, reach:
         best = int(found.argmax())
         if found[best] > value:
             at, value = places[best], float(found[best])
+    return peak_at(objective, Pose2.from_array(_transforms(at[None], pivot)[0]), pivot, reach)
+
+
+def peak_at(objective: Objective, T_ref_mov: Pose2, pivot: FloatArray, reach: float) -> Peak:
+    """The objective and how it bends at a transform, whether that is a maximum or not.
+
+    pivot, reach : as for ``polish``
+    """
+    scale = np.array([1.0, 1.0, 1 / reach]) * objective.cell
+    at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
     _, hessian, _, _ = _paraboloid(objective, at, scale, pivot)
-    return Peak(Pose2.from_array(_transforms(at[None], pivot)[0]), value, -hessian / np.outer(scale, scale))
+    value = float(objective(T_ref_mov.array()[None])[0])
+    return Peak(T_ref_mov, value, -hessian / np.outer(scale, scale))
 
 
 def covariance_of(

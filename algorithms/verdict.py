@@ -132,7 +132,10 @@ def judge(
                 "is contradicted less" if shared >= config.plenty else "is not ruled out by so little wall"
             )
             doubt = f"another answer, {apart}, {cause}"
-        found.append(f"{doubt}: a second observation would decide")
+        if rival.share > 1:  # of a transform made by hand: a search would have taken the better one
+            found.append(f"another answer, {apart}, fits better")
+        else:
+            found.append(f"{doubt}: a second observation would decide")
     if deviation > config.deviations:
         found.append(f"it puts the seen robot {deviation:.1f} standard deviations from where it was seen")
     if found:

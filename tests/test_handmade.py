@@ -1,0 +1,109 @@
+"""A transform made by hand is weighed like any other, and refining it never makes it worse."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from algorithms.errors import SettingError
+from algorithms.handmade import BY_HAND, Scales, refine
+from algorithms.methods import DEFAULT_METHOD, METHODS, merge
+from algorithms.pose import Pose2, pose_error
+from algorithms.steps import MergeResult, RefineDetail
+
+DEFAULTS = METHODS[DEFAULT_METHOD].defaults
+
+
+@pytest.fixture(scope="module")
+def result(small_case) -> MergeResult:
+    return merge(small_case.ref, small_case.mov, small_case.observations)
+
+
+@pytest.fixture(scope="module")
+def scales(small_case, result) -> Scales:
+    best = (result.T_ref_mov, result.value)
+    return Scales(small_case.ref, small_case.mov, small_case.observations, DEFAULTS, (best,))
+
+
+def about(T: Pose2, at: np.ndarray, dx: float, dy: float, turn: float) -> Pose2:
+    """T, moved by so much where it puts a point of the mov frame, and turned about it."""
+    x, y = T.apply(at) + (dx, dy)
+    turned = Pose2(0, 0, T.theta + turn).apply(at)
+    return Pose2(x - turned[0], y - turned[1], T.theta + turn)
+
+
+def test_the_methods_own_answer_weighs_the_same_by_hand(scales, result):
+    hand = scales.weigh(result.T_ref_mov)
+    assert hand.method == BY_HAND
+    assert hand.value == pytest.approx(result.value)
+    assert np.array_equal(hand.fusion.merged.cells, result.fusion.merged.cells)
+    same = {"ambiguity": None, "rival": None}
+    assert replace(hand.verdict, **same) == replace(result.verdict, **same)
+    assert hand.covariance == pytest.approx(result.covariance, rel=1e-6)
+
+
+def test_a_wrong_hand_is_refused_and_told_that_another_answer_fits_better(scales, result):
+    wrong = about(result.T_ref_mov, result.encounter.x_mov, 0.3, 0.0, radians(90))
+    verdict = scales.weigh(wrong).verdict
+    assert not verdict.accepted
+    assert verdict.reason.startswith("Refused: ")
+    assert "another answer, 90° apart, fits better" in verdict.reason or "too little" in verdict.reason
+
+
+def test_a_hand_far_off_the_sighting_is_told_so(scales, result):
+    away = about(result.T_ref_mov, result.encounter.x_mov, 3.0, 0.0, 0.0)
+    assert "standard deviations from where it was seen" in scales.weigh(away).verdict.reason
+
+
+@settings(max_examples=6, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(-3, 3), st.integers(0, 9))
+def test_refining_ends_no_lower_than_it_began_and_near_the_best(scales, result, dx, dy, degrees, seed):
+    begun = about(result.T_ref_mov, result.encounter.x_mov, dx, dy, radians(degrees))
+    last = [step.detail for step in refine(scales, begun, seed)][-1]
+    assert isinstance(last, MergeResult)
+    assert last.method == BY_HAND
+    assert last.value >= scales.value(begun)
+    assert last.value >= 0.98 * result.value
+    distance, turn = pose_error(last.T_ref_mov, result.T_ref_mov, result.encounter.x_mov)
+    assert distance < 0.1
+    assert turn < radians(1)
+
+
+def test_refining_tells_the_swarm_and_the_same_seed_gives_the_same_answer(scales, result):
+    begun = about(result.T_ref_mov, result.encounter.x_mov, 0.3, -0.2, radians(2))
+    first, second = ([step.detail for step in refine(scales, begun, 5)] for _ in range(2))
+    assert sum(isinstance(detail, RefineDetail) for detail in first) > 3
+    assert first[-1].T_ref_mov == second[-1].T_ref_mov
+
+
+def test_a_hand_outside_of_the_window_can_be_refined_too(scales, result):
+    away = about(result.T_ref_mov, result.encounter.x_mov, 6.0, 6.0, 0.0)
+    *_, last = refine(scales, away, 0)
+    assert last.detail.value >= scales.value(away)
+
+
+def test_a_method_that_maximises_nothing_weighs_but_does_not_refine(small_case, result):
+    plain = Scales(small_case.ref, small_case.mov, small_case.observations, METHODS["bilateral"].defaults)
+    assert plain.weigh(result.T_ref_mov).value is None
+    assert np.linalg.eigvalsh(plain.weigh(result.T_ref_mov).covariance).min() > 0
+    with pytest.raises(SettingError, match="maximises nothing; choose one that does"):
+        next(refine(plain, result.T_ref_mov))
+
+
+def test_maps_are_never_touched_and_merging_twice_gives_the_same(small_case, result, scales):
+    before = [grid.cells.tobytes() for grid in (small_case.ref, small_case.mov)]
+    scales.weigh(Pose2(1, 2, 3))
+    again = merge(small_case.ref, small_case.mov, small_case.observations)
+    assert [grid.cells.tobytes() for grid in (small_case.ref, small_case.mov)] == before
+    assert again.T_ref_mov == result.T_ref_mov
+    assert again.fusion.merged.cells.tobytes() == result.fusion.merged.cells.tobytes()
+
+
+def test_without_a_sighting_nothing_is_weighed(small_case):
+    with pytest.raises(SettingError, match="give at least one"):
+        Scales(small_case.ref, small_case.mov, (), DEFAULTS)
