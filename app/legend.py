@@ -20,6 +20,7 @@ from app.palette import VIRIDIS, Palette, Rgb, css
 from app.story import Story
 
 Entry = dict[str, Any]
+_FAINT: Rgb = (156, 163, 175)  # walls of the difference that are not denied, light or dark
 
 
 def _chip(shape: str, colour: Rgb, text: str) -> Entry:
@@ -32,10 +33,13 @@ def level_scale(detail: AugmentDetail) -> Entry:
     return {"s": "scale", "c": stops, "low": "0", "high": f"{detail.ref.peak:.3g}", "t": "level, eq. (4)"}
 
 
-def legend(palette: Palette, view: str, story: Story, preview: bool = False) -> list[Entry]:
+def legend(
+    palette: Palette, view: str, story: Story, preview: bool = False, mode: str = "overlay"
+) -> list[Entry]:
     """Entries for the view and for what the run has come to.
 
     preview : the map shows levels, not candidates
+    mode    : how two maps that lie over each other are compared
     """
     detail = story.last.detail if story.last else None
     augmented = story.get(AugmentDetail)
@@ -46,6 +50,14 @@ def legend(palette: Palette, view: str, story: Story, preview: bool = False) -> 
         return [level_scale(augmented), _chip("line", palette.margin, "Σ_aug, windows, box")]
     if view == "Heights":
         return [level_scale(augmented)] if augmented else []
+    if view == "Map" and mode in ("blink", "curtain"):
+        return maps
+    if view == "Map" and mode == "difference":
+        return [
+            _chip("square", palette.ref, "map 1 alone"),
+            _chip("square", palette.mov, "map 2 alone"),
+            _chip("square", _FAINT, "other walls"),
+        ]
     star = _chip("star", palette.answer, "proven optimum")
     rival = _chip("dot", palette.rival, "rival")
     if view == "Swarm space":

@@ -16,6 +16,10 @@
   });
   const S = blank();
   let hooked = null, canvas = null, ink = null, hud = null, pointer = null, seen = "", painted = "";
+  // What other scripts add to the page: adopt(hud, canvas) once there is a canvas, frame(time) before every
+  // frame, paint(g, view) over the ink, apply(message) of the server; all of them may be left out.
+  S.parts = [];
+  const each = (hook, ...given) => { for (const part of S.parts) if (part[hook]) part[hook](...given); };
 
   // --- the camera -------------------------------------------------------------------------------
   function lock(k) {
@@ -29,8 +33,8 @@
     k.dollyToCursor = true;
     k.minDistance = 5; k.maxDistance = 2e5;
   }
-  function aim(animate) {
-    const m = viewer(), k = m && m.cameraControl, look = S.look;
+  function aim(animate, look = S.look) {
+    const m = viewer(), k = m && m.cameraControl;
     if (!k || !look || !canvas) return;
     const box = canvas.getBoundingClientRect();
     const top = 92, bottom = look.view === "map" ? 64 : 40, side = 18; // what the words above and below cover
@@ -114,6 +118,7 @@
     const camera = m.cameraControl.camera; // the one that draws; viser's own "camera" is another
     clip(camera);
     movNow(time);
+    each("frame", time);
     const frame = canvas.getBoundingClientRect(), size = [frame.width, frame.height].join();
     if (size !== seen) {
       seen = size;
@@ -132,6 +137,7 @@
     const view = viewOf(camera);
     if (layers(g, view, S.layers, time)) S.dirty = true;
     if (S.view === "map") readings(g, view, camera, scaleBar(g, view));
+    each("paint", g, view);
   }
 
   // --- words over the map -----------------------------------------------------------------------
@@ -142,9 +148,10 @@
     ink.style.cssText = "position:absolute;left:0;top:0;pointer-events:none;z-index:1";
     hud = document.createElement("div"); hud.id = "mapmeld-hud";
     hud.innerHTML = '<div class="mm-head"><div class="mm-title"><b>mapmeld</b><span class="mm-case"></span></div>' +
-      '<div class="mm-state"><i></i><span></span></div><div class="mm-bar"><i></i></div></div><div class="mm-legend"></div>';
+      '<div class="mm-tools"></div><div class="mm-state"><i></i><span></span></div><div class="mm-bar"><i></i></div></div><div class="mm-legend"></div>';
     const parent = canvas.parentElement;
     parent.append(ink, hud);
+    each("adopt", hud, canvas);
     canvas.addEventListener("pointermove", (e) => {
       const box = canvas.getBoundingClientRect(); pointer = [e.clientX - box.left, e.clientY - box.top]; S.dirty = true;
     });
@@ -187,13 +194,23 @@
     .mantine-Notifications-root{top:auto!important;bottom:84px!important}
     .mantine-ScrollArea-viewport>div{padding-right:8px} /* the scroll bar lies over what it scrolls */
     #mapmeld-hud[data-theme=dark]{color:#F9FAFB}
-    .mm-head{position:absolute;left:12px;right:12px;top:10px;padding:7px 12px 8px;border-radius:8px;background:rgba(255,255,255,.92);box-shadow:0 1px 4px rgba(17,24,39,.16)}
+    .mm-head{display:flex;flex-wrap:wrap;align-items:center;column-gap:8px;position:absolute;left:12px;right:12px;top:10px;padding:7px 12px 8px;border-radius:8px;background:rgba(255,255,255,.92);box-shadow:0 1px 4px rgba(17,24,39,.16)}
     [data-theme=dark] .mm-head{background:rgba(31,41,55,.94)}
-    .mm-title{font-size:12px;color:#6B7280;overflow:hidden;white-space:nowrap;text-overflow:ellipsis}
+    .mm-title{flex:1 1 90px;font-size:12px;color:#6B7280;overflow:hidden;white-space:nowrap;text-overflow:ellipsis}
     .mm-title b{color:#0072B2;font-size:13px;letter-spacing:.01em;margin-right:8px}
     [data-theme=dark] .mm-title{color:#9CA3AF} [data-theme=dark] .mm-title b{color:#56B4E9}
-    .mm-state{font-size:15px;font-weight:550;display:flex;gap:8px;align-items:baseline;min-height:20px}
+    .mm-state{flex:1 0 100%;font-size:15px;font-weight:550;display:flex;gap:8px;align-items:baseline;min-height:20px}
     .mm-state span{display:-webkit-box;-webkit-line-clamp:2;-webkit-box-orient:vertical;overflow:hidden}
+    .mm-tools{display:flex;gap:6px;min-height:22px}
+    .mm-tools>span{display:inline-flex;border:1px solid #CBD5E1;border-radius:6px;overflow:hidden}
+    .mm-tools button{pointer-events:auto;font:inherit;font-size:11.5px;line-height:20px;padding:0 7px;border:0;background:transparent;color:inherit;cursor:pointer}
+    .mm-tools button+button{border-left:1px solid #CBD5E1}
+    .mm-tools button:hover{background:rgba(0,114,178,.10)}
+    .mm-tools button:focus-visible{outline:2px solid #0072B2;outline-offset:-2px}
+    [data-theme=dark] .mm-tools>span,[data-theme=dark] .mm-tools button+button{border-color:#4B5563}
+    [data-theme=dark] .mm-tools button:hover{background:rgba(86,180,233,.18)}
+    [data-theme] .mm-tools button[aria-pressed=true]{background:#0072B2;color:#fff}
+    .mm-tools [hidden]{display:none}
     .mm-state.mm-long{font-size:13px} .mm-long span{-webkit-line-clamp:3}
     .mm-state i{width:9px;height:9px;border-radius:50%;flex:none;background:#9CA3AF}
     .mm-state[data-mood=running] i{background:#0072B2;animation:mm-pulse 1s infinite}
@@ -261,6 +278,7 @@
     S.background = message.background || S.background;
     for (const hear of S.heard) hear(message);
     S.applied += 1; S.dirty = true;
+    each("apply", message);
     showHud();
   };
   function press() { // viser's groups of buttons do not show which one is chosen
@@ -270,6 +288,13 @@
       if (button.getAttribute("aria-pressed") !== on) button.setAttribute("aria-pressed", on);
     }
   }
+  // What lies over the map and takes the pointer keeps it: the map below is neither clicked nor dragged.
+  const keep = (element) => {
+    for (const kind of ["pointerdown", "pointerup", "mousedown", "mouseup", "click", "dblclick", "contextmenu"]) {
+      element.addEventListener(kind, (e) => e.stopPropagation());
+    }
+  };
+  S.kit = { keep, viewer, metre, words, aim, camera: () => hooked && hooked.camera, canvas: () => canvas };
   window.mapmeld = S;
   document.title = "mapmeld";
 

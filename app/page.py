@@ -11,10 +11,12 @@ import numpy as np
 import viser
 
 from algorithms.casefiles import Case
+from algorithms.conflicts import Conflicts, find_conflicts
 from algorithms.errors import MapMergeError, TooLargeError
 from algorithms.steps import AugmentDetail, MergeResult, RefineDetail
 from app import words
 from app.channel import Channel
+from app.comparison import MODES, Comparison
 from app.desk import Desk
 from app.inputs import Inputs
 from app.keep import Keep, Kept
@@ -32,6 +34,7 @@ from app.session import Job, Session
 from app.stage import Stage, TabStage, mark
 from app.story import Story
 from app.timeline import Timeline
+from app.views.ground import Mode
 from app.views.heights import HeightsView
 from app.views.maps import MapView
 from app.views.plots import PlotDock
@@ -51,16 +54,19 @@ class Page:
         self._maps = MapView(client, self._stage)
         self._heights = HeightsView(client, self._stage)
         self._swarm = SwarmSpaceView(self._stage)
+        self._comparison = Comparison(self._stage, self._maps)
         self._inputs = Inputs()
         self._story = Story()
         self._notice: viser.NotificationHandle | None = None
         self._result: MergeResult | None = None  # of the last run that came to its end
+        self._conflicts: Conflicts | None = None  # of this result
         self._config: Any = None  # it ran with
         self._merged = False  # from the first Merge on, a moved slider runs the whole method again
         self._asked = False  # whether anything was asked for at all
         self._keep, self._key, self._gone = keep, "", False
         self._turn = RLock()  # wishes come one after the other; taken before session.drawing
         self.session = Session(self)
+        self._channel.on("compare", self._compare, mode=MODES)
         inputs = Inputs.of(initial) if initial else Inputs()
         self._build(inputs.name)
         self._channel.on("hello", lambda **who: self._greet(inputs, **who), key=str, again=bool)
@@ -181,6 +187,7 @@ class Page:
         self._observation.show(inputs)
         self._plots.clear()
         self._heights.hide()
+        self._comparison.clear()
         self._maps.load(inputs, layout, self._palette)
         self._run.view = MAP
         self._turn_view()
@@ -198,6 +205,7 @@ class Page:
             progress=None,
             readout="",
             anchor=layout.anchor_ref.tolist(),
+            measure=bool(grids),
             legend=legend(self._palette, MAP, self._story),
         )
         self._stage.flush()
@@ -243,7 +251,9 @@ class Page:
             if not self._timeline.note(self._desk()) or job is None:
                 return
             if self._result is not None:
-                self._plots.tell(result_html(self._result, self._inputs, self._config, faded=True))
+                told = result_html(self._result, self._inputs, self._config, self._conflicts, faded=True)
+                self._plots.tell(told)
+                self._comparison.outdate()
                 self._export.offer(None)
             self.session.request(job)
 
@@ -276,11 +286,20 @@ class Page:
             self._stage.look_down(self._maps.extent() if placed else self._maps.layout.view(), follow=True)
         self._stage.flush()
 
+    def _compare(self, mode: Mode) -> None:
+        """Look at both maps in another way."""
+        with self.session.drawing:
+            if self._run.view == MAP and self._comparison.choose(mode):
+                self._maps.show(self._story, self._tuning.config, camera=False, live=False)
+                self._stage.hud(legend=legend(self._palette, MAP, self._story, mode=mode))
+                self._stage.flush()
+
     def _switch(self, dark: bool) -> None:
         with self.session.drawing:
             self._palette = DARK if dark else LIGHT
             self._theme()
             self._maps.recolour(self._palette, self._story)
+            self._comparison.recolour(self._palette)
             self._turn_view()
 
     def _turn_view(self) -> None:
@@ -317,6 +336,8 @@ class Page:
     def begun(self, job: Job) -> None:
         """A run starts."""
         self._run.stop.disabled = False
+        if job.pace > 0:  # told step by step; a run at once leaves what is seen until it has ended
+            self._comparison.clear()
         self._stage.hud(state="Starting.", mood="running", progress=0.0)
         self._stage.flush()
 
@@ -353,19 +374,23 @@ class Page:
         """Show an answer and everything that led to it."""
         self._story, self._result, self._config = story, result, config
         self._plots.show(story, follow=True)
-        self._plots.tell(result_html(result, self._inputs, config))
+        self._conflicts = find_conflicts(result.fusion)
+        self._plots.tell(result_html(result, self._inputs, config, self._conflicts))
         self._export.offer(result)
         i = self._inputs
         if i.ref is not None and i.mov is not None:
             job = Job(i.ref, i.mov, i.observations, config, result.method, result.seed)
             self._export.replay.offer(i.name, partial(replay_of, job, self.session.told_again, i))
         self._draw(story, live=live)
+        self._comparison.offer(self._conflicts, self._palette)
         self._stage.hud(mood="accepted" if result.verdict.accepted else "refused", progress=None)
         self._say(story, result)
 
     def stopped(self, job: Job, story: Story) -> None:
         """Someone pressed Stop."""
         self._run.stop.disabled = True
+        if self._maps.together:
+            self._comparison.offer(None, self._palette)
         self._stage.hud(state=f"Stopped, unfinished. {words.sentence(story)}", mood="stopped", progress=None)
         self._stage.flush()
 
@@ -391,7 +416,7 @@ class Page:
         else:
             self._swarm.show(story, self._palette, look)
         self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
-        self._stage.hud(legend=legend(self._palette, view, story))
+        self._stage.hud(legend=legend(self._palette, view, story, mode=self._comparison.mode))
 
     def _say(self, story: Story, result: MergeResult) -> None:
         """The verdict; over the swarm whether it found the proven optimum, and the verdict's first word."""

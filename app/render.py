@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 from skimage.measure import block_reduce
 
 from algorithms.augment import AugmentedMap
+from algorithms.conflicts import Conflicts
 from algorithms.fuse import Fusion
-from algorithms.gridmap import FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, CellArray
+from algorithms.gridmap import FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, CellArray
 from app.palette import Palette, Rgb, viridis
 
 Pixels = NDArray[np.uint8]
 
+FAINT = 70  # opacity of walls that are not the point of a picture; of 255
 MOST_PIXELS = 2048  # a side of a picture that is sent; a finer map is pooled down to it
 
 
@@ -70,7 +72,7 @@ def levels(augmented: AugmentedMap, palette: Palette, most: int = MOST_PIXELS) -
     """The walls in the colours of their levels, eq. (4); walls too far to count keep a faint grey."""
     cells = augmented.grid.cells
     factor = pooling(cells.shape, most)
-    pixels = _tinted(pool(cells, factor) >= OCCUPIED_FROM, palette.margin, 70)
+    pixels = _tinted(pool(cells, factor) >= OCCUPIED_FROM, palette.margin, FAINT)
     if len(augmented.levels):
         share = np.zeros(pixels.shape[:2])
         np.maximum.at(
@@ -103,6 +105,21 @@ def merged_walls(fusion: Fusion, palette: Palette, most: int = MOST_PIXELS) -> P
     ):
         pixels[mask, :3] = colour
     return Picture(pixels, factor)
+
+
+def denied_walls(fusion: Fusion, found: Conflicts, palette: Palette) -> Picture:
+    """Walls that the other map denies, in the colour of the map they are of; all other walls faint."""
+    factor = pooling(fusion.merged.cells.shape)
+    wall = np.maximum(pool(fusion.ref_cells, factor), pool(fusion.mov_cells, factor)) >= OCCUPIED_FROM
+    pixels = _tinted(wall, palette.margin, FAINT)
+    for mask, colour in ((found.ref_only, palette.ref), (found.mov_only, palette.mov)):
+        pixels[_pool_mask(mask, factor)] = (*colour, 255)
+    return Picture(pixels, factor)
+
+
+def _pool_mask(mask: BoolArray, factor: int) -> BoolArray:
+    """Where a block of ``factor`` x ``factor`` cells holds one of the mask."""
+    return mask if factor == 1 else np.asarray(block_reduce(mask, (factor, factor), np.max), dtype=np.bool_)
 
 
 def upright(pixels: Pixels) -> Pixels:

@@ -18,8 +18,8 @@ from algorithms.pose import FloatArray, Pose2
 from app.layout import Rect
 from app.palette import Palette, Rgb, css
 
-# ink.js first: page.js draws with it, and so does a saved replay
-SCRIPTS = ("ink.js", "page.js", "hand.js")
+# ink.js first: page.js draws with it, and so does a saved replay; the others add to the page
+SCRIPTS = ("ink.js", "page.js", "hand.js", "compare.js", "measure.js")
 _SCRIPT = "\n".join((Path(__file__).parent / name).read_text(encoding="utf-8") for name in SCRIPTS)
 
 Item = dict[str, Any]
@@ -88,6 +88,11 @@ class Stage:
         """Light or dark ink, and the colour of what no map knows."""
         with self._lock:
             self._pending.update(dark=palette.dark, background=css(palette.unknown))
+
+    def compare(self, **told: Any) -> None:
+        """How the two maps are compared where they lie: modes, mode, places, colours; see compare.js."""
+        with self._lock:
+            self._pending.setdefault("compare", {}).update(told)
 
     def listen(self, uuid: str) -> None:
         """Have the page tell its events to this field; see app/channel.py."""

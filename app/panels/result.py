@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from algorithms.conflicts import Conflicts
 from algorithms.fuse import fuse
 from algorithms.merit import performance_index
 from algorithms.pose import pose_error
@@ -14,6 +15,7 @@ from algorithms.steps import MergeResult
 from app import words
 from app.inputs import Inputs
 from app.measure import measure_of
+from app.panels.places import places_html
 from app.panels.tables import box, table
 
 STAGES = {
@@ -28,16 +30,24 @@ STAGES = {
 }
 
 
-def result_html(result: MergeResult, inputs: Inputs, config: Any = None, faded: bool = False) -> str:
+def result_html(
+    result: MergeResult,
+    inputs: Inputs,
+    config: Any = None,
+    found: Conflicts | None = None,
+    faded: bool = False,
+) -> str:
     """HTML of the whole result; faded where it is out of date.
 
     config : the settings that were used
+    found  : where the maps contradict each other
     """
     verdict = result.verdict
     mood = "accepted" if verdict.accepted else "refused"
     note = "Out of date: a setting was changed." if faded else words.remedy(result, config)
     return (
         box(verdict.reason, mood, note, faded)
+        + (places_html(found, faded) if found is not None else "")
         + table(numbers(result, inputs, config), faded=faded)
         + table(times(result), ("time per stage", "ms"), faded)
     )

@@ -7,6 +7,7 @@ from typing import Literal
 
 import viser
 
+from algorithms.conflicts import Conflicts
 from algorithms.fuse import Fusion
 from algorithms.gridmap import GridMap
 from algorithms.pose import Pose2
@@ -17,6 +18,7 @@ from app.palette import Palette
 from app.views.images import GridImage
 
 Which = Literal["sources", "levels", "merged"]
+Mode = Literal["overlay", "blink", "curtain", "difference"]  # how two maps are compared where they lie
 
 # Heights in the order they lie on each other; all floors are below all walls, so that a map that
 # slides over the other hides none of its walls.
@@ -50,24 +52,29 @@ class Ground:
             GridImage(scene, "/world/ref/merged_free", MERGED_FREE),
             GridImage(scene, "/world/ref/merged_walls", MERGED_WALLS),
         )
+        self._denied = GridImage(scene, "/world/ref/denied", MERGED_WALLS)
         self._ghost_frame = scene.add_frame("/world/ghost", show_axes=False)
         self._ghost = GridImage(scene, "/world/ghost/walls", GHOST)
         self._haunted: GridMap | None = None  # whose walls the ghost is made of
         self._ghost_at: Pose2 | None = None
-        self._all = (*self._free, *self._walls, *self._levels, *self._merged, self._ghost)
+        self._all = (*self._free, *self._walls, *self._levels, *self._merged, self._denied, self._ghost)
         self._layout: Layout | None = None
         self._palette: Palette | None = None
         self._mov: GridMap | None = None
         self._lifted: AugmentDetail | None = None
         self._fused: Fusion | None = None
+        self._conflicts: Conflicts | None = None
+        self._contrasted: Conflicts | None = None  # those that are drawn
+        self._mode: Mode = "overlay"
         self.which: Which = "sources"
+        self._hidden = False
 
     def load(self, ref: GridMap | None, mov: GridMap | None, layout: Layout, palette: Palette) -> None:
         """Draw two maps; what was there before is gone."""
         for image in self._all:
             image.remove()
         self._layout, self._palette, self._lifted, self._fused = layout, palette, None, None
-        self._haunted = None
+        self._haunted = self._contrasted = None
         self._mov = mov
         colours, anchors = (palette.ref, palette.mov), (layout.anchor_ref, layout.anchor_mov)
         most = self._most
@@ -90,11 +97,33 @@ class Ground:
     def merge(self, fusion: Fusion) -> None:
         """Show this merged map."""
         if fusion is not self._fused and self._layout is not None and self._palette is not None:
+            if self._fused is not None:
+                self._conflicts = None  # they were of the other one
             self._fused = fusion
             floor, walls = self._merged
             for image, draw in ((floor, render.merged_floor), (walls, render.merged_walls)):
                 image.show(draw(fusion, self._palette, self._most), fusion.merged, self._layout.anchor_ref)
         self.show("merged")
+
+    def compare(self, mode: Mode, conflicts: Conflicts | None) -> None:
+        """Show both maps in this way, where one lies over the other.
+
+        conflicts : of the merged map; None where there is none, and then no difference to show
+        """
+        self._mode, self._conflicts = mode, conflicts
+        if not self._hidden:
+            self.show(self.which)
+
+    def _contrast(self) -> bool:
+        """Have the picture of what contradicts at hand; whether there is one."""
+        found, fusion = self._conflicts, self._fused
+        if found is None or fusion is None or self._palette is None or self._layout is None:
+            return False
+        if found is not self._contrasted:
+            self._contrasted = found
+            picture = render.denied_walls(fusion, found, self._palette)
+            self._denied.show(picture, fusion.merged, self._layout.anchor_ref)
+        return True
 
     def ghost(self, at: Pose2 | None) -> None:
         """Show map 2's walls faintly with its anchor at another place of the scene; None: nowhere."""
@@ -106,22 +135,34 @@ class Ground:
             self._ghost_frame.position = (at.x, at.y, 0.0)
             self._ghost_frame.wxyz = (cos(at.theta / 2), 0.0, 0.0, sin(at.theta / 2))
         self._ghost_at = at
-        self._ghost.visible(at is not None)
+        self._show_ghost()
 
     def show(self, which: Which) -> None:
         """Show one set of pictures and hide the others."""
-        self.which = which
+        self.which, self._hidden = which, False
+        floor, walls = self._merged
+        seen: str = which
+        if which != "levels" and self._mode in ("blink", "curtain"):
+            seen = "sources"
+        elif which == "merged" and self._mode == "difference" and self._contrast():
+            seen = "difference"
         for images, among in (
             (self._free, ("sources", "levels")),
             (self._walls, ("sources",)),
             (self._levels, ("levels",)),
-            (self._merged, ("merged",)),
+            ((floor,), ("merged", "difference")),
+            ((walls,), ("merged",)),
+            ((self._denied,), ("difference",)),
         ):
             for image in images:
-                image.visible(which in among)
-        self._ghost.visible(self._ghost_at is not None)
+                image.visible(seen in among)
+        self._show_ghost()
+
+    def _show_ghost(self) -> None:
+        self._ghost.visible(self._ghost_at is not None and self._mode == "overlay")
 
     def hide(self) -> None:
         """Hide everything; ``show(self.which)`` brings it back."""
+        self._hidden = True
         for image in self._all:
             image.visible(False)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import viser
 
+from algorithms.conflicts import Conflicts
 from algorithms.fuse import Fusion
 from algorithms.gridmap import FREE, OCCUPIED_FROM
 from algorithms.pose import FloatArray, Pose2
@@ -31,7 +32,7 @@ from app.render import MOST_PIXELS
 from app.stage import Stage, cloud, mark
 from app.story import Story
 from app.views import signs
-from app.views.ground import Ground
+from app.views.ground import Ground, Mode
 
 TURN_MS, SLIDE_MS, FOLLOW_MS = 900.0, 330.0, 70.0
 MOST_PARTICLES = 600  # drawn; more would be a blot
@@ -48,6 +49,7 @@ class MapView:
         self._inputs = Inputs()
         self._palette = LIGHT
         self._mov_at = Pose2()
+        self._mode: Mode = "overlay"
         self._boxed: object = None  # the box that is drawn and looked at
         self.layout = Layout(np.zeros(2), np.zeros(2), None, None, Pose2())
 
@@ -82,6 +84,16 @@ class MapView:
         else:
             self._ground.hide()
             self._clear(*OF_A_RUN, "robots", "sight")
+
+    @property
+    def together(self) -> bool:
+        """Whether map 2 lies over map 1, as it is."""
+        return self._inputs.complete and self._ground.which != "levels" and self._mov_at != self.layout.apart
+
+    def compare(self, mode: Mode, conflicts: Conflicts | None) -> None:
+        """Show both maps in this way where they lie over each other; a rival would be one map too many."""
+        self._mode = mode
+        self._ground.compare(mode, conflicts)
 
     def extent(self) -> Rect:
         """Rectangle around both maps as they lie now."""
@@ -211,7 +223,7 @@ class MapView:
         if fusion is not None:
             self._ground.merge(fusion)
         mov = self._inputs.mov
-        if result is None or result.verdict.rival is None or mov is None:
+        if result is None or result.verdict.rival is None or mov is None or self._mode != "overlay":
             return self.layout.view(at)
         rival = self.layout.placed(result.verdict.rival)
         self._ground.ghost(rival)

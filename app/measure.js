@@ -1,0 +1,114 @@
+// A distance on the map: press "Measure", then two places, or drag from one to the other; Escape ends it.
+// And words that go to the clipboard at a press.
+(() => {
+  const S = window.mapmeld;
+  if (S.measure) { S.measure.reset(); return; }
+  const { metre, words } = S.kit;
+  const M = { on: false, line: null };
+  S.measure = M;
+  M.reset = () => { M.on = false; M.line = null; };
+  let sheet = null, switched = null, fixed = false, pressed = null;
+
+  const text = (number, digits) => number.toFixed(digits).replace("-", "−");
+  function show() {
+    if (!sheet) return;
+    const there = S.view === "map" && Boolean(S.hud.measure); // a map to measure on
+    if (!there) end();
+    sheet.hidden = !M.on;
+    switched.parentElement.hidden = !there;
+    switched.setAttribute("aria-pressed", M.on);
+    S.dirty = true;
+  }
+  function end() { M.on = false; M.line = null; pressed = null; if (sheet) sheet.hidden = true; switched?.setAttribute("aria-pressed", false); S.dirty = true; }
+  function place(e) { // of the pointer; metres of the scene, whose axes are map 1's
+    const box = S.kit.canvas().getBoundingClientRect(), camera = S.kit.camera(), px = metre(camera);
+    return [(e.clientX - box.left - box.width / 2) / px + camera.position.x, (box.top + box.height / 2 - e.clientY) / px + camera.position.y];
+  }
+  function set(a, b) {
+    const x = b[0] - a[0], y = b[1] - a[1];
+    M.line = { a, b, metres: Math.hypot(x, y), degrees: Math.atan2(y, x) * 180 / Math.PI };
+    S.dirty = true;
+  }
+  function adopt(hud, canvas) {
+    sheet = document.createElement("div"); sheet.className = "mm-sheet"; sheet.hidden = true;
+    sheet.onpointerdown = (e) => {
+      if (e.button) return;
+      sheet.setPointerCapture(e.pointerId);
+      pressed = [e.clientX, e.clientY];
+      if (M.line && !fixed) { set(M.line.a, place(e)); fixed = true; } // the second place
+      else { set(place(e), place(e)); fixed = false; }
+    };
+    sheet.onpointermove = (e) => { if (M.line && !fixed) set(M.line.a, place(e)); };
+    sheet.onpointerup = (e) => { // a drag ends where it is let go; a click waits for the second place
+      if (pressed && Math.hypot(e.clientX - pressed[0], e.clientY - pressed[1]) > 4) fixed = true;
+      pressed = null;
+    };
+    // the wheel goes on to zoom the map
+    sheet.addEventListener("wheel", (e) => { e.preventDefault(); canvas.dispatchEvent(new WheelEvent(e.type, e)); }, { passive: false });
+    hud.prepend(sheet);
+    S.kit.keep(sheet);
+    const group = document.createElement("span");
+    switched = document.createElement("button");
+    switched.type = "button"; switched.textContent = "Measure";
+    switched.title = "A distance in metres: two places on the map, or drag. Escape ends it.";
+    switched.onclick = () => { if (M.on) end(); else { M.on = true; fixed = false; } show(); };
+    group.append(switched);
+    S.kit.keep(group);
+    hud.querySelector(".mm-tools").append(group);
+    show();
+  }
+  document.addEventListener("keydown", (e) => { if (e.key === "Escape" && M.on) { end(); show(); } });
+
+  function paint(g, view) {
+    if (!M.on || S.view !== "map") return;
+    const colour = S.dark ? "#F9FAFB" : "#111827";
+    if (!M.line) return;
+    const a = view.project("scene", M.line.a), b = view.project("scene", M.line.b);
+    const along = Math.atan2(b[1] - a[1], b[0] - a[0]), nx = -6 * Math.sin(along), ny = 6 * Math.cos(along);
+    for (const [width, stroke] of [[5, S.dark ? "rgba(17,24,39,.9)" : "rgba(255,255,255,.95)"], [2, "#CC79A7"]]) {
+      g.setLineDash([]); g.lineWidth = width; g.strokeStyle = stroke; g.lineCap = "round"; g.beginPath();
+      g.moveTo(a[0], a[1]); g.lineTo(b[0], b[1]);
+      for (const [x, y] of [a, b]) { g.moveTo(x - nx, y - ny); g.lineTo(x + nx, y + ny); }
+      g.stroke(); g.lineCap = "butt";
+    }
+    // beside the middle, on the side that is up, so that the line is never written over
+    const up = ny > 0 ? -1 : 1, far = 17 + 26 * Math.abs(Math.sin(along));
+    const x = (a[0] + b[0]) / 2 + up * nx / 6 * far, y = (a[1] + b[1]) / 2 + up * ny / 6 * far;
+    const [dx, dy] = [M.line.b[0] - M.line.a[0], M.line.b[1] - M.line.a[1]];
+    words(g, view, `${text(M.line.metres, M.line.metres < 10 ? 3 : 2)} m  at ${text(M.line.degrees, 1)}°`, x, y - 7, colour, 14, "center");
+    words(g, view, `Δx ${text(dx, 2)} m, Δy ${text(dy, 2)} m in map 1`, x, y + 8, colour, 11, "center");
+  }
+  let seenView = "";
+  function frame() { if (S.view !== seenView) { seenView = S.view; show(); } }
+  function apply(message) { if (message.hud && ("measure" in message.hud || "case" in message.hud)) { end(); show(); } }
+  S.parts.push({ adopt, frame, paint, apply });
+
+  // --- the clipboard ----------------------------------------------------------------------------
+  async function copy(words) { // a page that is not served safely has no clipboard: the old way then
+    try { await navigator.clipboard.writeText(words); return true; } catch { /* the old way */ }
+    const field = document.createElement("textarea");
+    field.value = words; field.style.cssText = "position:fixed;opacity:0";
+    document.body.append(field); field.select();
+    const done = document.execCommand("copy");
+    field.remove();
+    return done;
+  }
+  document.addEventListener("click", async (e) => {
+    const b = e.target.closest?.("[data-mm-copy]");
+    if (!b || b.disabled) return;
+    const done = await copy(b.dataset.mmCopy), said = b.dataset.mmSaid || b.textContent;
+    b.dataset.mmSaid = said;
+    if (!done) { // leave it marked: Ctrl+C is all that is left to do
+      const line = b.parentElement.querySelector("code");
+      if (line) getSelection().selectAllChildren(line);
+    }
+    b.textContent = done ? "Copied" : "Press Ctrl+C";
+    setTimeout(() => { b.textContent = said; }, 1800);
+  });
+
+  const style = document.createElement("style");
+  style.textContent = `
+    .mm-sheet{position:absolute;inset:0;pointer-events:auto;cursor:crosshair;touch-action:none}
+    .mm-sheet[hidden]{display:none}`;
+  document.head.append(style);
+})();
