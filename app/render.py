@@ -107,9 +107,9 @@ def merged_walls(fusion: Fusion, palette: Palette, most: int = MOST_PIXELS) -> P
     return Picture(pixels, factor)
 
 
-def denied_walls(fusion: Fusion, found: Conflicts, palette: Palette) -> Picture:
+def denied_walls(fusion: Fusion, found: Conflicts, palette: Palette, most: int = MOST_PIXELS) -> Picture:
     """Walls that the other map denies, in the colour of the map they are of; all other walls faint."""
-    factor = pooling(fusion.merged.cells.shape)
+    factor = pooling(fusion.merged.cells.shape, most)
     wall = np.maximum(pool(fusion.ref_cells, factor), pool(fusion.mov_cells, factor)) >= OCCUPIED_FROM
     pixels = _tinted(wall, palette.margin, FAINT)
     for mask, colour in ((found.ref_only, palette.ref), (found.mov_only, palette.mov)):

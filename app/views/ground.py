@@ -121,7 +121,7 @@ class Ground:
             return False
         if found is not self._contrasted:
             self._contrasted = found
-            picture = render.denied_walls(fusion, found, self._palette)
+            picture = render.denied_walls(fusion, found, self._palette, self._most)
             self._denied.show(picture, fusion.merged, self._layout.anchor_ref)
         return True
 
