@@ -7,12 +7,12 @@ from typing import Any, get_args
 from algorithms.conflicts import Conflicts, Place
 from algorithms.pose import FloatArray
 from app.palette import Palette, css
+from app.panels.places import MOST_PLACES
 from app.stage import Stage
 from app.views.ground import Mode
 from app.views.maps import MapView
 
 MODES: tuple[Mode, ...] = get_args(Mode)
-MOST_PLACES = 12  # that are listed and ringed; the smaller ones are told in sum
 
 
 def rings(places: tuple[Place, ...], anchor: FloatArray) -> list[dict[str, Any]]:

@@ -12,9 +12,9 @@ from algorithms.fuse import fuse
 from algorithms.gridmap import FREE, OCCUPIED, GridMap
 from algorithms.pose import Pose2
 from app import render
-from app.comparison import MOST_PLACES, rings
+from app.comparison import rings
 from app.palette import DARK, LIGHT
-from app.panels.places import places_html, summary, whose
+from app.panels.places import MOST_PLACES, places_html, summary, whose
 
 NOTHING = Conflicts(np.zeros((2, 2), bool), np.zeros((2, 2), bool), (), 0.0)
 WALL = Place(1.0, -2.0, 0.5, 3.0, 0.0)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from algorithms.conflicts import Conflicts, Place
-from app.comparison import MOST_PLACES
+
+MOST_PLACES = 12  # that are listed, and ringed on the map; the smaller ones are told in sum
 
 
 def places_html(found: Conflicts, faded: bool = False) -> str:

@@ -10,50 +10,16 @@ import numpy as np
 from algorithms.fuse import Fusion
 from algorithms.gridmap import FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, CellArray
 from algorithms.observation import Encounter
-from algorithms.pose import FloatArray, Pose2
+from algorithms.pose import Pose2
 from algorithms.steps import AugmentDetail, HoughDetail, MergeResult
 from app.lesson.study import Study
-from app.palette import VIRIDIS, Palette, Rgb
-from app.pictures.raster import View, around, draw_levels, draw_map
+from app.palette import VIRIDIS, Palette
+from app.pictures.plan import robot, scale_bar, scene, view_of
+from app.pictures.raster import draw_levels, draw_map
 from app.pictures.sheet import INK, Plot, Sheet, number, turn_label
 from app.stage import ellipse
 
 HALF = 184.0  # width of one of two pictures side by side
-ROBOT = np.array([[1.35, 0.0], [-0.85, 0.8], [-0.45, 0.0], [-0.85, -0.8]])
-
-
-def scene(sheet: Sheet, x: float, y: float, wide: float, high: float, view: View) -> Plot:
-    """A plot over a view of the plane; pixels of the view are drawn finer than those of the sheet."""
-    x0, y0, x1, y1 = view.rect
-    return Plot(sheet, x, y, wide, high, (x0, x1), (y0, y1))
-
-
-def view_of(centre: FloatArray, half: float, wide: float, high: float) -> View:
-    """A square-pixelled view about a place, two pixels to one of the sheet."""
-    return View(around(centre, half, wide / high), int(2 * wide), int(2 * high))
-
-
-def robot(plot: Plot, at: FloatArray, heading: float | None, colour: Rgb, r: float = 7) -> None:
-    """A robot, its nose to where it is heading; a disc where that is not known."""
-    x, y = plot.one(*at.tolist())
-    if heading is None:
-        plot.sheet.dot(x, y, 0.75 * r, colour, "#fff")
-        return
-    c, s = cos(heading), sin(heading)
-    points = r * ROBOT @ np.array([[c, s], [-s, c]]) * (1, -1) + (x, y)
-    plot.sheet.path(points, "#fff", 3, colour, close=True)
-    plot.sheet.path(points, None, 0, colour, close=True)
-
-
-def scale_bar(plot: Plot, colour: str = INK) -> None:
-    """How long a metre is, at the lower left of a plot."""
-    px = plot.wide / (plot.across[1] - plot.across[0])
-    metres = next((m for m in (50, 20, 10, 5, 2, 1, 0.5, 0.2, 0.1) if m * px <= 0.4 * plot.wide), 0.05)
-    x, y = plot.x + 6, plot.y + plot.high - 7
-    sheet = plot.sheet
-    sheet.rect(x - 4, y - 14, metres * px + 8, 19, "#fff", None, 0.75)
-    sheet.path([(x, y - 3), (x, y), (x + metres * px, y), (x + metres * px, y - 3)], "#111827", 1.5)
-    sheet.text(x + metres * px / 2, y - 5, f"{number(metres)} m", 9, "middle", "#111827")
 
 
 def observation(study: Study, at: Sequence[int], palette: Palette) -> str:

@@ -12,7 +12,7 @@ from algorithms.steps import AugmentDetail, HoughDetail, ShiftDetail, WindowDeta
 from app.layout import known_corners
 from app.lesson.study import Study
 from app.palette import Palette, viridis
-from app.pictures.maps import scale_bar, scene
+from app.pictures.plan import scale_bar, scene
 from app.pictures.raster import View, around, draw_map, walls
 from app.pictures.sheet import INK, Plot, Sheet, number, turn_label
 from app.stage import ellipse, rectangle
