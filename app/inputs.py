@@ -12,10 +12,14 @@ from algorithms.observation import Encounter, Observation, encounter, name_of
 
 @dataclass(frozen=True)
 class Upload:
-    """One file as the browser sent it; its name is never used as a path."""
+    """One file as the browser sent it; its name is never used as a path.
+
+    by_form : it was not sent but made of what a person filled in
+    """
 
     name: str
     content: bytes
+    by_form: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +41,7 @@ class Inputs:
     observations : one sighting or several
     name         : what to call the pair before a person
     truth        : the known answer of a sample
+    bare         : numbers of the maps whose image is there, and nothing that says what it shows
     """
 
     ref: GridMap | None = None
@@ -44,6 +49,7 @@ class Inputs:
     observations: tuple[Observation, ...] = ()
     name: str = ""
     truth: Truth | None = None
+    bare: tuple[int, ...] = ()
 
     @property
     def encounters(self) -> tuple[Encounter, ...]:
@@ -62,6 +68,11 @@ class Inputs:
 
     def missing(self) -> str:
         """What to load next, as a sentence; empty where nothing is missing."""
+        if self.bare:
+            return (
+                f"Map {self.bare[0]}'s image has no YAML file yet: load it, or fill in the form below the "
+                "image and press “Use this map”."
+            )
         if self.ref is None and self.mov is None:
             if not self.observations:
                 return "Choose a sample, or load two maps and an observation."

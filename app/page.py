@@ -122,7 +122,7 @@ class Page:
                 dark=self._switch,
             ),
         )
-        self._files = FilesPanel(gui, self._load, self._report, chosen, self._turn)
+        self._files = FilesPanel(gui, self._load, self._report, chosen, self._save, self._turn)
         self._observation = ObservationPanel(gui)
         self._tuning = TuningPanel(gui, self._changed, self._report, self._turn)
         self._export = ExportPanel(client)
@@ -153,6 +153,9 @@ class Page:
         """What is on the page, before anything has come of it."""
         tuning, goal = self._tuning, "merge" if self._merged else "candidates" if self._asked else None
         return Desk(self._inputs, self._files.files, tuning.method, tuning.config, self._run.seed, goal)
+
+    def _save(self, name: str, content: bytes) -> None:
+        self._client.send_file_download(name, content, save_immediately=True)
 
     def _restore(self, desk: Desk) -> None:
         """Put a desk back: as it was, or worked out again where that has been let go of."""

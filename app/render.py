@@ -15,7 +15,7 @@ from skimage.measure import block_reduce
 from algorithms.augment import AugmentedMap
 from algorithms.conflicts import Conflicts
 from algorithms.fuse import Fusion
-from algorithms.gridmap import FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, CellArray
+from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, CellArray
 from app.palette import Palette, Rgb, viridis
 
 Pixels = NDArray[np.uint8]
@@ -66,6 +66,17 @@ def floor(cells: CellArray, palette: Palette, alpha: int = 255, most: int = MOST
     """What is known and no wall, in the colour of free space; unknown is transparent."""
     factor = pooling(cells.shape, most)
     return Picture(_tinted(pool(cells, factor) != UNKNOWN, palette.free, alpha), factor)
+
+
+def sheet(cells: CellArray, colour: Rgb, palette: Palette, most: int = MOST_PIXELS) -> Picture:
+    """A whole map by itself: walls in a colour, floor, and what is neither."""
+    factor = pooling(cells.shape, most)
+    pooled = pool(cells, factor)
+    pixels = np.full((*pooled.shape, 4), 255, dtype=np.uint8)
+    pixels[..., :3] = palette.unknown
+    pixels[(pooled >= FREE) & (pooled <= FREE_UP_TO), :3] = palette.free
+    pixels[pooled >= OCCUPIED_FROM, :3] = colour
+    return Picture(pixels, factor)
 
 
 def levels(augmented: AugmentedMap, palette: Palette, most: int = MOST_PIXELS) -> Picture:

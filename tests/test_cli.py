@@ -254,6 +254,16 @@ def test_plain_images_merge_where_their_resolution_is_given(case_folder, tmp_pat
     assert read_map(tmp_path / "out" / "merged.yaml").resolution == case.ref.resolution
 
 
+@pytest.mark.parametrize("given", ["0.1", "0.1,0.1"])
+def test_a_resolution_for_maps_that_say_their_own_is_refused(case_folder, tmp_path, capsys, given):
+    words = ["merge", *inputs(case_folder), "--out", str(tmp_path / "out"), "--resolution", given]
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert "map1.yaml is no plain image" in error
+    assert "leave --resolution out" in error
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_file_of_several_observations_is_merged_and_a_robot_off_its_map_is_told_by_number(
     case_folder, small_case, tmp_path, capsys
 ):

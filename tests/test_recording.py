@@ -24,11 +24,11 @@ from app import words
 from app.cli import main
 from app.inputs import Inputs
 from app.panels.replay import file_name
+from app.png import data_uri
 from app.render import upright
 from app.replay import About, record, replay_html
 from app.replay.curves import thinned
 from app.replay.page import as_script
-from app.replay.pictures import data_uri
 from app.replay.record import PICTURE
 from app.story import Story
 

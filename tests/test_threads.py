@@ -71,7 +71,7 @@ def test_files_that_arrive_together_are_taken_one_after_the_other(server, tmp_pa
         loaded.append(inputs)
         here.release()
 
-    panel = FilesPanel(server.gui, load, reports.append, "")
+    panel = FilesPanel(server.gui, load, reports.append, "", lambda name, content: None)
     lacking = b"image: mine.pgm\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
     files = [
         ("yaml1", viser.UploadedFile("mine.yaml", lacking)),

@@ -13,18 +13,21 @@ from typing import BinaryIO
 
 from algorithms.atomic import write_files
 from algorithms.errors import InputFileError, OutputError, SettingError
-from algorithms.gridmap import GridMap
+from algorithms.gridmap import CellArray, GridMap
 from algorithms.mapio import fields
 from algorithms.mapio.image import read_pixels
-from algorithms.mapio.shading import MODES, Shading, cells_of, greys_of
+from algorithms.mapio.shading import MODES, GreyArray, Shading, cells_of, greys_of
 from algorithms.pose import Pose2
 
 __all__ = [
+    "GreyImage",
     "MapMeta",
     "Shading",
+    "grey_image",
     "image_map_from_bytes",
     "map_from_bytes",
     "map_to_bytes",
+    "meta_to_bytes",
     "parse_meta",
     "read_bytes",
     "read_image",
@@ -55,6 +58,18 @@ class MapMeta:
     resolution: float
     origin: Pose2
     shading: Shading
+
+
+@dataclass(frozen=True, eq=False)
+class GreyImage:
+    """A decoded image: grey and, where it has one, alpha; (H, W) uint8, row 0 at the top."""
+
+    grey: GreyArray
+    alpha: GreyArray | None
+
+    def cells(self, shading: Shading) -> CellArray:
+        """(H, W) int8 cells under a shading, row 0 at the bottom."""
+        return cells_of(self.grey, self.alpha, shading)
 
 
 def read_map(path: Path) -> GridMap:
@@ -109,6 +124,14 @@ def image_map_from_bytes(
     return _to_map(name, io.BytesIO(data), meta, PurePath(name).stem)
 
 
+def grey_image(name: str, data: bytes) -> GreyImage:
+    """An upload decoded once, to try several shadings on it.
+
+    raises : InputFileError, TooLargeError
+    """
+    return GreyImage(*read_pixels(name, io.BytesIO(data)))
+
+
 def write_map(yaml_path: Path, grid: GridMap) -> None:
     """Write a map: the YAML file, and a PGM of the same stem beside it, both whole or not at all.
 
@@ -132,18 +155,22 @@ def map_to_bytes(grid: GridMap, stem: str) -> dict[str, bytes]:
     pixels, shading = greys_of(grid.cells)
     image = f"P5\n{grid.width} {grid.height}\n255\n".encode() + pixels
     name = f"{stem}.pgm"
+    return {name: image, f"{stem}.yaml": meta_to_bytes(MapMeta(name, grid.resolution, grid.origin, shading))}
+
+
+def meta_to_bytes(meta: MapMeta) -> bytes:
+    """The content of a map's YAML file; ``parse_meta`` reads it back as it is."""
     number = fields.number_text
-    o = grid.origin
-    text = (
-        f"image: {fields.quoted(name)}\n"
+    o, shading = meta.origin, meta.shading
+    return (
+        f"image: {fields.quoted(meta.image)}\n"
         f"mode: {shading.mode}\n"
-        f"resolution: {number(grid.resolution)}\n"
+        f"resolution: {number(meta.resolution)}\n"
         f"origin: [{number(o.x)}, {number(o.y)}, {number(o.theta)}]\n"
-        "negate: 0\n"
+        f"negate: {int(shading.negate)}\n"
         f"occupied_thresh: {number(shading.occupied_thresh)}\n"
         f"free_thresh: {number(shading.free_thresh)}\n"
-    )
-    return {name: image, f"{stem}.yaml": text.encode()}
+    ).encode()
 
 
 def parse_meta(source: str, data: bytes) -> MapMeta:

@@ -11,7 +11,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from algorithms.errors import OutputError
+from algorithms.errors import OutputError, SettingError
 from app.usage import Parser
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def add_resolution(parser: Parser) -> None:
         type=_resolutions,
         metavar="M[,M]",
         help="metres per pixel of maps given as plain images, whose lower-left corner is then the origin; "
-        "two numbers where the maps differ",
+        "two numbers where the maps differ; a YAML file says its own",
     )
 
 
@@ -96,11 +96,18 @@ def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, tuple[Obser
     from algorithms.casefiles import read_observations
     from algorithms.mapio import IMAGE_SUFFIXES, read_image, read_map
 
-    maps = []
-    for path, resolution in zip((args.map1, args.map2), args.resolution or (None, None), strict=True):
-        plain = resolution is not None and path.suffix.lower() in IMAGE_SUFFIXES
-        maps.append(read_image(path, resolution) if plain else read_map(path))
-    ref, mov = maps
+    paths, given = (args.map1, args.map2), args.resolution or ()
+    plain = [path.suffix.lower() in IMAGE_SUFFIXES for path in paths]
+    # one number is for the plain images among the two, two numbers are for one map each
+    if given and not (all(plain) or (len(given) == 1 and any(plain))):
+        raise SettingError(
+            f"--resolution is given, but {paths[plain.index(False)]} is no plain image: its YAML file says "
+            "its own resolution; leave --resolution out, or correct the key resolution there"
+        )
+    ref, mov = (
+        read_image(path, resolution) if resolution is not None and image else read_map(path)
+        for path, resolution, image in zip(paths, (*given, *given, None, None), plain, strict=False)
+    )
     return ref, mov, read_observations(args.observation)
 
 
@@ -177,11 +184,11 @@ def _summary(
     return lines
 
 
-def _resolutions(text: str) -> tuple[float, float]:
+def _resolutions(text: str) -> tuple[float, ...]:
     try:
         numbers = [float(part) for part in text.split(",")]
     except ValueError:
         numbers = []
     if len(numbers) not in (1, 2) or not all(0 < number < float("inf") for number in numbers):
         raise argparse.ArgumentTypeError(f"{text} is neither one positive number nor two with a comma")
-    return numbers[0], numbers[-1]
+    return tuple(numbers)

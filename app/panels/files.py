@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from html import escape
 from pathlib import PurePath
 from threading import RLock
@@ -15,6 +16,7 @@ from algorithms.mapio import map_from_bytes
 from app import paths
 from app.inputs import Files, Inputs, Upload
 from app.palette import QUIET
+from app.panels.imageform import ImageForm
 
 NONE = "(choose)"
 Report = Callable[[MapMergeError], None]
@@ -28,6 +30,8 @@ SLOTS = {
     "image2": ("Map 2: image", ".pgm,.png,.bmp"),
     "observation": ("Observation: YAML", ".yaml,.yml"),
 }
+
+MAPS = (1, 2)
 
 
 def inputs_from(uploads: dict[str, Upload]) -> Inputs:
@@ -43,11 +47,13 @@ def inputs_from(uploads: dict[str, Upload]) -> Inputs:
         return map_from_bytes(text.name, text.content, image.name, image.content)
 
     seen = uploads.get("observation")
+    bare = tuple(n for n in MAPS if f"image{n}" in uploads and f"yaml{n}" not in uploads)
     return Inputs(
         ref=grid(1),
         mov=grid(2),
         observations=observations_from_bytes(seen.name, seen.content) if seen else (),
         name="your files" if uploads else "",
+        bare=bare,
     )
 
 
@@ -60,8 +66,10 @@ class FilesPanel:
         load: Callable[[Inputs], None],
         report: Report,
         chosen: str,
+        save: Callable[[str, bytes], None],
         turn: RLock | None = None,
     ) -> None:
+        """save : sends a file to the person."""
         self._load, self._report = load, report
         self._uploads: dict[str, Upload] = {}
         # viser calls back from a thread of its own for each file: two that were dropped together must
@@ -77,11 +85,16 @@ class FilesPanel:
                 hint="A pair that came along.",
             )
             self._sample.on_update(lambda _: self._take_sample())
+            self._forms: dict[int, ImageForm] = {}
             with gui.add_folder("Upload your own", expand_by_default=False):
                 self._status = gui.add_html(self._table())
                 for key, (label, kinds) in SLOTS.items():
                     button = gui.add_upload_button(label, mime_type=kinds, color=QUIET)
                     button.on_upload(lambda _, key=key, button=button: self._take_upload(key, button.value))
+                    if key.startswith("image"):
+                        number = int(key[-1])
+                        use = partial(self._take, f"yaml{number}")
+                        self._forms[number] = ImageForm(gui, number, self._turn, use, save)
                 gui.add_button("Forget uploads", color=QUIET).on_click(lambda _: self._forget())
         self._taken = chosen or NONE
 
@@ -94,6 +107,7 @@ class FilesPanel:
         """Show again where inputs came from, and load nothing."""
         with self._turn:
             self._uploads = dict(files.uploads)
+            self._offer_forms()
             self._status.content = self._table()
             self._taken = files.sample or NONE
             if self._sample.value != self._taken:
@@ -114,24 +128,37 @@ class FilesPanel:
             self._load(Inputs.of(case))
 
     def _take_upload(self, key: str, file: viser.UploadedFile) -> None:
+        # the last part only, and short: it is shown to a person, nothing else
+        name = PurePath(file.name.replace("\\", "/")).name[:80] or key
+        self._take(key, Upload(name, file.content))
+
+    def _take(self, key: str, upload: Upload) -> None:
         with self._turn:
-            before = self._uploads.get(key)
-            # the last part only, and short: it is shown to a person, nothing else
-            self._uploads[key] = Upload(PurePath(file.name.replace("\\", "/")).name[:80] or key, file.content)
+            before = dict(self._uploads)
+            self._uploads[key] = upload
+            text = self._uploads.get(key.replace("image", "yaml"))
+            if key.startswith("image") and text is not None and text.by_form:
+                del self._uploads[key.replace("image", "yaml")]  # it was filled in for another image
             try:
+                self._offer_forms()
                 inputs = inputs_from(self._uploads)
             except MapMergeError as error:
-                del self._uploads[key]
-                if before is not None:
-                    self._uploads[key] = before
+                self._uploads = before
+                self._offer_forms()
                 self._show(inputs_from(self._uploads), bad=key)
                 self._report(error)
                 return
             self._show(inputs)
 
+    def _offer_forms(self) -> None:
+        """A form for every image that came without a YAML file; raises MapMergeError as ``inputs_from``."""
+        for number, form in self._forms.items():
+            form.show(self._uploads.get(f"image{number}"), self._uploads.get(f"yaml{number}"))
+
     def _forget(self) -> None:
         with self._turn:
             self._uploads.clear()
+            self._offer_forms()
             self._show(Inputs())
 
     def _show(self, inputs: Inputs, bad: str = "") -> None:
@@ -148,7 +175,11 @@ class FilesPanel:
             upload = self._uploads.get(key)
             sign = "✗" if key == bad else "✓" if upload else "·"
             colour = "#D55E00" if key == bad else "#009E73" if upload else "#9CA3AF"
-            name = "cannot be used" if key == bad else escape(upload.name) if upload else "missing"
+            name = "missing" if upload is None else escape(upload.name)
+            if upload is not None and upload.by_form:
+                name = "filled in below"
+            if key == bad:
+                name = "cannot be used"
             rows.append(
                 f'<tr><td style="color:{colour};width:1.2em">{sign}</td>'
                 f"<td>{label}</td><td style='opacity:.75;overflow-wrap:anywhere'>{name}</td></tr>"
