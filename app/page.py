@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from functools import partial
+from pathlib import Path
 from threading import RLock
 from typing import Any, Literal
 
@@ -20,18 +21,20 @@ from app.comparison import MODES, Comparison
 from app.desk import Desk
 from app.inputs import Inputs
 from app.keep import Keep, Kept
-from app.layout import lay_out
+from app.layout import Layout, lay_out
 from app.legend import legend
+from app.lesson.mode import Lesson
+from app.lesson.texts import lesson_folder
 from app.palette import DARK, LIGHT, Palette
 from app.panels.export import ExportPanel
 from app.panels.files import FilesPanel
 from app.panels.observation import ObservationPanel
 from app.panels.result import result_html
-from app.panels.run import HEIGHTS, MAP, SWARM, RunPanel, Wishes
+from app.panels.run import HEIGHTS, LESSON, MAP, SWARM, RunPanel, Wishes
 from app.panels.tuning import TuningPanel
 from app.replay import replay_of
 from app.session import Job, Session
-from app.stage import Stage, TabStage, mark
+from app.stage import Item, Stage, TabStage, mark
 from app.story import Story
 from app.timeline import Timeline
 from app.views.ground import Mode
@@ -46,7 +49,9 @@ log = logging.getLogger(__name__)
 class Page:
     """Listens to its session and draws; the callbacks of its widgets only ask."""
 
-    def __init__(self, client: viser.ClientHandle, initial: Case | None, keep: Keep) -> None:
+    def __init__(
+        self, client: viser.ClientHandle, initial: Case | None, keep: Keep, lesson: Path | None = None
+    ) -> None:
         self._client = client
         self._palette: Palette = LIGHT
         self._stage: Stage = TabStage(client)
@@ -69,6 +74,8 @@ class Page:
         self._channel.on("compare", self._compare, mode=MODES)
         inputs = Inputs.of(initial) if initial else Inputs()
         self._build(inputs.name)
+        texts = lesson or lesson_folder()
+        self._lesson = Lesson(self, client.gui, self._tuning, self._turn, texts)
         self._channel.on("hello", lambda **who: self._greet(inputs, **who), key=str, again=bool)
         self._stage.flush()  # the page says hello when it has read where to
 
@@ -100,6 +107,7 @@ class Page:
 
     def _end(self) -> None:
         self._channel.close()
+        self._lesson.close()
         self.session.close()
 
     # --- widgets ----------------------------------------------------------------------------------
@@ -120,6 +128,7 @@ class Page:
                 changed=self._changed,
                 fit=self._fit,
                 dark=self._switch,
+                learn=self._learn,
             ),
         )
         self._files = FilesPanel(gui, self._load, self._report, chosen, self._save, self._turn)
@@ -145,9 +154,14 @@ class Page:
     def _load(self, inputs: Inputs) -> None:
         """Show these inputs in place of everything there was."""
         self.session.stop()
-        with self._turn, self.session.drawing:
-            if self._show_inputs(inputs):
-                self._timeline.note(self._desk())
+        with self._turn:
+            learning = self._lesson.open
+            self._lesson.shut()
+            with self.session.drawing:
+                if self._show_inputs(inputs):
+                    self._timeline.note(self._desk())
+            if learning:
+                self._lesson.enter()
 
     def _desk(self) -> Desk:
         """What is on the page, before anything has come of it."""
@@ -160,6 +174,7 @@ class Page:
     def _restore(self, desk: Desk) -> None:
         """Put a desk back: as it was, or worked out again where that has been let go of."""
         self.session.stop()
+        self._lesson.shut()
         self._tuning.restore(desk.method, desk.config)
         self._run.restore(desk.method, desk.seed)
         self._files.restore(desk.files)
@@ -229,6 +244,7 @@ class Page:
         )
 
     def _merge(self) -> None:
+        self._lesson.leave()
         self._tuning.sync()
         job = self._job(pace=self._run.pace, again=True)
         if job is None:
@@ -246,6 +262,9 @@ class Page:
 
     def _changed(self) -> None:
         """A setting was moved: what is on the screen is out of date."""
+        if self._lesson.open:
+            self._lesson.changed()
+            return
         with self._turn, self.session.drawing:
             live = self.session.busy and self._merged
             goal = "merge" if self._merged else "candidates"
@@ -304,6 +323,7 @@ class Page:
             self._maps.recolour(self._palette, self._story)
             self._comparison.recolour(self._palette)
             self._turn_view()
+            self._lesson.recolour()
 
     def _turn_view(self) -> None:
         """Show the chosen view of the newest state."""
@@ -333,6 +353,78 @@ class Page:
         if self._notice is not None:
             self._notice.remove()
         self._notice = self._client.add_notification(title, text, auto_close_seconds=12.0, color=colour)
+
+    # --- the lesson -------------------------------------------------------------------------------
+
+    @property
+    def inputs(self) -> Inputs:
+        """What is loaded."""
+        return self._inputs
+
+    @property
+    def layout(self) -> Layout:
+        """Where the maps lie in the scene."""
+        return self._maps.layout
+
+    @property
+    def palette(self) -> Palette:
+        """The colours of the page."""
+        return self._palette
+
+    @property
+    def seed(self) -> int:
+        """Where the luck of a run comes from."""
+        return self._run.seed
+
+    def _learn(self, what: str) -> None:
+        if what == LESSON and self._lesson.open:
+            self._lesson.leave()
+        elif what == LESSON:
+            self._lesson.enter()
+
+    def entered(self, open_: bool) -> None:
+        """The lesson takes the place of the plots, or gives it back."""
+        self._run.learning = [LESSON] if open_ else []
+        self._plots.visible(not open_)
+        self._comparison.clear()
+        self._stage.layer("lesson", None)
+        if open_ and self._run.view != MAP:
+            self._run.view = MAP
+            self._turn_view()
+        self._press()
+
+    def came_back(self) -> None:
+        """Show again what there was before the lesson."""
+        if self._timeline.desk is not None:
+            self._restore(self._timeline.desk)
+
+    def method_shown(self, method: str) -> None:
+        """The lesson has chosen a method."""
+        self._run.restore(method, self._run.seed)
+
+    def report(self, error: MapMergeError) -> None:
+        """Something the lesson needs cannot be used."""
+        self._report(error)
+
+    def present(
+        self, story: Story, says: str, ink: list[Item], turn: float | None, look: bool, busy: bool
+    ) -> None:
+        """Show a run on the map, as far as the story goes, and what the lesson draws over it."""
+        with self.session.drawing, self._client.atomic():
+            self._story = story
+            if self._run.view != MAP:
+                self._draw(story, live=False)
+            elif story.reached(AugmentDetail):
+                self._maps.show(story, self._tuning.config, camera=look, live=True)
+            else:
+                self._maps.apart()
+            if turn is not None and self._run.view == MAP:
+                self._maps.turned(turn)
+            self._stage.layer("lesson", ink if self._run.view == MAP else None)
+            mood = "running" if busy else "idle"
+            shown = legend(self._palette, self._run.view, story, mode=self._comparison.mode)
+            self._stage.hud(state=says, mood=mood, progress=None, legend=shown)
+            self._stage.flush()
 
     # --- what the session tells -------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ import logging
 import socket
 import threading
 from math import radians
+from pathlib import Path
 
 import viser
 
@@ -26,10 +27,13 @@ class PortError(MapMergeError):
     """The address cannot be listened at."""
 
 
-def make_server(host: str = "127.0.0.1", port: int = 8080, initial: Case | None = None) -> viser.ViserServer:
+def make_server(
+    host: str = "127.0.0.1", port: int = 8080, initial: Case | None = None, lesson: Path | None = None
+) -> viser.ViserServer:
     """Start to serve; every tab opens with ``initial``.
 
     port   : 0 for any free one (``server.get_port()`` tells which)
+    lesson : folder of the lesson's texts; None for those that come along
     raises : PortError where the port is taken or the address is not this machine's
     """
     _probe(host, port)
@@ -50,7 +54,7 @@ def make_server(host: str = "127.0.0.1", port: int = 8080, initial: Case | None 
         if len(pages) >= MOST_TABS:
             client.gui.add_markdown(f"{MOST_TABS} tabs are open already. Close one, then reload this page.")
             return
-        pages[client.client_id] = Page(client, initial, keep)
+        pages[client.client_id] = Page(client, initial, keep, lesson)
 
     @server.on_client_disconnect
     def _(client: viser.ClientHandle) -> None:

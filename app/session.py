@@ -67,7 +67,10 @@ class Listener(Protocol):
 
 
 class Session:
-    """A worker thread and the request it works on."""
+    """A worker thread and the request it works on.
+
+    One that works ``beside`` another draws on the same page, and knows what the other has worked out.
+    """
 
     def __init__(
         self,
@@ -75,10 +78,11 @@ class Session:
         run: Callable[..., Iterator[Step]] = methods.run,
         clock: Callable[[], float] = perf_counter,
         waiting: Waiting | None = None,
+        beside: Session | None = None,
     ) -> None:
         self._listener, self._run, self._clock = listener, run, clock
         self._waiting = waiting or Waiting()
-        self._memo: Memo = {}
+        self._memo: Memo = beside._memo if beside else {}
         self._wake = Condition()
         self._wanted: Job | None = None
         self._running: Job | None = None
@@ -86,7 +90,7 @@ class Session:
         self._pace = 0.0
         self._closed = False
         # held while a picture is drawn, so that nothing of a run is drawn after Stop has returned
-        self.drawing = RLock()
+        self.drawing = beside.drawing if beside else RLock()
         self._worker = Thread(target=self._work, name="mapmeld-session", daemon=True)
         self._worker.start()
 

@@ -23,7 +23,7 @@ LOCAL = "127.0.0.1"
 PORT = 8080
 FIRST_SAMPLE = "office_r2_r1"
 
-USAGE = "[MAP1 MAP2 --observation FILE] [--host HOST] [--port PORT] [--no-browser]"
+USAGE = "[MAP1 MAP2 --observation FILE] [--host HOST] [--port PORT] [--no-browser] [--lesson DIR]"
 DESCRIPTION = f"""\
 Open the page: two maps, the sighting, every step of the merge.
 
@@ -31,6 +31,7 @@ Examples:
   mapmeld serve                      a sample that ships with mapmeld
   mapmeld serve map1.yaml map2.yaml --observation observation.yaml
   mapmeld serve --port 9000 --no-browser
+  mapmeld serve --lesson my_lesson   the lesson with texts of your own, a Markdown file a step
 
 The page is for this machine alone ({LOCAL}). --host 0.0.0.0 lets everyone on the network
 load files into it. Ctrl-C ends it."""
@@ -49,14 +50,22 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
         "--port", type=_port, help=f"0 for any free one (default: {PORT}, or any free one if that is taken)"
     )
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
+    parser.add_argument(
+        "--lesson",
+        type=Path,
+        metavar="DIR",
+        help="folder of the lesson's texts, yours in place of those in static/lesson/en",
+    )
 
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Serve until Ctrl-C."""
     if (args.map1 is None) != (args.map2 is None) or (args.map1 is None) != (args.observation is None):
         parser.error("give MAP1, MAP2 and --observation FILE together, or none of them for a sample")
+    if args.lesson is not None:
+        _check_lesson(args.lesson)
     case = _case(args)
-    server = _listen(args.host, args.port, case)
+    server = _listen(args.host, args.port, case, args.lesson)
     shown = LOCAL if args.host in ("0.0.0.0", "::", "") else args.host
     url = f"http://{f'[{shown}]' if ':' in shown else shown}:{server.get_port()}"
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # whoever asks it to end, it ends whole
@@ -71,15 +80,25 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     return 0
 
 
-def _listen(host: str, port: int | None, case: Case | None) -> ViserServer:
+def _listen(host: str, port: int | None, case: Case | None, lesson: Path | None) -> ViserServer:
     from app.server import PortError, make_server
 
     if port is not None:
-        return make_server(host, port, case)
+        return make_server(host, port, case, lesson)
     try:
-        return make_server(host, PORT, case)
+        return make_server(host, PORT, case, lesson)
     except PortError:
-        return make_server(host, 0, case)
+        return make_server(host, 0, case, lesson)
+
+
+def _check_lesson(folder: Path) -> None:
+    """Raise InputFileError for the first text that cannot be read: here its author sees it at once."""
+    from app.lesson.numbers import NUMBERS
+    from app.lesson.texts import files, read_step
+    from app.pictures.book import PICTURES
+
+    for path in files(folder):
+        read_step(path, PICTURES, NUMBERS)
 
 
 def _case(args: argparse.Namespace) -> Case | None:

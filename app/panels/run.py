@@ -12,6 +12,7 @@ from app.palette import LIGHT, QUIET
 from app.player import PACES
 
 MAP, HEIGHTS, SWARM = "Map", "Heights", "Swarm space"
+LESSON, MUSEUM = "Lesson", "Museum"
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class Wishes:
     changed: Callable[[], None]
     fit: Callable[[], None]
     dark: Callable[[bool], None]
+    learn: Callable[[str], None]
 
 
 class RunPanel:
@@ -44,6 +46,12 @@ class RunPanel:
         self._speed.on_click(lambda _: wishes.speed())
         self._view = gui.add_button_group("View", (MAP, HEIGHTS, SWARM), order=4)
         self._view.on_click(lambda _: wishes.view())
+        hint = (
+            "Lesson: the method step by step on these maps. Museum: where it goes wrong, and what cures it."
+        )
+        self._learn = gui.add_button_group("Learn", (LESSON, MUSEUM), order=4.7, hint=hint)
+        self._learn.on_click(lambda _: wishes.learn(self._learn.value))
+        self.learning: list[str] = []  # which of them is open
         with gui.add_folder("Run", order=50):
             titles = {method.title: name for name, method in METHODS.items()}
             self._method = gui.add_dropdown(
@@ -106,4 +114,4 @@ class RunPanel:
     @property
     def pressed(self) -> list[str]:
         """The chosen button of each group."""
-        return [self._speed.value, self._view.value]
+        return [self._speed.value, self._view.value, *self.learning]

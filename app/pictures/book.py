@@ -21,7 +21,6 @@ from algorithms.steps import (
     RefineDetail,
     ShiftDetail,
     Step,
-    WindowDetail,
 )
 from app.layout import Layout
 from app.lesson.study import FEW, Study
@@ -124,6 +123,23 @@ def _lines(study: Study, at: At, layout: Layout, palette: Palette) -> list[Item]
     return items
 
 
+def _moves(study: Study, at: At, layout: Layout, palette: Palette) -> list[Item]:
+    """Every particle's last step, and the three pulls on the chosen one, end to end."""
+    told, j = study.few, min(at[1], FEW - 1)
+    k = min(at[0] + 1, len(told) - 1)
+    before, after = told[max(0, k - 1)], told[k]
+    items = [
+        path(np.array([start, end]) - layout.anchor_ref, palette.particle, alpha=0.7, w=1)
+        for start, end in zip(before.poses[:, :2], after.poses[:, :2], strict=True)
+    ]
+    if after.pulls is not None:
+        ends = before.poses[j] + np.concatenate([np.zeros((1, 3)), np.cumsum(after.pulls[:, j], axis=0)])
+        ends = ends[:, :2] - layout.anchor_ref
+        for n, colour in enumerate((palette.ref, palette.best, palette.particle)):
+            items.append(path(ends[n : n + 2], colour, w=3.5, halo=True))
+    return items
+
+
 def _line_dial(study: Study) -> tuple[Dial, ...]:
     return (Dial("line", spectra.LINES),)
 
@@ -176,12 +192,14 @@ PICTURES: dict[str, Picture] = {
         turn=lambda study, at: study.get(HoughDetail).match.turns[at[0]],
     ),
     "shift": Picture((CandidatesDetail,), spectra.shift, _nth(ShiftDetail), _shift_dial),
-    "window": Picture((CandidatesDetail,), spectra.window, _up_to(WindowDetail)),
+    "window": Picture((CandidatesDetail,), spectra.window, _up_to(CandidatesDetail)),
     "objective": Picture((CandidatesDetail,), search.objective, _up_to(CandidatesDetail), _off_dial),
     "samples": Picture(
         (CandidatesDetail,), search.samples, _searching(lambda study: study.samples, 0), _sample_dial
     ),
-    "swarm": Picture((CandidatesDetail,), search.swarm, _searching(lambda study: study.few, 1), _swarm_dials),
+    "swarm": Picture(
+        (CandidatesDetail,), search.swarm, _searching(lambda study: study.few, 1), _swarm_dials, _moves
+    ),
     "proof": Picture((ProvenDetail,), search.proof, _looking, _look_dial),
     "merged": Picture((MergeResult,), maps.merged, _up_to(Fusion)),
     "verdict": Picture((MergeResult,), judgement.verdict, _up_to(MergeResult)),

@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from algorithms.merit import performance_index
 from algorithms.steps import MergeResult
+from algorithms.verdict import HALF
 from app.lesson.study import Study
 from app.palette import LIGHT, Palette, css
 from app.pictures.sheet import INK, Sheet
@@ -20,6 +23,7 @@ class Gauge:
 
     limit : None where nothing is decided by it
     below : whether it has to stay below the limit
+    doubt : whether the verdict finds fault with it, whatever the limit says
     """
 
     name: str
@@ -28,12 +32,13 @@ class Gauge:
     top: float
     limit: float | None
     below: bool = True
+    doubt: bool = False
 
     @property
     def kept(self) -> bool:
         """Whether the number keeps its limit."""
-        if self.limit is None:
-            return True
+        if self.limit is None or self.doubt:
+            return not self.doubt
         return self.value <= self.limit if self.below else self.value >= self.limit
 
 
@@ -45,7 +50,8 @@ def gauges(study: Study) -> list[Gauge]:
         rules.bent_contradiction
     )  # fmt: skip
     rival = v.ambiguity or 0.0
-    doubted = rules.ambiguity if v.rival is None or rival > rules.ambiguity else 0.5
+    spans = (rules.wall, max(rules.wall + 1e-9, rules.plenty)), (HALF, rules.ambiguity)
+    doubted = float(np.interp(v.shared_wall, *spans))  # little wall fits in several places
     index = performance_index(result.fusion) or 0.0
     return [
         Gauge("wall denied by the other map", v.contradiction, f"{v.contradiction:.1%}", 2.5 * most, most),
@@ -53,7 +59,9 @@ def gauges(study: Study) -> list[Gauge]:
             "wall that both should have seen", v.shared_wall, f"{v.shared_wall:.0f} m",
             max(5 * rules.wall, 1.1 * v.shared_wall), rules.wall, False,
         ),
-        Gauge("best rival's share of the value", rival, f"{rival:.0%}", 1.0, doubted),
+        Gauge(
+            "best rival's share of the value", rival, f"{rival:.0%}", 1.0, doubted, True, v.rival is not None
+        ),
         Gauge(
             "robot 2 from where it was seen", v.deviation, f"{v.deviation:.1f} σ",
             max(1.5 * rules.deviations, 1.1 * v.deviation), rules.deviations,

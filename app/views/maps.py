@@ -69,6 +69,10 @@ class MapView:
         self._robots(together=False)
         self._stage.look_down(self.layout.view(), follow=True)
 
+    def turned(self, turn: float) -> None:
+        """Turn map 2 where it lies beside map 1."""
+        self._place(Pose2(self.layout.apart.x, self.layout.apart.y, turn), SLIDE_MS)
+
     def recolour(self, palette: Palette, story: Story) -> None:
         """Draw everything again in other colours."""
         which, self._palette = self._ground.which, palette

@@ -29,6 +29,7 @@ from app.panels.tables import box, table
 from app.story import Story
 
 TURN, SHIFT, SWARM, PROOF, RESULT = "Turn", "Shift", "Swarm", "Proof", "Result"
+WIDTH = 316
 LINES = 4  # courses of the search that are drawn
 
 # colours that read on light and on dark panels alike
@@ -137,7 +138,7 @@ class PlotDock:
             self._rivals = gui.add_html("")
             self.result = gui.add_html("")
         self._panel.dock_left()
-        self._panel.set_width(316)
+        self._panel.set_width(WIDTH)
         self.page = TURN
         self._show_page()
 
@@ -175,6 +176,12 @@ class PlotDock:
             height=height,
             padding=(10, 14, 0, 0),  # room for the outermost numbers of both axes
         )
+
+    def visible(self, yes: bool) -> None:
+        """Show the dock, or leave its place to another."""
+        self._panel.visible = yes
+        if yes:
+            self._panel.set_width(WIDTH)
 
     # --- pages ------------------------------------------------------------------------------------
 

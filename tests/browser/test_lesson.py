@@ -1,0 +1,182 @@
+"""The lesson in a real Chromium: a student goes through it, a teacher rewrites it."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from driver import Tab, settle
+from test_page import write_case
+
+from algorithms.casefiles import Case
+from app.lesson.texts import files, lesson_folder
+from app.pictures.book import PICTURES
+from app.server import make_server
+
+pytestmark = pytest.mark.browser
+
+STEPS = files(lesson_folder())
+
+
+def at_step(tab: Tab, number: int) -> None:
+    """Wait until a step is there with its picture."""
+    settle(lambda: tab.page.locator(f".mm-lesson[data-step='{number}']").count(), f"step {number}")
+    settle(lambda: f"step {number} of" in tab.state, f"the map of step {number}")
+    settle(lambda: tab.page.locator("svg.mm-picture").count(), f"the picture of step {number}")
+
+
+def enter(tab: Tab) -> None:
+    tab.press("Lesson")
+    at_step(tab, 1)
+
+
+def picture(tab: Tab) -> str:
+    return tab.page.locator("svg.mm-picture").first.inner_html()
+
+
+def shows_what_it_should(tab: Tab) -> None:
+    """A title, a text without holes, an equation and a picture that can be seen, something to try."""
+    assert tab.page.locator(".mm-lesson h3").inner_text()
+    for part in (".mm-equation", "svg.mm-picture"):
+        box = tab.page.locator(part).first.bounding_box()
+        assert box["width"] > 30
+        assert box["height"] > 9
+    dock = tab.page.locator(".mm-lesson").locator(
+        "xpath=ancestor::*[contains(@class,'mantine-ScrollArea-viewport')]"
+    )
+    words = dock.inner_text()
+    assert len(words) > 300
+    assert "{" not in words
+    assert "Try" in words
+
+
+def test_every_step_is_shown_on_a_sample_and_leaving_puts_everything_back(tab):
+    tab.press("Instant")
+    tab.press("Merge")
+    tab.wait_for("accepted")
+    row = "agreement (m of wall)"
+    first = settle(lambda: tab.number(row), "the agreement")
+    tab.move("spread", 3)
+    value = settle(lambda: (now := tab.number(row)) not in ("", first) and now, "another answer")
+    before = tab.state
+    enter(tab)
+    for number in range(1, len(STEPS) + 1):
+        at_step(tab, number)
+        shows_what_it_should(tab)
+        if number < len(STEPS):
+            tab.press("Next ▶")
+    settle(lambda: "…" not in tab.page.locator(".mm-lesson").inner_text(), "all numbers")
+    tab.press("◀ Back")
+    at_step(tab, len(STEPS) - 1)
+    tab.press("Leave")
+    settle(lambda: tab.state == before, "the verdict of before")
+    assert tab.mood == "accepted"
+    assert tab.page.locator(".mm-lesson:visible").count() == 0
+    tab.press("Result")
+    settle(lambda: tab.number(row) == value, "the numbers of before")
+    assert tab.layer("lesson") == []
+
+
+def test_a_thing_to_try_moves_the_real_slider_and_is_put_back(tab):
+    def intensity() -> str:
+        label = tab.page.locator("label", has_text="intensity").first
+        thumb = tab.page.locator(f'[id="{label.get_attribute("for")}"]').get_by_role("slider")
+        return thumb.get_attribute("aria-valuenow")
+
+    enter(tab)
+    tab.press("Next ▶")
+    at_step(tab, 2)
+    first = picture(tab)
+    tab.press("Set I_aug to 1")
+    settle(lambda: intensity() == "1", "the slider to move")
+    settle(lambda: "Fig. 13 of the paper" in tab.text, "the answer")
+    settle(lambda: tab.page.locator("svg.mm-picture").count() and picture(tab) != first, "other levels")
+    tab.press("Put it back")
+    settle(lambda: intensity() == "100", "the slider to move back")
+    settle(lambda: tab.page.locator("svg.mm-picture").count() and picture(tab) == first, "the same levels")
+    assert tab.page.locator(".mm-answer").count() == 0
+
+
+def test_a_dial_moves_the_picture_and_the_map(tab):
+    enter(tab)
+    tab.choose("Step", "12. A swarm that talks")
+    at_step(tab, 12)
+    first, where = picture(tab), settle(tab.swarm, "the few particles")
+    tab.move("move", 4)
+    settle(lambda: picture(tab) != first, "another move")
+    settle(lambda: tab.swarm() != where, "the particles to follow")
+    assert len(tab.layer("lesson")) > 3  # the pulls
+    tab.choose("Step", "4. Every wall cell votes for its lines")
+    at_step(tab, 4)
+    assert {item["f"] for item in settle(lambda: tab.layer("lesson"), "the lines")} == {"scene", "mov"}
+
+
+def test_a_slider_of_the_panel_feeds_the_lesson_and_is_put_back(tab):
+    enter(tab)
+    tab.press("Next ▶")
+    at_step(tab, 2)
+    first = picture(tab)
+    tab.move("spread", 5)
+    settle(lambda: tab.page.locator("svg.mm-picture").count() and picture(tab) != first, "wider rings")
+    tab.press("Leave")
+    settle(lambda: tab.state == "Ready. Press Merge.", "the page of before")
+    assert "spread" not in tab.page.locator(".mm-history").text_content()  # it never was the person's own
+
+
+def test_the_lesson_goes_on_with_uploaded_maps_light_and_dark(tab, tmp_path, small_case: Case):
+    tab.unfold("Upload your own")
+    paths = write_case(tmp_path, small_case.ref, small_case.mov, small_case.observations[0])
+    for slot, path in enumerate(paths):
+        tab.upload(slot, path)
+        settle(lambda path=path: path.name in tab.text, f"the name {path.name}")
+    settle(lambda: tab.state == "Ready. Press Merge.", "all five files")
+    tab.page.get_by_label("Dark", exact=True).click()
+    enter(tab)
+    for number in range(1, len(STEPS) + 1):
+        at_step(tab, number)
+        shows_what_it_should(tab)
+        ink = tab.page.evaluate("() => getComputedStyle(document.querySelector('.mm-equation')).color")
+        assert min(int(part) for part in ink.strip("rgb()").split(",")) > 150, ink  # light on dark
+        tab.press("Next ▶")
+    tab.choose("Sample", "warehouse_r2_r1")
+    settle(lambda: "warehouse_r2_r1" in tab.page.locator(".mm-title").inner_text(), "other maps")
+    at_step(tab, len(STEPS))
+
+
+def test_merge_leaves_the_lesson_and_merges(tab):
+    tab.press("Instant")
+    enter(tab)
+    tab.press("Merge")
+    tab.wait_for("accepted")
+    assert tab.page.locator(".mm-lesson:visible").count() == 0
+
+
+def test_rewritten_texts_show_at_once_and_a_broken_one_is_named(open_tab, sample: Case, tmp_path: Path):
+    folder = tmp_path / "mine"
+    shutil.copytree(lesson_folder(), folder)
+    for path in STEPS[3:]:
+        (folder / path.name).unlink()
+    own = make_server(port=0, initial=sample, lesson=folder)
+    try:
+        tab = open_tab(at=own)
+        enter(tab)
+        assert "step 1 of 3" in tab.state
+        second = folder / STEPS[1].name
+        second.write_text(
+            "---\ntitle: Ein Schritt\npicture: dual\nequations: [line]\n---\nNur {walls1} Zellen."
+        )
+        tab.press("Next ▶")
+        at_step(tab, 2)
+        settle(lambda: "Ein Schritt" in tab.text, "the new title")
+        assert "Zellen." in tab.text
+        third = folder / STEPS[2].name
+        third.write_text("---\ntitle: Broken\npicture: nothing\n---\nText.")
+        tab.press("Next ▶")
+        settle(lambda: "This text cannot be read." in tab.text, "what is wrong")
+        assert third.name in tab.text
+        assert all(name in tab.text for name in PICTURES)
+        tab.press("◀ Back")
+        at_step(tab, 2)
+    finally:
+        own.stop()
