@@ -12,7 +12,7 @@ from app.palette import LIGHT, QUIET
 from app.player import PACES
 
 MAP, HEIGHTS, SWARM = "Map", "Heights", "Swarm space"
-LESSON, MUSEUM = "Lesson", "Museum"
+LESSON = "Lesson"
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class RunPanel:
         hint = (
             "Lesson: the method step by step on these maps. Museum: where it goes wrong, and what cures it."
         )
-        self._learn = gui.add_button_group("Learn", (LESSON, MUSEUM), order=4.7, hint=hint)
+        self._learn = gui.add_button_group("Learn", (LESSON,), order=4.7, hint=hint)
         self._learn.on_click(lambda _: wishes.learn(self._learn.value))
         self.learning: list[str] = []  # which of them is open
         with gui.add_folder("Run", order=50):
