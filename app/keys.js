@@ -1,0 +1,90 @@
+// Keys for what the buttons do, and one place that lists all keys of the page: press "?".
+(() => {
+  const S = window.mapmeld;
+  if (S.keys) return;
+  const K = {};
+  S.keys = K;
+  // key -> the name of the button it presses, which must be there and not be greyed; and its words in the list
+  const BUTTONS = {
+    m: ["Merge", "merge"], 1: ["Map", "the map"], 2: ["Heights", "the levels as heights"], 3: ["Swarm space", "the swarm's space"],
+    o: ["Overlay", "both maps over each other"], b: ["Blink", "the maps take turns"], c: ["Curtain", "one map beside the other"],
+    d: ["Difference", "only what differs"], r: ["Measure", "measure a distance"], f: ["Show everything", "show everything"],
+  };
+  const GROUPS = [
+    ["Work", [["M", BUTTONS.m[1]], ["Esc", "stop a run, end measuring or placing"], ["Ctrl Z", "undo"], ["Ctrl Y", "redo, also Ctrl Shift Z"]]],
+    ["Look", [["1", BUTTONS[1][1]], ["2", BUTTONS[2][1]], ["3", BUTTONS[3][1]], ["F", BUTTONS.f[1]], ["R", BUTTONS.r[1]],
+      ["drag, wheel", "move and zoom the map"], ["click", "what both maps know of a place"]]],
+    ["Compare", [["O", BUTTONS.o[1]], ["B", BUTTONS.b[1]], ["C", BUTTONS.c[1]], ["D", BUTTONS.d[1]], ["← →", "move the curtain, once it is in focus"]]],
+    ["Map 2 by hand", []],
+  ];
+  K.groups = GROUPS;
+  let sheet = null, before = null;
+
+  const writing = (e) => e && (e.isContentEditable || e.tagName === "TEXTAREA" || e.tagName === "SELECT" ||
+    (e.tagName === "INPUT" && !/^(checkbox|radio|button|range|file|color)$/.test(e.type)));
+  const named = (name) => [...document.querySelectorAll("button")].find((b) => b.textContent.trim() === name && b.offsetParent !== null && !b.disabled);
+  function element(kind, text, ...inside) {
+    const e = document.createElement(kind);
+    if (text) e.textContent = text;
+    e.append(...inside);
+    return e;
+  }
+  function build() {
+    sheet?.remove();
+    sheet = element("dialog"); sheet.className = "mm-keys"; sheet.setAttribute("aria-label", "Keys");
+    sheet.dataset.theme = S.dark ? "dark" : "light";
+    const close = element("button", "Close"); close.type = "button"; close.onclick = () => sheet.close();
+    const grid = element("div"); grid.className = "mm-grid";
+    for (const [title, rows] of GROUPS) {
+      if (!rows.length) continue;
+      const list = element("dl");
+      for (const [key, words] of rows) {
+        const parts = key.split(" ").map((part) => (/^[a-z,]+$/.test(part) ? element("span", part) : element("kbd", part)));
+        list.append(element("dt", "", ...parts), element("dd", words));
+      }
+      grid.append(element("section", "", element("h3", title), list));
+    }
+    sheet.append(element("header", "", element("h2", "Keys"), close), grid);
+    sheet.onclick = (e) => { if (e.target === sheet) sheet.close(); }; // beside it
+    sheet.onclose = () => before?.focus?.();
+    document.body.append(sheet);
+  }
+  K.show = () => { if (sheet?.open) { sheet.close(); return; } before = document.activeElement; build(); sheet.showModal(); };
+  document.addEventListener("keydown", (e) => {
+    if (e.ctrlKey || e.metaKey || e.altKey || e.repeat || writing(document.activeElement)) return;
+    if (e.key === "?") { e.preventDefault(); K.show(); return; }
+    if (document.querySelector("dialog[open], [role=dialog]")) return;
+    if (e.key === "Escape") { if (!e.defaultPrevented && !S.measure?.on) named("Stop")?.click(); return; }
+    const chosen = BUTTONS[e.key.toLowerCase()];
+    const button = chosen && named(chosen[0]);
+    if (button) { e.preventDefault(); button.click(); }
+  }, true);
+
+  function adopt(hud) {
+    const group = element("span"), button = element("button", "?");
+    button.type = "button"; button.title = "All keys of this page. Press ?"; button.setAttribute("aria-label", "Keys");
+    button.onclick = K.show;
+    group.append(button); group.className = "mm-help";
+    S.kit.keep(group);
+    hud.querySelector(".mm-tools").append(group);
+  }
+  S.parts.push({ adopt });
+
+  const style = document.createElement("style");
+  style.textContent = `
+    .mm-tools .mm-help{order:9}
+    .mm-keys{border:0;border-radius:10px;padding:16px 20px 18px;max-width:min(720px,94vw);color:#111827;background:#fff;font:13px/1.4 system-ui,"Segoe UI",sans-serif;box-shadow:0 10px 40px rgba(17,24,39,.35)}
+    .mm-keys::backdrop{background:rgba(17,24,39,.35)}
+    .mm-keys header{display:flex;justify-content:space-between;align-items:center;margin-bottom:6px}
+    .mm-keys h2{font-size:16px;margin:0} .mm-keys h3{font-size:12px;margin:8px 0 4px;color:#0072B2;letter-spacing:.02em}
+    .mm-keys header button{font:inherit;padding:3px 12px;border:1px solid #CBD5E1;border-radius:6px;background:none;color:inherit;cursor:pointer}
+    .mm-grid{columns:2;column-gap:32px} .mm-grid section{break-inside:avoid;margin-bottom:10px}
+    .mm-keys dl{display:grid;grid-template-columns:72px 1fr;gap:4px 12px;margin:0;align-items:baseline}
+    .mm-keys dt{display:flex;gap:3px;align-items:baseline;white-space:nowrap} .mm-keys dd{margin:0}
+    .mm-keys kbd{display:inline-block;min-width:20px;padding:0 5px;border:1px solid #9CA3AF;border-bottom-width:2px;border-radius:4px;font:600 11.5px/18px system-ui,"Segoe UI",sans-serif;text-align:center;box-sizing:border-box}
+    .mm-keys dt span{color:#6B7280}
+    .mm-keys[data-theme=dark]{color:#F9FAFB;background:#1F2937} .mm-keys[data-theme=dark] h3{color:#56B4E9} .mm-keys[data-theme=dark] dt span{color:#9CA3AF}
+    .mm-keys[data-theme=dark] header button{border-color:#4B5563}
+    @media (max-width:640px){.mm-grid{columns:1}}`;
+  document.head.append(style);
+})();

@@ -1,0 +1,45 @@
+"""Keys do what the buttons do, and one sheet lists them."""
+
+from __future__ import annotations
+
+import pytest
+from driver import settle
+
+pytestmark = pytest.mark.browser
+
+
+def test_a_run_is_started_looked_at_and_compared_by_keys_alone(tab):
+    keys = tab.page.keyboard
+    tab.press("Instant")
+    keys.press("m")
+    tab.wait_for("accepted")
+    keys.press("3")
+    settle(lambda: tab.page.evaluate("() => window.mapmeld.view") != "map", "the swarm's space")
+    keys.press("1")
+    settle(lambda: tab.page.evaluate("() => window.mapmeld.view") == "map", "the map again")
+    curtain = tab.page.get_by_role("slider", name="Curtain")
+    settle(tab.page.get_by_role("button", name="Curtain").is_visible, "what there is to compare")
+    keys.press("c")
+    settle(lambda: curtain.is_visible(), "the curtain")
+    keys.press("o")
+    settle(lambda: not curtain.is_visible(), "both maps over each other")
+
+
+def test_the_sheet_lists_every_key_and_closes_again(tab):
+    tab.page.keyboard.press("?")
+    sheet = tab.page.get_by_role("dialog", name="Keys")
+    settle(sheet.is_visible, "the sheet")
+    for words in ("merge", "undo", "measure a distance", "show everything"):
+        assert sheet.get_by_text(words, exact=True).count() == 1
+    tab.page.keyboard.press("Escape")
+    settle(lambda: not sheet.is_visible(), "the sheet to go")
+    tab.page.get_by_role("button", name="Keys").click()
+    settle(sheet.is_visible, "the sheet, by its button")
+
+
+def test_what_is_written_into_a_field_is_no_key(tab):
+    tab.page.get_by_label("Seed", exact=True).first.click()
+    tab.page.keyboard.type("m")
+    tab.page.keyboard.press("?")
+    assert tab.mood == "idle"
+    assert not tab.page.get_by_role("dialog", name="Keys").is_visible()
