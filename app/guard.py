@@ -26,6 +26,8 @@ from viser import _messages as messages
 from viser._gui_api import GuiApi
 from websockets.http11 import Response
 
+from app.entrance import served
+
 MAX_UPLOAD = 200 * 2**20  # bytes of one file: a map of the largest size there may be
 MAX_OPEN_UPLOADS = 4
 MAX_TEXT = 10_000
@@ -49,7 +51,7 @@ def guarded_server(host: str, port: int) -> viser.ViserServer:
                              request.headers.get("Upgrade", "").lower() == "websocket")  # fmt: skip
             if refusal is not None:
                 return _answer(*refusal)
-            return process_request(connection, request)
+            return _with_words(process_request(connection, request))
 
         return real_serve(handler, at, on, process_request=ask, **options)
 
@@ -92,6 +94,17 @@ def _answer(status: int, reason: str) -> Response:
         [("Content-Type", "text/plain; charset=utf-8"), ("Content-Length", str(len(body)))]
     )
     return Response(status, http.HTTPStatus(status).phrase, headers, body)
+
+
+def _with_words(answer: Response | None) -> Response | None:
+    """The page with what it says where it cannot be drawn; anything else as it is."""
+    if answer is None or not answer.headers.get("Content-Type", "").startswith("text/html"):
+        return answer
+    body = served(answer.body, answer.headers.get("Content-Encoding") == "gzip")
+    del answer.headers["Content-Length"]
+    answer.headers["Content-Length"] = str(len(body))
+    answer.body = body
+    return answer
 
 
 def _is_loopback(host: str) -> bool:
