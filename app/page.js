@@ -223,7 +223,7 @@
     @keyframes mm-pulse{50%{opacity:.25}}
     .mm-bar{position:absolute;left:0;right:0;bottom:0;height:3px;border-radius:0 0 8px 8px;overflow:hidden;background:rgba(0,114,178,.12)}
     .mm-bar i{display:block;height:100%;background:#0072B2}
-    .mm-legend{position:absolute;right:12px;bottom:10px;max-width:62%;display:flex;flex-wrap:wrap;justify-content:flex-end;gap:2px 12px;padding:4px 10px;border-radius:6px;background:rgba(255,255,255,.88);font-size:11.5px}
+    .mm-legend{position:absolute;right:12px;bottom:10px;max-width:calc(100% - 232px);display:flex;flex-wrap:wrap;justify-content:flex-end;gap:2px 12px;padding:4px 10px;border-radius:6px;background:rgba(255,255,255,.88);font-size:11.5px}
     [data-theme=dark] .mm-legend{background:rgba(31,41,55,.9)}
     .mm-legend:empty{display:none}
     .mm-legend span{display:inline-flex;align-items:center;gap:5px;white-space:pre}
