@@ -42,7 +42,7 @@ from algorithms.window import Box, CoupledWindow, coupled_window
 
 BY_HAND = "by hand"
 ELSEWHERE = 0.5, radians(3)  # metres, radians: from here on another answer is another one
-# a person may know better than the sighting: the box is not cut to the window
+FAR_BETTER = 100.0  # share of a rival of what is worth nothing, or next to nothing
 UNSURE = np.diag([1.0, 1.0, radians(5)]) ** 2  # (3, 3) of a method without an objective; m², rad²
 
 
@@ -116,7 +116,7 @@ class Scales:
         told = []
         for other, worth in self.others:
             distance, turn = pose_error(T, other, self.encounters[0].x_mov)
-            share = worth / value if value > 0 else inf
+            share = min(worth / value, FAR_BETTER) if value > 0 else FAR_BETTER
             if (distance > ELSEWHERE[0] or turn > ELSEWHERE[1]) and worth > 0 and share > RIVAL_FLOOR:
                 told.append((other, share))
         return told
@@ -140,6 +140,17 @@ class Scales:
         pivot = self.encounters[0].x_mov
         centre = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
         return Box(centre - half, centre + half, pivot)
+
+
+def known_answers(result: MergeResult | None) -> tuple[tuple[Pose2, float], ...]:
+    """What a method has found with its value, best first; () for one without an objective."""
+    if result is None or result.value is None:
+        return ()
+    best = (result.T_ref_mov, result.value)
+    if result.proof is None:
+        return tuple((answer.T_ref_mov, answer.value) for answer in result.answers)
+    rivals = zip(result.proof.rivals, result.proof.rival_values.tolist(), strict=True)
+    return (best, *((Pose2.from_array(pose), value) for pose, value in rivals))
 
 
 def refine(scales: Scales, T_ref_mov: Pose2, seed: int = 0) -> Iterator[Step]:

@@ -71,7 +71,8 @@ class Verdict:
     contradiction    : share of it that the other map denies, patches slipped
     rigid_contradiction : the same with the maps as they are
     bent             : share of the contradictions that slipping takes away
-    ambiguity        : value of the best answer elsewhere over this one's, 0 … 1; None for a method
+    ambiguity        : value of the best answer elsewhere over this one's, 0 … 1, of a transform made by
+                       hand also more; None for a method
                        that knows no other answers
     rival            : that answer; None where there is none worth naming
     deviation        : distance of R2 from where it was seen, in standard deviations; of several

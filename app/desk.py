@@ -38,6 +38,11 @@ class Desk:
     outcome: Story | None = field(default=None, repr=False)
 
     @property
+    def held(self) -> bool:
+        """Whether map 2 is in a person's hand: it was put somewhere, and is not the answer yet."""
+        return self.hand is not None and self.outcome is None
+
+    @property
     def result(self) -> MergeResult | None:
         """The answer; None where there is none (yet)."""
         return self.outcome.get(MergeResult) if self.outcome is not None else None

@@ -32,6 +32,144 @@
     if (entry) S.tell("go", { to: Number(entry.dataset.go) });
     if (step) S.tell("step", { by: Number(step.dataset.by) });
   });
+
+  // --- taking hold of things on the map -------------------------------------------------------------
+  // S.hand says what can be taken hold of; everything is optional:
+  //   mov    {hull, arm, cell}: map 2, by the inside of its hull (points of its frame), and turned by a
+  //          knob so many px off its anchor; cell in metres
+  //   grips  [{id, f, p, a}]: signs at p in frame f that can be carried; with a heading a, turned too
+  //   place  {id, f}: the next touch puts this sign down, and a drag from there turns it
+  // While something is held the browser draws it by itself; Python is told 15 times a second, and at the end.
+  const REACH = 15, ARM = 34, EVERY = 66; // px to a sign, px from it to its knob, ms between two words
+  let hold = null, said = 0, late = null;
+  const wrap = (a) => a - 2 * Math.PI * Math.round(a / (2 * Math.PI));
+  const turn = ([x, y], a) => [Math.cos(a) * x - Math.sin(a) * y, Math.sin(a) * x + Math.cos(a) * y];
+  const inMov = ([x, y]) => turn([x - S.mov.x, y - S.mov.y], -S.mov.theta);
+  const inFrame = (f, point) => (f === "mov" ? inMov(point) : point);
+  const inside = (point, hull) => {
+    let within = false;
+    for (let i = 0, j = hull.length - 1; i < hull.length; j = i++) {
+      const [xi, yi] = hull[i], [xj, yj] = hull[j];
+      if (yi > point[1] !== yj > point[1] && point[0] < (xj - xi) * (point[1] - yi) / (yj - yi) + xi) within = !within;
+    }
+    return within;
+  };
+  function knobOf(grip, arm) { // where the heading of a sign is turned, px of the window
+    const at = S.pixel(grip.p, grip.f), a = grip.a + (grip.f === "mov" ? S.mov.theta : 0);
+    return [at[0] + arm * Math.cos(a), at[1] - arm * Math.sin(a)];
+  }
+  function under(x, y) { // what would be taken hold of at a place of the window
+    const h = S.hand;
+    if (!h || S.view !== "map") return null;
+    if (h.place) return { kind: "place", ...h.place };
+    const near = ([a, b]) => Math.hypot(a - x, b - y);
+    let best = null, reach = REACH;
+    for (const grip of h.grips || []) {
+      const body = near(S.pixel(grip.p, grip.f)), knob = grip.a === null || grip.a === undefined ? Infinity : near(knobOf(grip, ARM));
+      if (knob < reach) { best = { kind: "knob", ...grip }; reach = knob; }
+      if (body < reach) { best = { kind: "body", ...grip }; reach = body; }
+    }
+    if (best) return best;
+    if (h.mov && near(knobOf({ f: "mov", p: [0, 0], a: 0 }, h.mov.arm)) < REACH) return { kind: "turn" };
+    return h.mov && inside(inMov(S.ground(x, y)), h.mov.hull) ? { kind: "carry" } : null;
+  }
+  const angleAt = (point, centre) => Math.atan2(point[1] - centre[1], point[0] - centre[0]);
+  function sketch() { // the sign that is held, where it is held
+    if (!hold || !hold.p) { delete S.layers.drag; S.dirty = true; return; }
+    const items = [{ k: "mark", s: "ring", f: hold.f, p: hold.p, c: "#D55E00", r: 12 }];
+    if (hold.a !== null && hold.a !== undefined) items.push({ k: "mark", s: "robot", f: hold.f, p: hold.p, a: hold.a, c: "#D55E00", r: 8 });
+    S.layers.drag = items; S.dirty = true;
+  }
+  const round = (number) => Math.round(number * 1e6) / 1e6;
+  function report(last) {
+    const now = performance.now();
+    clearTimeout(late); late = null;
+    if (!last && now - said < EVERY) { late = setTimeout(() => report(false), EVERY - (now - said)); return; }
+    said = now;
+    if (!hold || hold.kind === "carry" || hold.kind === "turn") {
+      S.tell(last ? "put" : "carry", { x: round(S.mov.x), y: round(S.mov.y), theta: round(wrap(S.mov.theta)) });
+    } else {
+      S.tell(last ? "drop" : "drag", { id: hold.id, at: hold.p.map(round), heading: hold.a === null || hold.a === undefined ? [] : [round(wrap(hold.a))] });
+    }
+  }
+  const stop = (e) => { e.preventDefault(); e.stopImmediatePropagation(); };
+  addEventListener("pointerdown", (e) => {
+    if (hold) { stop(e); return; } // a second finger
+    if (e.target !== S.surface() || e.button !== 0) return;
+    const found = under(e.clientX, e.clientY);
+    if (!found) return;
+    stop(e);
+    document.activeElement?.blur?.(); // keys belong to the map now
+    const at = S.ground(e.clientX, e.clientY);
+    hold = { ...found, pointer: e.pointerId, from: at, mov: { ...S.mov }, moved: false, start: [e.clientX, e.clientY] };
+    if (hold.kind === "carry" && (e.shiftKey || e.altKey)) hold.kind = "turn";
+    if (hold.kind === "place") { hold.p = inFrame(hold.f, at); hold.a = null; sketch(); }
+    S.held = true;
+  }, true);
+  addEventListener("pointermove", (e) => {
+    if (!hold) {
+      const canvas = S.surface();
+      if (!canvas || e.target !== canvas) return;
+      const found = S.hand ? under(e.clientX, e.clientY) : null;
+      const cursor = { place: "crosshair", knob: "grab", turn: "grab", body: "move", carry: e.shiftKey || e.altKey ? "grab" : "move" }[found?.kind] || "";
+      if (canvas.style.cursor !== cursor) canvas.style.cursor = cursor;
+      return;
+    }
+    if (e.pointerId !== hold.pointer) return;
+    stop(e);
+    const at = S.ground(e.clientX, e.clientY);
+    if (!hold.moved && Math.hypot(e.clientX - hold.start[0], e.clientY - hold.start[1]) < 3) return;
+    hold.moved = true;
+    if (hold.kind === "carry") {
+      S.carry({ x: hold.mov.x + at[0] - hold.from[0], y: hold.mov.y + at[1] - hold.from[1], theta: hold.mov.theta });
+    } else if (hold.kind === "turn") { // about the seen robot, which is where map 2 hangs
+      const centre = [hold.mov.x, hold.mov.y];
+      S.carry({ ...hold.mov, theta: hold.mov.theta + wrap(angleAt(at, centre) - angleAt(hold.from, centre)) });
+    } else if (hold.kind === "body") {
+      const now = inFrame(hold.f, at), before = inFrame(hold.f, hold.from), first = (S.hand.grips || []).find((g) => g.id === hold.id);
+      hold.origin ??= first ? first.p : hold.p;
+      hold.p = [hold.origin[0] + now[0] - before[0], hold.origin[1] + now[1] - before[1]];
+    } else { // "knob", or the heading of what has just been put down
+      if (hold.kind === "place" && Math.hypot(e.clientX - hold.start[0], e.clientY - hold.start[1]) < 8) { hold.a = null; sketch(); return; }
+      hold.a = angleAt(inFrame(hold.f, at), hold.p);
+    }
+    if (hold.p) sketch();
+    report(false);
+  }, true);
+  function release(e) {
+    if (!hold || e.pointerId !== hold.pointer) return;
+    stop(e);
+    if (hold.moved || hold.kind === "place") report(true);
+    hold = null; S.held = false; clearTimeout(late); late = null;
+    sketch();
+  }
+  addEventListener("pointerup", release, true);
+  addEventListener("pointercancel", release, true);
+
+  // --- map 2 by the keys ----------------------------------------------------------------------------
+  const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+  const TURNS = { "[": 1, "]": -1, "{": 1, "}": -1 };
+  const busy = (e) => e && (typing(e) || e.closest?.("input, textarea, select, [role=slider], [role=listbox], [role=tablist], [role=menu]"));
+  document.addEventListener("keydown", (e) => {
+    if (!S.hand || S.view !== "map" || hold || e.ctrlKey || e.metaKey || e.altKey || busy(document.activeElement)) return;
+    if (e.key === "Escape" && S.hand.place) { stop(e); S.tell("cancel"); return; }
+    if (!S.hand.mov) return;
+    const step = STEPS[e.key], way = TURNS[e.key];
+    if (!step && !way) return;
+    stop(e);
+    const cell = S.hand.mov.cell, length = e.shiftKey ? Math.min(0.01, cell) : cell, degrees = e.shiftKey ? 0.1 : 0.5;
+    S.carry({
+      x: S.mov.x + (step ? step[0] * length : 0), y: S.mov.y + (step ? step[1] * length : 0),
+      theta: S.mov.theta + (way ? way * degrees * Math.PI / 180 : 0),
+    });
+    report(true);
+  }, true);
+  S.heard.push((message) => {
+    if (!message.hand) return;
+    S.hand = Object.keys(message.hand).length ? message.hand : null;
+    if (!S.hand && hold) { hold = null; S.held = false; sketch(); }
+    if (!S.hand && S.surface()) S.surface().style.cursor = "";
+  });
   const style = document.createElement("style");
   style.textContent = `
     .mm-steps{display:flex;gap:8px;margin:6px 10px 2px}

@@ -8,7 +8,7 @@
 //   wide, high         px
 //   dark               light ink on a dark ground
 const mapmeldInk = (() => {
-  const ORDER = ["floor", "window", "aug", "box", "trail", "swarm", "rival", "sight", "lesson", "robots", "best", "axes", "readout"];
+  const ORDER = ["floor", "window", "aug", "box", "trail", "swarm", "rival", "sight", "lesson", "robots", "best", "axes", "readout", "grip", "drag"];
   const LIGHTER = { "#0072b2": "#56b4e9", "#009e73": "#34d399", "#d55e00": "#fb923c" }; // words on dark ground
   const lerp = (a, b, u) => a + (b - a) * u;
   const smooth = (u) => u * u * (3 - 2 * u);
@@ -28,8 +28,13 @@ const mapmeldInk = (() => {
     star(g, r) { for (let i = 0; i < 10; i++) { const q = i % 2 ? 0.45 * r : r, a = Math.PI * (i / 5 - 0.5); g.lineTo(q * Math.cos(a), q * Math.sin(a)); } g.closePath(); },
   };
   function mark(g, view, item) {
-    const [x, y] = view.project(item.f, item.p), r = item.r || 8;
-    const turn = item.a === undefined ? 0 : item.a + (item.f === "mov" ? view.mov.theta : 0);
+    let [x, y] = view.project(item.f, item.p);
+    const r = item.r || 8, turn = item.a === undefined ? 0 : item.a + (item.f === "mov" ? view.mov.theta : 0);
+    if (item.arm) { // so many px off its point, the way it looks: a knob
+      const end = [x + item.arm * Math.cos(turn), y - item.arm * Math.sin(turn)];
+      g.beginPath(); g.moveTo(x, y); g.lineTo(...end); g.setLineDash([]); g.lineWidth = 1.5; g.strokeStyle = item.c; g.stroke();
+      [x, y] = end;
+    }
     g.save(); g.translate(x, y); g.rotate(-turn); g.setLineDash([]); g.beginPath();
     if (item.s === "none") { /* words alone */ } else if (item.s === "cross" || item.s === "ring") {
       if (item.s === "ring") g.arc(0, 0, r, 0, 7);

@@ -69,6 +69,12 @@ class Layout:
         x, y = (T_ref_mov.apply(self.anchor_mov) - self.anchor_ref).tolist()
         return Pose2(x, y, T_ref_mov.theta)
 
+    def transform(self, at: Pose2) -> Pose2:
+        """T_ref_mov that puts ``anchor_mov`` at this place of the scene: ``placed``, undone."""
+        turned = Pose2(0.0, 0.0, at.theta).apply(self.anchor_mov)
+        x, y = (at.xy + self.anchor_ref - turned).tolist()
+        return Pose2(x, y, at.theta)
+
     def view(self, mov_at: Pose2 | None = None) -> Rect:
         """Rectangle that holds map 1 and map 2 with its anchor at ``mov_at`` (apart if None)."""
         points = []

@@ -33,6 +33,16 @@ def level_scale(detail: AugmentDetail) -> Entry:
     return {"s": "scale", "c": stops, "low": "0", "high": f"{detail.ref.peak:.3g}", "t": "level, eq. (4)"}
 
 
+def in_hand(palette: Palette) -> list[Entry]:
+    """Entries for the map while map 2 is in a person's hand."""
+    return [
+        _chip("square", palette.ref, "map 1"),
+        _chip("square", palette.mov, "map 2"),
+        _chip("square", palette.agreed, "both"),
+        _chip("square", palette.conflict, "contradiction"),
+    ]
+
+
 def legend(
     palette: Palette, view: str, story: Story, preview: bool = False, mode: str = "overlay"
 ) -> list[Entry]:

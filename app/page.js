@@ -128,6 +128,7 @@
       S.dirty = true;
     }
     const eye = camera.matrixWorldInverse.elements.join() + camera.projectionMatrix.elements.join();
+    if (S.hand) harden(); // pictures are painted anew in quick succession: never one of them blurred
     if (!S.dirty && eye === painted) return;
     painted = eye; S.dirty = false;
     if (S.tween || S.moved) { placeMov(); m.requestRender(); S.moved = !!S.tween; if (S.tween) S.dirty = true; }
@@ -252,6 +253,12 @@
     const box = canvas.getBoundingClientRect(), at = project(hooked.camera, frame || "scene", point);
     return [box.left + at[0], box.top + at[1]];
   };
+  S.ground = (x, y) => { // the point of the scene under a place of the window, seen from above
+    const box = canvas.getBoundingClientRect(), camera = hooked.camera, px = metre(camera);
+    return [(x - box.left - box.width / 2) / px + camera.position.x, (box.height / 2 - y + box.top) / px + camera.position.y];
+  };
+  S.carry = (mov) => { S.tween = null; S.mov = mov; S.moved = S.dirty = true; }; // put map 2 there, at once
+  S.surface = () => canvas;
   S.apply = (message) => {
     const now = performance.now();
     for (const [name, items] of Object.entries(message.layers || {})) {
@@ -259,7 +266,7 @@
       for (const [i, item] of (items || []).entries()) glide(item, old && old[i], now);
       if (items) S.layers[name] = items; else delete S.layers[name];
     }
-    if (message.mov) {
+    if (message.mov && !S.held) { // what a person holds is where they hold it
       const from = { ...movNow(now) }, to = message.mov;
       S.tween = message.mov.ms ? { from, to, turn: wrap(to.theta - from.theta), began: now, ms: to.ms } : null;
       if (!S.tween) S.mov = { x: to.x, y: to.y, theta: to.theta };

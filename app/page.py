@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from threading import RLock
@@ -14,15 +15,18 @@ import viser
 from algorithms.casefiles import Case
 from algorithms.conflicts import Conflicts, find_conflicts
 from algorithms.errors import MapMergeError, TooLargeError
-from algorithms.steps import AugmentDetail, MergeResult, RefineDetail
+from algorithms.handmade import BY_HAND, Scales, known_answers, refine
+from algorithms.pose import Pose2
+from algorithms.steps import AugmentDetail, MergeResult, ObservationDetail, RefineDetail, Step
 from app import words
+from app.byhand import ByHand
 from app.channel import Channel
 from app.comparison import MODES, Comparison
 from app.desk import Desk
 from app.inputs import Inputs
 from app.keep import Keep, Kept
 from app.layout import Layout, lay_out
-from app.legend import legend
+from app.legend import in_hand, legend
 from app.lesson.mode import Lesson
 from app.lesson.texts import lesson_folder
 from app.palette import DARK, LIGHT, Palette
@@ -66,6 +70,8 @@ class Page:
         self._result: MergeResult | None = None  # of the last run that came to its end
         self._conflicts: Conflicts | None = None  # of this result
         self._config: Any = None  # it ran with
+        self._method: Story | None = None  # of the last run whose answer was not made by hand
+        self._refining: tuple[Scales, Pose2] | None = None  # where map 2 was when its refinement began
         self._merged = False  # from the first Merge on, a moved slider runs the whole method again
         self._asked = False  # whether anything was asked for at all
         self._keep, self._key, self._gone = keep, "", False
@@ -108,6 +114,7 @@ class Page:
     def _end(self) -> None:
         self._channel.close()
         self._lesson.close()
+        self._hand.close()
         self.session.close()
 
     # --- widgets ----------------------------------------------------------------------------------
@@ -135,6 +142,9 @@ class Page:
         self._observation = ObservationPanel(gui)
         self._tuning = TuningPanel(gui, self._changed, self._report, self._turn)
         self._export = ExportPanel(client)
+        self._hand = ByHand(
+            gui, self._channel, self._stage, self._maps, self._turn, self.session.drawing, self
+        )
         self._timeline = Timeline(gui, self._channel, self._turn, self._restore)
         self._plots = PlotDock(client, self._press)
         client.scene.on_click()(self._read_out)
@@ -166,7 +176,8 @@ class Page:
     def _desk(self) -> Desk:
         """What is on the page, before anything has come of it."""
         tuning, goal = self._tuning, "merge" if self._merged else "candidates" if self._asked else None
-        return Desk(self._inputs, self._files.files, tuning.method, tuning.config, self._run.seed, goal)
+        inputs, files, hand = self._inputs, self._files.files, self._hand.pose
+        return Desk(inputs, files, tuning.method, tuning.config, self._run.seed, goal, hand)
 
     def _save(self, name: str, content: bytes) -> None:
         self._client.send_file_download(name, content, save_immediately=True)
@@ -175,6 +186,7 @@ class Page:
         """Put a desk back: as it was, or worked out again where that has been let go of."""
         self.session.stop()
         self._lesson.shut()
+        self._hand.end()
         self._tuning.restore(desk.method, desk.config)
         self._run.restore(desk.method, desk.seed)
         self._files.restore(desk.files)
@@ -186,6 +198,8 @@ class Page:
             if desk.outcome is not None and desk.result is not None:
                 self._answered(desk.outcome, desk.result, desk.config, live=False)
                 self._stage.flush()
+            elif desk.held:
+                self._hand.begin(desk.hand)
             elif desk.goal is not None:
                 job = self._job(goal=desk.goal)
                 if job is not None:
@@ -200,7 +214,9 @@ class Page:
         if self._notice is not None:
             self._notice.remove()
             self._notice = None
-        self._inputs, self._result, self._story = inputs, None, Story()
+        self._hand.end()
+        self._hand.panel.offer(inputs.complete)
+        self._inputs, self._result, self._story, self._method = inputs, None, Story(), None
         self._merged = self._asked = False
         self._observation.show(inputs)
         self._plots.clear()
@@ -250,6 +266,7 @@ class Page:
         if job is None:
             return
         with self._turn, self.session.drawing:
+            self._hand.end()
             self._merged = self._asked = True
             desk, before = self._desk(), self._timeline.desk
             if before is None or before.outcome is None or not before.same_wish(desk):
@@ -271,6 +288,9 @@ class Page:
             job = self._job(goal=goal, pace=self._run.pace if live else 0.0)
             self._asked = self._asked or job is not None
             if not self._timeline.note(self._desk()) or job is None:
+                return
+            if self._hand.active:
+                self._hand.begin(self._hand.pose)
                 return
             if self._result is not None:
                 told = result_html(self._result, self._inputs, self._config, self._conflicts, faded=True)
@@ -304,7 +324,7 @@ class Page:
         if self._run.view != MAP:
             self._turn_view()
         else:
-            placed = self._result is not None or self._story.reached(RefineDetail)
+            placed = self._result is not None or self._hand.active or self._story.reached(RefineDetail)
             self._stage.look_down(self._maps.extent() if placed else self._maps.layout.view(), follow=True)
         self._stage.flush()
 
@@ -384,6 +404,7 @@ class Page:
 
     def entered(self, open_: bool) -> None:
         """The lesson takes the place of the plots, or gives it back."""
+        self._hand.end()
         self._run.learning = [LESSON] if open_ else []
         self._plots.visible(not open_)
         self._comparison.clear()
@@ -454,7 +475,9 @@ class Page:
         self._run.stop.disabled = True
         result = story.get(MergeResult)
         with self._client.atomic():
-            if result is None:
+            if result is not None and job.steps is not None:
+                self._refined(story, result)
+            elif result is None:
                 self._story = story
                 self._plots.show(story, follow=False)
                 self._maps_preview(job)
@@ -468,6 +491,8 @@ class Page:
     def _answered(self, story: Story, result: MergeResult, config: Any, live: bool) -> None:
         """Show an answer and everything that led to it."""
         self._story, self._result, self._config = story, result, config
+        if result.method != BY_HAND:
+            self._method = story
         self._plots.show(story, follow=True)
         self._conflicts = find_conflicts(result.fusion)
         self._plots.tell(result_html(result, self._inputs, config, self._conflicts))
@@ -486,6 +511,9 @@ class Page:
         self._run.stop.disabled = True
         if self._maps.together:
             self._comparison.offer(None, self._palette)
+        if job.steps is not None and self._refining is not None:
+            self._hand.take_up(*self._refining)
+            return
         self._stage.hud(state=f"Stopped, unfinished. {words.sentence(story)}", mood="stopped", progress=None)
         self._stage.flush()
 
@@ -500,22 +528,127 @@ class Page:
         self._stage.hud(state=text, mood="failed", progress=None)
         self._stage.flush()
 
+    # --- map 2 by hand: see app/byhand.py -----------------------------------------------------------
+
+    @property
+    def scales(self) -> Scales | None:
+        """What a transform is weighed on; None where something is missing, or wrong, which is told."""
+        i, config = self._inputs, self._tuning.config
+        if i.ref is None or i.mov is None or not i.observations:
+            return None
+        method = self._method
+        known = known_answers(method.get(MergeResult)) if method and method.config == config else ()
+        try:
+            return Scales(i.ref, i.mov, i.observations, config, known)
+        except MapMergeError as error:
+            self._report(error)
+            return None
+
+    @property
+    def found(self) -> Pose2 | None:
+        """What the method has found; None before."""
+        return self._method.answer if self._method is not None else None
+
+    @property
+    def on_map(self) -> bool:
+        """Whether the map is looked at."""
+        return self._run.view == MAP
+
+    def hand_asked(self) -> None:
+        """A person wants map 2 in their hand: whatever else is going on ends."""
+        self._lesson.leave()
+        self.session.stop()
+
+    def hand_begins(self) -> None:
+        """What was found is out of the way from now on."""
+        self._comparison.clear()
+        if self._run.view != MAP:
+            self._run.view = MAP
+            self._turn_view()
+        if self._result is not None:
+            told = result_html(self._result, self._inputs, self._config, self._conflicts, faded=True)
+            self._plots.tell(told)
+        self._export.offer(None)
+        self._stage.hud(legend=in_hand(self._palette))
+
+    def hand_moved(self, T_ref_mov: Pose2) -> None:
+        """Map 2 was put there."""
+        self._timeline.note(self._desk())
+
+    def hand_taken(self, result: MergeResult) -> None:
+        """This is to be the answer."""
+        story = Story(self._tuning.config)
+        for stage, detail in (
+            ("observe", ObservationDetail(result.encounters)),
+            ("fuse", result.fusion),
+            ("verdict", result),
+        ):
+            story.tell(Step(stage, detail, 0.0))
+        with self.session.drawing:
+            self._timeline.note(replace(self._desk(), hand=result.T_ref_mov), "take it by hand")
+            self._answered(story, result, self._tuning.config, live=False)
+            self._timeline.amend(story)
+            self._stage.flush()
+
+    def hand_refines(self, scales: Scales, T_ref_mov: Pose2) -> None:
+        """Search from there; where it ends map 2 is in the hand again."""
+        seed = self._run.seed
+        job = self._job(pace=self._run.pace, steps=lambda: refine(scales, T_ref_mov, seed))
+        if job is not None:
+            self._refining = scales, T_ref_mov
+            self.session.request(job)
+
+    def _refined(self, story: Story, result: MergeResult) -> None:
+        if self._refining is None:
+            return
+        self._plots.show(story, follow=False)
+        self._hand.take_up(self._refining[0], result.T_ref_mov)
+        self._timeline.note(self._desk(), "refine by hand")
+
+    def hand_snaps(self) -> None:
+        """Take the best of the whole circle: known already, or looked for."""
+        tuning, method = self._tuning, self._method
+        result = method.get(MergeResult) if method and method.config == tuning.config else None
+        label = "snap to the proven optimum"
+        if method is not None and result is not None and result.proven_optimal:
+            self._go_to(replace(self._desk(), outcome=method, goal="merge"), label)
+            return
+        proof = replace(tuning.config.proof, whole_circle=True)
+        tuning.restore(tuning.method, replace(tuning.config, proof=proof))
+        self._go_to(replace(self._desk(), goal="merge"), label)
+
+    def hand_leaves(self) -> None:
+        """Everything as it was before."""
+        method = self._method
+        known = method if method is not None and method.config == self._tuning.config else None
+        self._go_to(replace(self._desk(), outcome=known))
+
+    def _go_to(self, desk: Desk, label: str = "") -> None:
+        self._timeline.note(desk, label)
+        self._restore(desk)
+
     # --- drawing ----------------------------------------------------------------------------------
 
     def _draw(self, story: Story, live: bool, look: bool = False) -> None:
         view, camera = self._run.view, self._run.follow
-        if view == MAP:
+        if view == MAP and self._hand.active:
+            self._hand.redraw()
+        elif view == MAP:
             self._maps.show(story, self._tuning.config, camera or look, live)
         elif view == HEIGHTS:
             self._heights.show(story.get(AugmentDetail), self._palette, look)
         else:
             self._swarm.show(story, self._palette, look)
         self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
-        self._stage.hud(legend=legend(self._palette, view, story, mode=self._comparison.mode))
+        held = view == MAP and self._hand.active
+        usual = legend(self._palette, view, story, mode=self._comparison.mode)
+        self._stage.hud(legend=in_hand(self._palette) if held else usual)
 
     def _say(self, story: Story, result: MergeResult) -> None:
         """The verdict; over the swarm whether it found the proven optimum, and the verdict's first word."""
         found, reason = words.found_it(story), result.verdict.reason
+        if result.method == BY_HAND:
+            reason = words.of_hand(result, taken=True)
         brief = f"{found} {reason.split(':')[0]}."
         self._stage.hud(state=brief if found and self._run.view == SWARM else reason)
 

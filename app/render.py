@@ -16,6 +16,7 @@ from algorithms.augment import AugmentedMap
 from algorithms.conflicts import Conflicts
 from algorithms.fuse import Fusion
 from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, CellArray
+from algorithms.touch import AGREES, CONTRADICTS, Touch, Walls
 from app.palette import Palette, Rgb, viridis
 
 Pixels = NDArray[np.uint8]
@@ -76,6 +77,21 @@ def sheet(cells: CellArray, colour: Rgb, palette: Palette, most: int = MOST_PIXE
     pixels[..., :3] = palette.unknown
     pixels[(pooled >= FREE) & (pooled <= FREE_UP_TO), :3] = palette.free
     pixels[pooled >= OCCUPIED_FROM, :3] = colour
+    return Picture(pixels, factor)
+
+
+def touches(walls: Walls, told: Touch, palette: Palette, most: int = MOST_PIXELS) -> Picture:
+    """The walls of one map that the other one agrees with or denies; the rest transparent.
+
+    told : (N,) for every wall cell, as ``Walls.told`` gives it
+    """
+    factor = pooling(walls.grid.cells.shape, most)
+    rows, cols = walls.cells
+    shape = [-(-side // factor) for side in walls.grid.cells.shape]
+    pixels = np.zeros((*shape, 4), dtype=np.uint8)
+    for kind, colour in ((AGREES, palette.agreed), (CONTRADICTS, palette.conflict)):
+        at = told == kind
+        pixels[rows[at] // factor, cols[at] // factor] = (*colour, 255)
     return Picture(pixels, factor)
 
 

@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 
 from algorithms.mapio import map_to_bytes
-from algorithms.mapio.fields import number_text
+from algorithms.mapio.fields import number_text, quoted
 from algorithms.merit import performance_index
 from algorithms.steps import MergeResult
 from app import render
@@ -101,6 +101,7 @@ def transform_yaml(result: MergeResult) -> bytes:
     return (
         "# Takes points of map 2's frame to map 1's; m, m, rad. The robots' maps are the frames map1, map2.\n"
         f"T_ref_mov: {{x: {x}, y: {y}, theta: {theta}}}\n"
+        f"method: {quoted(result.method)}\n"
         f"accepted: {accepted}\n"
         "# Publishes it in ROS 2; map 1's frame is the parent:\n"
         f'publish: "{publish_command(result)}"\n'

@@ -34,6 +34,7 @@ class Job:
             shows what it does without jumping to the answer)
     pace  : factor on the time each step stays on the screen; 0: none
     again : play steps that are known already, too
+    steps : what runs in place of the method; None: the method
     """
 
     ref: GridMap
@@ -45,6 +46,7 @@ class Job:
     goal: Goal = "merge"
     pace: float = 0.0
     again: bool = False
+    steps: Callable[[], Iterator[Step]] | None = None
 
 
 class Listener(Protocol):
@@ -165,8 +167,8 @@ class Session:
         if not self._deliver(job, lambda: self._listener.begun(job)):
             return
         drawn_at = -FRAME
-        steps = self._run(job.method, job.ref, job.mov, job.observations, job.config, job.seed, self._memo)
-        for step in steps:
+        whole = (job.method, job.ref, job.mov, job.observations, job.config, job.seed, self._memo)
+        for step in job.steps() if job.steps is not None else self._run(*whole):
             story.tell(step)
             mark = self._waiting.mark
             stay = dwell(step, self._pace, job.again)

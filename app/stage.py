@@ -99,6 +99,11 @@ class Stage:
         with self._lock:
             self._pending["channel"] = uuid
 
+    def hand(self, what: dict[str, Any] | None) -> None:
+        """What can be taken hold of on the map; None for nothing. See hand.js for what it may hold."""
+        with self._lock:
+            self._pending["hand"] = what or {}
+
     def remember(self, key: str) -> None:
         """Have the tab keep the key to what it leaves behind; see app/keep.py."""
         with self._lock:

@@ -188,6 +188,18 @@ def progress(story: Story) -> float:
     return share
 
 
+def of_hand(result: MergeResult, taken: bool = False) -> str:
+    """What the verdict says of a transform made by hand.
+
+    taken : whether it is the answer now
+    """
+    reason = result.verdict.reason
+    if taken:
+        return f"By hand. {reason}"
+    clause = reason.split(": ", 1)[-1]
+    return f"By hand, would be {'merged' if result.verdict.accepted else 'refused'}: {clause}"
+
+
 def optimum(proof: ProofState) -> str:
     """How the proof ended: "proven", or that it is not, and why."""
     if proof.empty:
@@ -212,6 +224,8 @@ def remedy(result: MergeResult, config: Any = None) -> str:
         return "Are these maps of one building? Check the observation's numbers, or widen the window."
     if proof is not None and not proof.proven:
         return "Give the proof more patience, or narrow the window, and merge again."
+    if verdict.rival is not None and (verdict.ambiguity or 0.0) > 1:
+        return "Made by hand: refine from there, or snap to the proven optimum."
     if verdict.rival is not None:
         return "A second observation would tell the two places apart; a larger Σ_aug takes in more walls."
     if verdict.shared_wall < rules.wall:

@@ -6,11 +6,13 @@ from math import pi
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from algorithms.gridmap import FREE, UNKNOWN, GridMap
 from algorithms.observation import Observation, encounter
 from algorithms.pose import Pose2
-from app.layout import known_corners, lay_out, rect_of
+from app.layout import Layout, known_corners, lay_out, rect_of
 
 
 def grid(rows: int, cols: int, origin: Pose2 = Pose2()) -> GridMap:  # noqa: B008 - frozen
@@ -54,3 +56,10 @@ def test_missing_maps_leave_a_view_all_the_same(ref, mov):
     x0, y0, x1, y1 = lay_out(ref, mov, None).view()
     assert x1 > x0
     assert y1 > y0
+
+
+@given(st.floats(-30, 30), st.floats(-30, 30), st.floats(-3, 3))
+def test_where_a_transform_puts_map_2_gives_the_transform_back(x, y, theta):
+    at = Layout(np.array([3.0, -2.0]), np.array([-7.0, 11.0]), None, None, Pose2())
+    T = at.transform(at.placed(Pose2(x, y, theta)))
+    assert T.array() == pytest.approx([x, y, theta], abs=1e-9)

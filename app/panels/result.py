@@ -9,6 +9,7 @@ import numpy as np
 
 from algorithms.conflicts import Conflicts
 from algorithms.fuse import fuse
+from algorithms.handmade import BY_HAND
 from algorithms.merit import performance_index
 from algorithms.pose import pose_error
 from algorithms.steps import MergeResult
@@ -44,7 +45,7 @@ def result_html(
     """
     verdict = result.verdict
     mood = "accepted" if verdict.accepted else "refused"
-    note = "Out of date: a setting was changed." if faded else words.remedy(result, config)
+    note = "Out of date: something was changed." if faded else words.remedy(result, config)
     return (
         box(verdict.reason, mood, note, faded)
         + (places_html(found, faded) if found is not None else "")
@@ -61,7 +62,8 @@ def numbers(result: MergeResult, inputs: Inputs, config: Any = None) -> list[tup
     """The transform with its standard deviations, its value, and the figures of merit."""
     T, verdict = result.T_ref_mov, result.verdict
     at_robot, turn = _deviations(result)
-    rows = [
+    rows: list[tuple[str, ...]] = [("made", BY_HAND)] if result.method == BY_HAND else []
+    rows += [
         ("T: Δx", f"{T.x:.3f} m"),
         ("T: Δy", f"{T.y:.3f} m"),
         ("T: Δθ", f"{degrees(T.theta):.2f} ± {degrees(turn):.2f}°"),
@@ -105,6 +107,8 @@ def _rivals(result: MergeResult) -> list[tuple[str, ...]]:
     if verdict.ambiguity is None:
         return []
     best = f"{verdict.ambiguity:.0%} of the best" if verdict.ambiguity > 0 else "none"
+    if verdict.ambiguity > 1:  # of what was made by hand
+        best = "better than this"
     rows: list[tuple[str, ...]] = [("next best place", best)]
     if verdict.rival is not None:
         rows.append(("rival in doubt", words.rival(result)))

@@ -12,12 +12,13 @@ from algorithms.fuse import Fusion
 from algorithms.gridmap import GridMap
 from algorithms.pose import Pose2
 from algorithms.steps import AugmentDetail
+from algorithms.touch import Touch, Walls
 from app import render
 from app.layout import Layout
 from app.palette import Palette
 from app.views.images import GridImage
 
-Which = Literal["sources", "levels", "merged"]
+Which = Literal["sources", "levels", "merged", "touching"]
 Mode = Literal["overlay", "blink", "curtain", "difference"]  # how two maps are compared where they lie
 
 # Heights in the order they lie on each other; all floors are below all walls, so that a map that
@@ -53,11 +54,16 @@ class Ground:
             GridImage(scene, "/world/ref/merged_walls", MERGED_WALLS),
         )
         self._denied = GridImage(scene, "/world/ref/denied", MERGED_WALLS)
+        self._touches = (
+            GridImage(scene, "/world/ref/touches", MERGED_FREE),
+            GridImage(scene, "/world/mov/touches", MERGED_WALLS),
+        )
         self._ghost_frame = scene.add_frame("/world/ghost", show_axes=False)
         self._ghost = GridImage(scene, "/world/ghost/walls", GHOST)
         self._haunted: GridMap | None = None  # whose walls the ghost is made of
         self._ghost_at: Pose2 | None = None
-        self._all = (*self._free, *self._walls, *self._levels, *self._merged, self._denied, self._ghost)
+        pairs = (*self._free, *self._walls, *self._levels, *self._merged, *self._touches)
+        self._all = (*pairs, self._denied, self._ghost)
         self._layout: Layout | None = None
         self._palette: Palette | None = None
         self._mov: GridMap | None = None
@@ -125,6 +131,16 @@ class Ground:
             self._denied.show(picture, fusion.merged, self._layout.anchor_ref)
         return True
 
+    def touch(self, walls: tuple[Walls, Walls], told: tuple[Touch, Touch]) -> None:
+        """Show which walls of both maps coincide, and which the other one denies."""
+        if self._layout is None or self._palette is None:
+            return
+        anchors = (self._layout.anchor_ref, self._layout.anchor_mov)
+        for image, one, touch, anchor in zip(self._touches, walls, told, anchors, strict=True):
+            image.repaint(render.touches(one, touch, self._palette, self._most), one.grid, anchor)
+        if self.which != "touching":
+            self.show("touching")
+
     def ghost(self, at: Pose2 | None) -> None:
         """Show map 2's walls faintly with its anchor at another place of the scene; None: nowhere."""
         if at is not None and self._mov is not None and self._layout is not None and self._palette:
@@ -142,13 +158,14 @@ class Ground:
         self.which, self._hidden = which, False
         floor, walls = self._merged
         seen: str = which
-        if which != "levels" and self._mode in ("blink", "curtain"):
+        if which in ("sources", "merged") and self._mode in ("blink", "curtain"):
             seen = "sources"
         elif which == "merged" and self._mode == "difference" and self._contrast():
             seen = "difference"
         for images, among in (
-            (self._free, ("sources", "levels")),
-            (self._walls, ("sources",)),
+            (self._free, ("sources", "levels", "touching")),
+            (self._walls, ("sources", "touching")),
+            (self._touches, ("touching",)),
             (self._levels, ("levels",)),
             ((floor,), ("merged", "difference")),
             ((walls,), ("merged",)),

@@ -42,6 +42,13 @@ class GridImage:
             receive_shadow=False,
         )
 
+    def repaint(self, picture: Picture, grid: GridMap, anchor: FloatArray) -> None:
+        """Draw another picture of the same grid in place of the last one, without a flicker."""
+        if self._handle is None:
+            self.show(picture, grid, anchor)
+        else:
+            self._handle.image = picture.pixels
+
     def hide(self) -> None:
         """Take the picture away."""
         self.visible(False)

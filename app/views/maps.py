@@ -23,6 +23,7 @@ from algorithms.steps import (
     ShiftDetail,
     WindowDetail,
 )
+from algorithms.touch import Touch, Walls
 from algorithms.window import CoupledWindow
 from app import words
 from app.inputs import Inputs
@@ -87,7 +88,42 @@ class MapView:
             self._robots(together=self._mov_at != self.layout.apart)
         else:
             self._ground.hide()
-            self._clear(*OF_A_RUN, "robots", "sight")
+            self._clear(*OF_A_RUN, "robots", "sight", "grip")
+
+    # --- map 2 in a person's hand -----------------------------------------------------------------
+
+    @property
+    def mov_at(self) -> Pose2:
+        """Where map 2's anchor lies, and its turn; scene."""
+        return self._mov_at
+
+    def hold(self, at: Pose2) -> None:
+        """Put map 2 in a person's hand, at a place of the scene."""
+        mov = self._inputs.mov
+        if mov is None:
+            return
+        self._ground.show("sources")
+        self._clear(*OF_A_RUN)
+        self._place(at, 0)
+        self._robots(together=True)
+        hull = known_hull(mov) - self.layout.anchor_mov
+        self._stage.layer("grip", signs.grip(hull, self._palette))
+        self._stage.hand({"mov": {"hull": hull, "arm": signs.TURN_ARM, "cell": mov.resolution}})
+
+    def carried(self, at: Pose2) -> None:
+        """The page has moved map 2 by itself."""
+        self._mov_at = at
+
+    def touch(self, walls: tuple[Walls, Walls], told: tuple[Touch, Touch]) -> None:
+        """Show which walls coincide and which are denied; see ``Ground.touch``."""
+        self._ground.touch(walls, told)
+
+    def let_go(self) -> None:
+        """Nothing is in a person's hand."""
+        self._stage.hand(None)
+        self._clear("grip")
+        if self._ground.which == "touching":
+            self._ground.show("sources")
 
     @property
     def together(self) -> bool:

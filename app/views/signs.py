@@ -18,6 +18,7 @@ from app.palette import Palette, css
 from app.stage import Item, ellipse, mark, path, rectangle
 
 ZERO = np.zeros(2)  # the meeting place of the first sighting, in both frames
+TURN_ARM = 90  # px from robot 2 to the knob that turns map 2; hand.js knows it as the knob's arm
 QUIET = 0.55  # opacity of what is told beside the first sighting
 DASHED = {"close": True, "d": [6, 4], "halo": True}
 
@@ -201,6 +202,14 @@ def rival(at: Pose2, hull: FloatArray, heading: float | None, words: str, colour
     # larger than the star of the answer, which lies on it: both put robot 2 where it was seen
     shape, how = ("robot", {"a": heading + at.theta, "r": 13}) if heading is not None else ("dot", {"r": 12})
     return [*items, mark(shape, at.xy, colours.rival, **how)]
+
+
+def grip(hull: FloatArray, colours: Palette) -> list[Item]:
+    """What map 2 is held by: its outline, and a knob to turn it about its anchor; in its own frame."""
+    return [
+        path(hull, colours.mov, "mov", w=1.4, close=True, d=[7, 5], halo=True),
+        mark("dot", ZERO, colours.mov, "mov", r=8, a=0.0, arm=TURN_ARM, t="turn"),
+    ]
 
 
 def margins(sigma_x: float, sigma_y: float, colours: Palette) -> list[Item]:

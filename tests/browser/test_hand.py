@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zipfile
+
 import pytest
 from driver import READY, settle
 
@@ -100,3 +102,106 @@ def test_another_tab_begins_anew_and_a_text_field_keeps_its_own_undo(tab, open_t
     undo.focus()
     undo.press("Control+z")
     settle(lambda: tab.state == "Ready. Press Merge.", "the slider undone")
+
+
+def drag(tab, start: list[float], by: tuple[float, float]) -> None:
+    """Drag what lies at a place of the window by so many pixels, and let go."""
+    tab.page.mouse.move(*start)
+    tab.page.mouse.down()
+    tab.page.mouse.move(start[0] + by[0], start[1] + by[1], steps=6)
+    tab.page.mouse.up()
+
+
+def at_mov(tab, point: tuple[float, float]) -> list[float]:
+    """Where a point of map 2, from its anchor, is in the window."""
+    return tab.page.evaluate("(p) => mapmeld.pixel(p, 'mov')", list(point))
+
+
+def field(tab, label: str) -> float:
+    return float(tab.page.get_by_label(label, exact=True).input_value())
+
+
+def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(tab, tmp_path):
+    tab.press("Instant")
+    tab.press("Merge")
+    tab.wait_for("accepted")
+    first = settle(lambda: tab.number("T: Δx"), "the answer")
+    tab.press("Move map 2 by hand")
+    settle(lambda: tab.state.startswith("By hand, would be merged: "), "the method's own answer, by hand")
+    settle(lambda: field(tab, "T: Δx (m)") == pytest.approx(float(first.split()[0]), abs=0.01), "numbers")
+    x, y = field(tab, "T: Δx (m)"), field(tab, "T: Δy (m)")
+
+    start = at_mov(tab, (1.5, -1.0))
+    tab.page.mouse.move(*start)
+    tab.page.mouse.down()
+    tab.page.mouse.move(start[0] + 60, start[1] - 30, steps=6)
+    settle(lambda: tab.state.startswith("By hand, would be refused: "), "a verdict before the hand lets go")
+    tab.page.mouse.up()
+    scale = tab.page.evaluate("() => mapmeld.pixel([1, 0])[0] - mapmeld.pixel([0, 0])[0]")  # px per metre
+    settle(lambda: field(tab, "T: Δx (m)") == pytest.approx(x + 60 / scale, abs=0.05), "Δx of the drag")
+    assert field(tab, "T: Δy (m)") == pytest.approx(y + 30 / scale, abs=0.05)
+
+    turn = field(tab, "T: Δθ (°)")
+    robot = at_mov(tab, (0.0, 0.0))
+    tab.page.keyboard.down("Shift")
+    drag(tab, [robot[0] + 80, robot[1]], (-80, -80))  # a quarter turn about robot 2
+    tab.page.keyboard.up("Shift")
+    settle(lambda: field(tab, "T: Δθ (°)") == pytest.approx(turn + 90, abs=2), "a quarter turn")
+    assert at_mov(tab, (0.0, 0.0)) == pytest.approx(robot, abs=1)
+    undo = tab.page.get_by_role("button", name="Undo")
+    undo.click()
+    settle(lambda: field(tab, "T: Δθ (°)") == pytest.approx(turn, abs=0.01), "the turn undone")
+
+    ink = tab.page.locator("#mapmeld-ink").bounding_box()
+    drag(tab, [ink["x"] + 15, 140], (30, 0))
+    settle(lambda: at_mov(tab, (0.0, 0.0))[0] > robot[0] + 20, "the empty ground to pan")
+    assert field(tab, "T: Δθ (°)") == pytest.approx(turn, abs=0.01)
+
+    for label, value in (("T: Δx (m)", x), ("T: Δy (m)", y)):
+        box = tab.page.get_by_label(label, exact=True)
+        box.fill(f"{value:.2f}")
+        box.press("Enter")
+    settle(lambda: tab.state.startswith("By hand, would be merged: "), "the right place, typed")
+    tab.page.evaluate("() => document.activeElement.blur()")
+    tab.page.keyboard.press("ArrowRight")
+    settle(lambda: field(tab, "T: Δx (m)") == pytest.approx(x + 0.05, abs=0.012), "one cell to the right")
+    tab.page.keyboard.press("[")
+    settle(lambda: field(tab, "T: Δθ (°)") == pytest.approx(turn + 0.5, abs=0.012), "half a degree")
+
+    tab.press("Take this as the answer")
+    settle(lambda: tab.state.startswith("By hand. Merged: "), "the answer")
+    assert settle(lambda: tab.number("made"), "who made it") == "by hand"
+    with tab.page.expect_download() as download:
+        tab.press("Download merged map")
+    download.value.save_as(tmp_path / "merged.zip")
+    with zipfile.ZipFile(tmp_path / "merged.zip") as archive:
+        assert 'method: "by hand"' in archive.read("transform.yaml").decode()
+
+
+def test_a_hand_is_refined_snapped_left_and_a_reload_keeps_it(tab):
+    tab.press("Instant")
+    tab.press("Merge")
+    tab.wait_for("accepted")
+    proven = settle(lambda: tab.number("T: Δx"), "the answer")
+    tab.press("Move map 2 by hand")
+    settle(lambda: tab.state.startswith("By hand, would be merged: "), "map 2 in the hand")
+    drag(tab, at_mov(tab, (1.5, -1.0)), (9, 6))
+    settle(lambda: tab.state.startswith("By hand, would be refused: "), "half a metre off")
+    tab.press("Refine from here")
+    settle(lambda: tab.state.startswith("By hand, would be merged: "), "the search from there")
+    assert field(tab, "T: Δx (m)") == pytest.approx(float(proven.split()[0]), abs=0.06)
+
+    drag(tab, at_mov(tab, (1.5, -1.0)), (50, 40))
+    settle(lambda: tab.state.startswith("By hand, would be refused: "), "metres off")
+    moved = field(tab, "T: Δx (m)")
+    tab.page.reload()
+    tab.page.wait_for_function(READY)
+    settle(lambda: tab.state.startswith("By hand, would be refused: "), "the hand after a reload")
+    assert field(tab, "T: Δx (m)") == moved
+    tab.press("Snap to proven optimum")
+    settle(lambda: tab.mood == "accepted" and tab.number("T: Δx") == proven, "the proven optimum")
+    tab.page.get_by_role("button", name="Undo").click()
+    settle(lambda: tab.state.startswith("By hand, would be refused: "), "the snap undone")
+    tab.press("Leave it as it was")
+    settle(lambda: tab.mood == "accepted" and tab.state.startswith("Merged: "), "the method's answer")
+    assert tab.layer("grip") == []

@@ -1,0 +1,251 @@
+"""Map 2 in a person's hand: where it lies, what the walls say of it meanwhile, what becomes of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from threading import RLock
+from time import perf_counter
+from typing import Protocol
+
+import viser
+
+from algorithms.errors import MapMergeError
+from algorithms.handmade import Scales
+from algorithms.pipeline import PipelineConfig
+from algorithms.pose import Pose2, wrap_angle
+from algorithms.steps import MergeResult
+from algorithms.touch import Walls
+from app import words
+from app.channel import Channel
+from app.newest import Newest
+from app.panels.hand import HandPanel, HandWishes, weighed_html
+from app.panels.tables import box
+from app.stage import Stage
+from app.views.maps import MapView
+
+PATIENCE = 0.1  # seconds; weighing that takes longer waits until the hand rests
+REST = 0.15  # seconds in which a hand that rests does not move
+GLIDE = 180.0  # milliseconds in which map 2 goes where a number puts it
+
+
+class Host(Protocol):
+    """The page, as far as it is asked from here."""
+
+    @property
+    def scales(self) -> Scales | None:
+        """What a transform is weighed on; None where something is missing."""
+
+    @property
+    def found(self) -> Pose2 | None:
+        """What the method has found; None before."""
+
+    @property
+    def on_map(self) -> bool:
+        """Whether the map is looked at."""
+
+    def hand_asked(self) -> None:
+        """A person wants map 2 in their hand: whatever else is going on ends."""
+
+    def hand_begins(self) -> None:
+        """What was found is out of the way from now on."""
+
+    def hand_moved(self, T_ref_mov: Pose2) -> None:
+        """Map 2 was put there."""
+
+    def hand_taken(self, result: MergeResult) -> None:
+        """This is to be the answer."""
+
+    def hand_refines(self, scales: Scales, T_ref_mov: Pose2) -> None:
+        """Search from there."""
+
+    def hand_snaps(self) -> None:
+        """Take the best of the whole circle."""
+
+    def hand_leaves(self) -> None:
+        """Everything as it was before."""
+
+
+class ByHand:
+    """Of one tab. ``turn`` and ``drawing`` as in the page: the first is taken before the second."""
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        channel: Channel,
+        stage: Stage,
+        maps: MapView,
+        turn: RLock,
+        drawing: RLock,
+        host: Host,
+    ) -> None:
+        self._stage, self._maps, self._turn, self._drawing, self._host = stage, maps, turn, drawing, host
+        self._scales: Scales | None = None
+        self._walls: tuple[Walls, Walls] | None = None
+        self._at = Pose2()  # where map 2's anchor lies; scene
+        self._slow = 0.0  # seconds that weighing took last
+        self.active = False
+        wishes = HandWishes(self._toggle, self._type, self._refine, self._snap, self._take)
+        self.panel = HandPanel(gui, wishes)
+        self._work = Newest(self._weigh, "mapmeld-hand")
+        where = {"x": float, "y": float, "theta": float}
+        channel.on("carry", lambda **at: self._carry(Pose2(**at)), latest=True, **where)
+        channel.on("put", lambda **at: self._put(Pose2(**at)), **where)
+
+    def close(self) -> None:
+        """The tab is gone."""
+        self._work.close()
+
+    @property
+    def pose(self) -> Pose2 | None:
+        """T_ref_mov as map 2 is held; None while it is not."""
+        return self._maps.layout.transform(self._at) if self.active else None
+
+    def begin(self, T_ref_mov: Pose2 | None = None) -> None:
+        """Take map 2 up: at a transform, or where it lies."""
+        with self._turn:
+            scales = self._host.scales
+            if scales is None:
+                return
+            with self._drawing:
+                self.take_up(scales, T_ref_mov)
+
+    def take_up(self, scales: Scales, T_ref_mov: Pose2 | None) -> None:
+        """The same on these scales; whoever calls is drawing."""
+        self._scales = scales
+        if self._walls is None or (self._walls[0].grid, self._walls[1].grid) != (scales.ref, scales.mov):
+            self._walls = Walls(scales.ref), Walls(scales.mov)
+        self._at = self._maps.mov_at if T_ref_mov is None else self._maps.layout.placed(T_ref_mov)
+        self.active = True
+        searches = isinstance(scales.config, PipelineConfig)
+        self.panel.open(True, refine=searches, prove=searches)
+        self._host.hand_begins()
+        self.redraw()
+
+    def end(self) -> None:
+        """Let go of map 2, whatever becomes of it."""
+        with self._turn, self._drawing:
+            if self.active:
+                self.active = False
+                self._work.drop()
+                self.panel.open(False)
+                self._maps.let_go()
+                self._stage.flush()
+
+    def redraw(self) -> None:
+        """Draw map 2 where it is held."""
+        self._maps.hold(self._at)
+        self.panel.show(self._maps.layout.transform(self._at))
+        self._stage.flush()
+        self._work.ask((self._at, True))
+
+    # --- what a person does -----------------------------------------------------------------------
+
+    def _toggle(self) -> None:
+        with self._turn:
+            if not self.active:
+                self._host.hand_asked()
+                self.begin()
+                if self.active:
+                    self._host.hand_moved(self._maps.layout.transform(self._at))
+            else:
+                self.end()
+                self._host.hand_leaves()
+
+    def _carry(self, at: Pose2) -> None:
+        """Map 2 is on the way; the page draws it by itself."""
+        with self._turn:
+            if self.active:
+                self._at = at
+                self._maps.carried(at)
+                self._work.ask((at, False))
+
+    def _put(self, at: Pose2) -> None:
+        with self._turn:
+            if self.active:
+                self._at = at
+                self._maps.carried(at)
+                T = self._maps.layout.transform(at)
+                self.panel.show(T)
+                self._work.ask((at, True))
+                self._host.hand_moved(T)
+
+    def _type(self, field: str, value: float) -> None:
+        """One number of T was typed; a turn is about robot 2, so it leaves robot 2 where it is."""
+        with self._turn:
+            if not self.active:
+                return
+            if field == "theta":
+                self._at = replace(self._at, theta=wrap_angle(value))
+            else:
+                T = self._maps.layout.transform(self._at)
+                self._at = self._maps.layout.placed(replace(T, **{field: value}))
+            T_ref_mov = self._maps.layout.transform(self._at)
+            with self._drawing:
+                self._maps.carried(self._at)
+                self._stage.place_mov(self._at, GLIDE)
+                self._stage.flush()
+            self.panel.show(T_ref_mov)
+            self._work.ask((self._at, True))
+            self._host.hand_moved(T_ref_mov)
+
+    def _refine(self) -> None:
+        with self._turn:
+            if self.active and self._scales is not None:
+                scales, T = self._scales, self._maps.layout.transform(self._at)
+                self.end()
+                self._host.hand_refines(scales, T)
+
+    def _snap(self) -> None:
+        with self._turn:
+            if self.active:
+                self.end()
+                self._host.hand_snaps()
+
+    def _take(self) -> None:
+        with self._turn:
+            if not self.active or self._scales is None:
+                return
+            try:
+                result = self._scales.weigh(self._maps.layout.transform(self._at))
+            except MapMergeError as error:
+                self.panel.tell(box(str(error), "refused"))
+                return
+            self.end()
+            self._host.hand_taken(result)
+
+    # --- what the walls say -----------------------------------------------------------------------
+
+    def _weigh(self, wanted: tuple[Pose2, bool]) -> None:
+        """The colours at once; the verdict with them where it is quick, and always where the hand rests."""
+        at, rests = wanted
+        scales, walls = self._scales, self._walls
+        if scales is None or walls is None:
+            return
+        T = self._maps.layout.transform(at)
+        ref, mov = walls
+        told = ref.told(mov, T.inverse()), mov.told(ref, T)
+        with self._drawing:
+            if not self.active or not self._host.on_map:
+                return
+            self._maps.touch(walls, told)
+        if not rests and self._work.newer_within(REST if self._slow > PATIENCE else 0.0):
+            return
+        scales.value(T)  # what is made once for a pair of maps is not counted
+        began = perf_counter()
+        try:
+            result = scales.weigh(T)
+        except MapMergeError as error:
+            with self._drawing:
+                if self.active:
+                    self.panel.tell(box(str(error), "refused"))
+                    self._stage.hud(state=str(error), mood="refused")
+                    self._stage.flush()
+            return
+        self._slow = perf_counter() - began
+        with self._drawing:
+            if not self.active:
+                return
+            self.panel.tell(weighed_html(result, scales.config, self._host.found))
+            mood = "accepted" if result.verdict.accepted else "refused"
+            self._stage.hud(state=words.of_hand(result), mood=mood, progress=None)
+            self._stage.flush()

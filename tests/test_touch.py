@@ -1,0 +1,43 @@
+"""Walls that coincide are told as such, walls in the other map's free floor too, and nothing is made up."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.pose import Pose2
+from algorithms.touch import AGREES, CONTRADICTS, SILENT, Walls
+
+
+def room(origin: Pose2 = Pose2()) -> GridMap:  # noqa: B008 - it is frozen
+    cells = np.full((40, 60), UNKNOWN, dtype=np.int8)
+    cells[5:35, 5:55] = FREE
+    cells[5, 5:55] = cells[34, 5:55] = OCCUPIED
+    cells[5:35, 5] = cells[5:35, 54] = OCCUPIED
+    return GridMap(cells, 0.1, origin)
+
+
+def test_a_map_agrees_with_itself_everywhere():
+    walls = Walls(room())
+    assert (walls.told(walls, Pose2()) == AGREES).all()
+
+
+def test_a_wall_in_free_floor_is_contradicted_and_one_in_the_unknown_is_not():
+    walls = Walls(room())
+    told = walls.told(walls, Pose2(1.0, 0.0))
+    rows, cols = walls.cells
+    inside = (cols == 5) & (rows > 8) & (rows < 31)
+    assert (told[inside] == CONTRADICTS).all()
+    assert (told[cols == 54] == SILENT).all()
+
+
+@given(st.floats(-20, 20), st.floats(-20, 20), st.floats(-3, 3))
+def test_nothing_is_told_where_the_maps_do_not_meet_and_frames_do_not_matter(x, y, theta):
+    far = Walls(room())
+    assert (far.told(far, Pose2(x + 100, y, theta)) == SILENT).all()
+    origin = Pose2(x, y, theta)
+    moved = Walls(room(origin))
+    assert (far.told(moved, origin) == AGREES).all()
+    assert (moved.told(far, origin.inverse()) == AGREES).all()
