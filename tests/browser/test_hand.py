@@ -191,9 +191,10 @@ def test_a_hand_is_refined_snapped_left_and_a_reload_keeps_it(tab):
     settle(lambda: tab.state.startswith("By hand, would be merged: "), "the search from there")
     assert field(tab, "T: Δx (m)") == pytest.approx(float(proven.split()[0]), abs=0.06)
 
+    near = field(tab, "T: Δx (m)")
     drag(tab, at_mov(tab, (1.5, -1.0)), (50, 40))
+    moved = settle(lambda: (now := field(tab, "T: Δx (m)")) > near + 1 and now, "the number of the drag")
     settle(lambda: tab.state.startswith("By hand, would be refused: "), "metres off")
-    moved = field(tab, "T: Δx (m)")
     tab.page.reload()
     tab.page.wait_for_function(READY)
     settle(lambda: tab.state.startswith("By hand, would be refused: "), "the hand after a reload")
