@@ -1,23 +1,64 @@
-"""What the button "Download merged map" sends."""
+"""What a result leaves the page as: one zip with everything, or each file alone."""
 
 from __future__ import annotations
 
 import io
 import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
-from algorithms.mapio import map_to_bytes
+from algorithms.casefiles import OBSERVATION_FILE, observations_to_bytes
 from algorithms.steps import MergeResult
-from app.report import transform_yaml
+from app.inputs import Inputs
+from app.report import (
+    MERGED_FILES,
+    OVERLAY_FILE,
+    PAGE_FILE,
+    REPORT_FILE,
+    TRANSFORM_FILE,
+    report_of,
+    result_files,
+)
 
-STEM = "merged"
+ARCHIVE = "merged.zip"
+# what a robot would act upon: of a refused merge it is given only to who insists
+ACTED_UPON = (*MERGED_FILES, TRANSFORM_FILE)
+# every file alone, the most wanted first
+ALONE = (PAGE_FILE, *reversed(MERGED_FILES), TRANSFORM_FILE, OVERLAY_FILE, REPORT_FILE, OBSERVATION_FILE)
 
 
-def archive(result: MergeResult) -> bytes:
-    """A zip with the merged map and its transform, as ``mapmeld merge`` leaves them in a folder."""
-    files = map_to_bytes(result.fusion.merged, STEM)
-    files["transform.yaml"] = transform_yaml(result)
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as target:
-        for name, content in files.items():
-            target.writestr(name, content)
-    return packed.getvalue()
+@dataclass(frozen=True, eq=False)
+class Harvest:
+    """A result with what it was made from; its files are made when they are first asked for.
+
+    config : the settings that were used
+    """
+
+    result: MergeResult
+    inputs: Inputs
+    config: Any
+
+    @cached_property
+    def files(self) -> Mapping[str, bytes]:
+        """Everything by name: what ``mapmeld merge`` leaves in a folder, and the observation as used."""
+        report = report_of(self.result, self.config, inputs=self._named())
+        files = result_files(self.result, self.inputs, self.config, report, with_merged=True)
+        return {OBSERVATION_FILE: observations_to_bytes(self.inputs.observations), **files}
+
+    def _named(self) -> dict[str, str]:
+        i = self.inputs
+        return {
+            "pair": i.name,
+            "map1": i.ref.name if i.ref is not None else "",
+            "map2": i.mov.name if i.mov is not None else "",
+        }
+
+    def archive(self) -> bytes:
+        """A zip with all files."""
+        packed = io.BytesIO()
+        with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as target:
+            for name, content in self.files.items():
+                target.writestr(name, content)
+        return packed.getvalue()

@@ -109,6 +109,12 @@
   const style = document.createElement("style");
   style.textContent = `
     .mm-sheet{position:absolute;inset:0;pointer-events:auto;cursor:crosshair;touch-action:none}
-    .mm-sheet[hidden]{display:none}`;
+    .mm-sheet[hidden]{display:none}
+    .mm-publish{margin:6px 10px 10px;font-size:12.5px}
+    .mm-publish p{margin:0 0 3px}
+    .mm-publish code{display:block;font:11.5px/1.45 ui-monospace,"DejaVu Sans Mono",monospace;padding:6px 8px;border-radius:4px 4px 0 0;background:rgba(107,114,128,.12);overflow-wrap:anywhere}
+    .mm-publish button{display:block;width:100%;border:0;border-radius:0 0 4px 4px;padding:5px;font:600 12.5px/1.4 system-ui,"Segoe UI",sans-serif;color:#111827;background:#E2E8F0;cursor:pointer}
+    .mm-publish button:hover:not(:disabled){background:#CBD5E1} .mm-publish button:disabled{cursor:default}
+    .mm-publish button:focus-visible{outline:2px solid #0072B2;outline-offset:1px}`;
   document.head.append(style);
 })();

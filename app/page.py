@@ -23,6 +23,7 @@ from app.byhand import ByHand
 from app.channel import Channel
 from app.comparison import MODES, Comparison
 from app.desk import Desk
+from app.export import Harvest
 from app.inputs import Inputs
 from app.keep import Keep, Kept
 from app.layout import Layout, lay_out
@@ -296,7 +297,7 @@ class Page:
                 told = result_html(self._result, self._inputs, self._config, self._conflicts, faded=True)
                 self._plots.tell(told)
                 self._comparison.outdate()
-                self._export.offer(None)
+                self._export.outdate()
             self.session.request(job)
 
     def _set_speed(self) -> None:
@@ -496,7 +497,7 @@ class Page:
         self._plots.show(story, follow=True)
         self._conflicts = find_conflicts(result.fusion)
         self._plots.tell(result_html(result, self._inputs, config, self._conflicts))
-        self._export.offer(result)
+        self._export.offer(Harvest(result, self._inputs, config))
         i = self._inputs
         if i.ref is not None and i.mov is not None:
             job = Job(i.ref, i.mov, i.observations, config, result.method, result.seed)

@@ -13,17 +13,20 @@ import cv2
 import numpy as np
 
 from algorithms.mapio import map_to_bytes
-from algorithms.mapio.fields import number_text, quoted
 from algorithms.merit import performance_index
 from algorithms.steps import MergeResult
 from app import render
+from app.inputs import Inputs
 from app.palette import LIGHT
+from app.publish import transform_yaml
+from app.report_page import report_page
 from app.version import versions
 
 MERGED = "merged"
 MERGED_FILES = (f"{MERGED}.pgm", f"{MERGED}.yaml")
 TRANSFORM_FILE = "transform.yaml"
 OVERLAY_FILE = "overlay.png"
+PAGE_FILE = "report.html"
 REPORT_FILE = "report.json"
 
 
@@ -84,30 +87,6 @@ def report_json(report: Mapping[str, Any]) -> bytes:
     return ("{\n" + ",\n".join(lines) + "\n}\n").encode()
 
 
-def publish_command(result: MergeResult) -> str:
-    """The command that tells ROS 2 where map 2's frame lies in map 1's."""
-    T = result.T_ref_mov
-    return (
-        f"ros2 run tf2_ros static_transform_publisher --x {T.x:.6f} --y {T.y:.6f} --yaw {T.theta:.6f} "
-        "--frame-id map1 --child-frame-id map2"
-    )
-
-
-def transform_yaml(result: MergeResult) -> bytes:
-    """The content of transform.yaml; T is written so that it reads back to the same numbers."""
-    T = result.T_ref_mov
-    x, y, theta = (number_text(value) for value in (T.x, T.y, T.theta))
-    accepted = "true" if result.verdict.accepted else "false"
-    return (
-        "# Takes points of map 2's frame to map 1's; m, m, rad. The robots' maps are the frames map1, map2.\n"
-        f"T_ref_mov: {{x: {x}, y: {y}, theta: {theta}}}\n"
-        f"method: {quoted(result.method)}\n"
-        f"accepted: {accepted}\n"
-        "# Publishes it in ROS 2; map 1's frame is the parent:\n"
-        f'publish: "{publish_command(result)}"\n'
-    ).encode()
-
-
 def overlay_png(result: MergeResult) -> bytes:
     """A picture of both maps under T: whose wall it is, where they agree and where they contradict.
 
@@ -124,16 +103,20 @@ def overlay_png(result: MergeResult) -> bytes:
     return png.tobytes()
 
 
-def result_files(result: MergeResult, report: Mapping[str, Any], with_merged: bool) -> dict[str, bytes]:
+def result_files(
+    result: MergeResult, inputs: Inputs, config: Any, report: Mapping[str, Any], with_merged: bool
+) -> dict[str, bytes]:
     """All files of a result by name, in the order they are to be written: the report is the last.
 
-    with_merged : also what a robot would act upon: the merged map and the transform
+    inputs, config : what was merged, and the settings that were used
+    with_merged    : also what a robot would act upon: the merged map and the transform
     """
     files: dict[str, bytes] = {}
     if with_merged:
         files |= map_to_bytes(result.fusion.merged, MERGED)
         files[TRANSFORM_FILE] = transform_yaml(result)
     files[OVERLAY_FILE] = overlay_png(result)
+    files[PAGE_FILE] = report_page(result, inputs, config, report)
     files[REPORT_FILE] = report_json(report)
     return files
 

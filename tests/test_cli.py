@@ -25,7 +25,8 @@ from app.cli import COMMANDS, main
 from app.controls import settings_of
 
 ROOT = Path(__file__).parent.parent
-ALL_FILES = {"merged.yaml", "merged.pgm", "transform.yaml", "overlay.png", "report.json"}
+OF_A_REFUSAL = {"overlay.png", "report.html", "report.json"}
+ALL_FILES = {"merged.yaml", "merged.pgm", "transform.yaml"} | OF_A_REFUSAL
 
 
 def inputs(folder):
@@ -191,10 +192,11 @@ def test_a_method_starts_from_its_own_defaults(case_folder, tmp_path):
 
 def test_a_refused_merge_ends_with_1_and_leaves_no_map(strangers_folder, tmp_path, capsys):
     assert main(["merge", *inputs(strangers_folder), "--out", str(tmp_path)]) == 1
-    assert {path.name for path in tmp_path.iterdir()} == {"overlay.png", "report.json"}
+    assert {path.name for path in tmp_path.iterdir()} == OF_A_REFUSAL
     said = capsys.readouterr().out
     assert said.startswith("Refused: ")
     assert "--force" in said
+    assert "<strong>REFUSED</strong>" in (tmp_path / "report.html").read_text("utf-8")
 
 
 def test_force_writes_the_refused_map_and_still_ends_with_1(strangers_folder, tmp_path):
@@ -209,7 +211,12 @@ def test_a_refused_merge_takes_an_earlier_map_away_and_says_so(
     (tmp_path / "notes.txt").write_text("mine")
     assert main(["merge", *inputs(case_folder), "--out", str(tmp_path)]) == 0
     assert main(["merge", *inputs(strangers_folder), "--out", str(tmp_path)]) == 1
-    assert {path.name for path in tmp_path.iterdir()} == {"overlay.png", "report.json", "notes.txt"}
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "overlay.png",
+        "report.html",
+        "report.json",
+        "notes.txt",
+    }
     assert "removed" in capsys.readouterr().out
 
 

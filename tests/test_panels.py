@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import zipfile
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +14,6 @@ from algorithms.methods import DEFAULT_METHOD, METHODS, merge, run
 from algorithms.pose import Pose2
 from algorithms.steps import CandidatesDetail, HoughDetail, MergeResult
 from app import charts
-from app.export import archive
 from app.inputs import Inputs
 from app.panels.files import Upload, inputs_from
 from app.panels.observation import observations_html
@@ -144,12 +141,6 @@ def test_long_words_in_a_table_may_break_and_numbers_may_not():
 
 def test_words_in_tables_are_never_html():
     assert "<img" not in table([("<img src=x>", "<b>")]) + box("<img src=x>", "plain", "<img>")
-
-
-def test_the_archive_holds_the_map_and_its_transform(result):
-    with zipfile.ZipFile(io.BytesIO(archive(result))) as packed:
-        assert set(packed.namelist()) == {"merged.yaml", "merged.pgm", "transform.yaml"}
-        assert packed.read("merged.pgm") == map_to_bytes(result.fusion.merged, "merged")["merged.pgm"]
 
 
 def test_every_step_of_a_run_has_a_sentence_and_progress_never_falls(inputs):

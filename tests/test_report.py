@@ -15,6 +15,7 @@ from algorithms.gridmap import OCCUPIED_FROM, UNKNOWN
 from algorithms.methods import METHODS, merge
 from algorithms.pose import Pose2
 from app import report
+from app.inputs import Inputs
 from app.palette import LIGHT
 
 
@@ -130,9 +131,10 @@ def test_the_overlay_shows_the_merged_map_upright_in_the_colours_of_the_legend(r
     assert (upright[unseen & (fusion.ref_cells == UNKNOWN)] == LIGHT.unknown).all()
 
 
-def test_what_a_robot_would_act_upon_is_left_out_of_a_refused_result(result):
-    files = report.result_files(result, report.report_of(result), with_merged=False)
-    assert set(files) == {"overlay.png", "report.json"}
-    files = report.result_files(result, report.report_of(result), with_merged=True)
+def test_what_a_robot_would_act_upon_is_left_out_of_a_refused_result(result, small_case):
+    told, inputs = report.report_of(result), Inputs.of(small_case)
+    files = report.result_files(result, inputs, None, told, with_merged=False)
+    assert set(files) == {"overlay.png", "report.html", "report.json"}
+    files = report.result_files(result, inputs, None, told, with_merged=True)
     assert list(files)[-1] == "report.json"  # when it is there, the others are
     assert {"merged.yaml", "merged.pgm", "transform.yaml"} < set(files)

@@ -32,9 +32,10 @@ Examples:
 Files in the folder of --out:
   merged.yaml, merged.pgm   the merged map, in map 1's frame
   transform.yaml            where map 2 lies in map 1, and the line that publishes it in ROS 2
+  report.html               all of it to read and print: verdict, pictures, numbers, settings
   report.json               transform, covariance, verdict, proof, times, settings
   overlay.png               both maps under the transform: agreement and contradiction
-A refused merge leaves report.json and overlay.png alone. merged.* and transform.yaml of an
+A refused merge leaves the reports and overlay.png alone. merged.* and transform.yaml of an
 earlier run are then removed, so that nobody takes them for this run's.
 
 Exit status: 0 merged, 1 refused (with --force too), 2 bad input, 130 interrupted."""
@@ -69,6 +70,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, write and tell; the exit status."""
     from algorithms import methods
     from app.flags import config_from
+    from app.inputs import Inputs
     from app.progress import result_of
     from app.report import MERGED_FILES, TRANSFORM_FILE, report_json, report_of, result_files
 
@@ -81,7 +83,8 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     named = {"map1": args.map1, "map2": args.map2, "observation": args.observation}
     report = report_of(result, config, load_s, {key: str(path) for key, path in named.items()})
     accepted = result.verdict.accepted
-    files = result_files(result, report, with_merged=accepted or args.force)
+    inputs = Inputs(ref, mov, observations, f"{args.map1.stem} and {args.map2.stem}")
+    files = result_files(result, inputs, config, report, with_merged=accepted or args.force)
     stale = [] if accepted or args.force else [*MERGED_FILES, TRANSFORM_FILE]
     removed = _leave(args.out, files, stale)
     if args.json:
@@ -135,7 +138,7 @@ def _leave(folder: Path, files: Mapping[str, bytes], stale: Sequence[str]) -> li
 def _check_folder(args: argparse.Namespace) -> None:
     """Raise OutputError where the result could not be left, or would take the place of an input."""
     from algorithms.mapio import YAML_SUFFIXES, parse_meta, read_bytes
-    from app.report import MERGED_FILES, OVERLAY_FILE, REPORT_FILE, TRANSFORM_FILE
+    from app.report import MERGED_FILES, OVERLAY_FILE, PAGE_FILE, REPORT_FILE, TRANSFORM_FILE
 
     if args.out.exists() and not args.out.is_dir():
         raise OutputError(args.out, "is a file, not a folder", "choose another --out")
@@ -143,7 +146,7 @@ def _check_folder(args: argparse.Namespace) -> None:
     for path in (args.map1, args.map2):
         if path.suffix.lower() in YAML_SUFFIXES:
             inputs.append(path.parent / parse_meta(str(path), read_bytes(path, "a map")).image)
-    names = (*MERGED_FILES, TRANSFORM_FILE, OVERLAY_FILE, REPORT_FILE)
+    names = (*MERGED_FILES, TRANSFORM_FILE, OVERLAY_FILE, PAGE_FILE, REPORT_FILE)
     places = {os.path.realpath(args.out / name): args.out / name for name in names}
     for path in inputs:
         place = places.get(os.path.realpath(path))

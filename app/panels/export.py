@@ -1,13 +1,23 @@
-"""Folder "Export": the merged map as a file; a refused one only after a warning."""
+"""Folder "Export": everything as one zip, each file alone, and the line that publishes the transform.
+
+What a robot would act upon is given of a refused merge only after a warning.
+"""
 
 from __future__ import annotations
 
+from html import escape
+from threading import Lock
+
 import viser
 
-from algorithms.steps import MergeResult
-from app.export import STEM, archive
+from app.export import ACTED_UPON, ALONE, ARCHIVE, Harvest
 from app.palette import LIGHT, QUIET
 from app.panels.replay import ReplayButton
+from app.panels.tables import box
+from app.publish import publish_command
+
+_NOTHING = box("After a merge it can be taken away from here: map, transform, report.", "plain")
+_OUTDATED = box("Out of date: a setting was changed.", "plain", faded=True)
 
 
 class ExportPanel:
@@ -15,45 +25,89 @@ class ExportPanel:
 
     def __init__(self, client: viser.ClientHandle) -> None:
         self._client = client
-        self._result: MergeResult | None = None
-        with client.gui.add_folder("Export", order=70):
-            self._button = client.gui.add_button(
-                "Download merged map",
+        self._harvest: Harvest | None = None
+        self._at_work = Lock()
+        gui = client.gui
+        with gui.add_folder("Export", order=70):
+            self._all = gui.add_button(
+                "Download everything",
                 icon=viser.Icon.DOWNLOAD,
                 color=QUIET,
-                disabled=True,
-                hint="A zip: merged.yaml, merged.pgm, transform.yaml.",
+                visible=False,
+                hint="A zip: merged map for Nav2, transform, report to read and print, picture, observation.",
             )
-            self._button.on_click(lambda _: self._download())
+            self._all.on_click(lambda _: self._ask(ARCHIVE))
+            self._one = gui.add_dropdown("One file", ALONE, visible=False, hint="A file of the zip, alone.")
+            self._alone = gui.add_button("Download this file", color=QUIET, visible=False)
+            self._alone.on_click(lambda _: self._ask(self._one.value))
             self.replay = ReplayButton(client)
+            self.replay.visible(False)
+            self._line = gui.add_html("")
+            self._note = gui.add_html(_NOTHING)  # last, so that nothing moves when it comes
 
-    def offer(self, result: MergeResult | None) -> None:
+    def offer(self, harvest: Harvest | None) -> None:
         """Take this result, or none; a replay of its run is offered apart."""
-        self._result = result
-        self.replay.offer(None)
-        self._button.disabled = result is None
+        self._show(harvest, there=harvest is not None)
+        self._note.content = "" if harvest is not None else _NOTHING
+        self._line.content = "" if harvest is None else line_html(harvest)
 
-    def _download(self) -> None:
-        result = self._result
-        if result is None:
+    def outdate(self) -> None:
+        """The result is out of date: it is greyed, and nothing of it can be taken."""
+        last = self._harvest
+        if last is None:
             return
-        if result.verdict.accepted:
-            self._send(result)
+        self._show(None, there=True)
+        self._note.content = _OUTDATED
+        self._line.content = line_html(last, faded=True)
+
+    def _show(self, harvest: Harvest | None, there: bool) -> None:
+        self._harvest = harvest
+        self.replay.offer(None)
+        self.replay.visible(there)
+        for widget in (self._all, self._one, self._alone):
+            widget.visible, widget.disabled = there, harvest is None
+
+    def _ask(self, name: str) -> None:
+        """Send a file of the result, or all of them; of a refused one only harmless ones at once."""
+        harvest = self._harvest
+        if harvest is None:
+            return
+        verdict = harvest.result.verdict
+        if verdict.accepted or name not in (ARCHIVE, *ACTED_UPON):
+            self._send(harvest, name)
             return
         gui = self._client.gui
         modal = gui.add_modal("This merge was refused")
         with modal:
-            gui.add_markdown(f"{result.verdict.reason}\n\nA robot that trusts this map may get lost.")
+            gui.add_markdown(f"{verdict.reason}\n\nA robot that trusts this map may get lost.")
             yes = gui.add_button("Download the refused map anyway", color=LIGHT.conflict)
             no = gui.add_button("Cancel", color=QUIET)
 
         def go(really: bool) -> None:
             modal.close()
             if really:
-                self._send(result)
+                self._send(harvest, name)
 
         yes.on_click(lambda _: go(True))
         no.on_click(lambda _: go(False))
 
-    def _send(self, result: MergeResult) -> None:
-        self._client.send_file_download(f"{STEM}.zip", archive(result), save_immediately=True)
+    def _send(self, harvest: Harvest, name: str) -> None:
+        if not self._at_work.acquire(blocking=False):
+            return  # a second click while the files are being made
+        try:
+            content = harvest.archive() if name == ARCHIVE else harvest.files[name]
+            self._client.send_file_download(name, content, save_immediately=True)
+        finally:
+            self._at_work.release()
+
+
+def line_html(harvest: Harvest, faded: bool = False) -> str:
+    """HTML of the line that publishes the transform, with a button that copies it: see measure.js."""
+    if not harvest.result.verdict.accepted:
+        return box("Refused: there is no transform to publish.", "refused", faded=faded)
+    command = escape(publish_command(harvest.result))
+    dim, off = (' style="opacity:.4"', " disabled") if faded else ("", "")
+    return (
+        f'<div class="mm-publish"{dim}><p>Publish the transform in ROS 2:</p><code>{command}</code>'
+        f'<button type="button" data-mm-copy="{command}"{off}>Copy the line</button></div>'
+    )

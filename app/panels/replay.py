@@ -33,6 +33,10 @@ class ReplayButton:
         self._name, self._make = name or "", make
         self._button.disabled = make is None
 
+    def visible(self, yes: bool) -> None:
+        """Show the button, or hide it while there is nothing to save."""
+        self._button.visible = yes
+
     def _save(self) -> None:
         name, make = self._name, self._make
         if make is None or not self._at_work.acquire(blocking=False):

@@ -109,7 +109,7 @@ def a_refusal(tab: Tab, keep: Callable[[str], None], name: str) -> None:
     tab.wait_for("refused")
     tab.page.wait_for_timeout(1500)
     keep(name)
-    tab.press("Download merged map")
+    tab.press("Download everything")
     tab.page.wait_for_timeout(800)
     keep(f"{name}_download")
 

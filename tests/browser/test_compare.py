@@ -1,13 +1,17 @@
-"""Two maps compared where they lie, and a distance measured, as a person does it."""
+"""Two maps compared where they lie, a distance measured, the result taken away: as a person does it."""
 
 from __future__ import annotations
+
+import zipfile
 
 import numpy as np
 import pytest
 from driver import Tab, settle
 
-from algorithms.casefiles import Case
+from algorithms.casefiles import Case, read_observations
 from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.mapio import read_map
+from algorithms.methods import merge
 from algorithms.observation import Observation
 from algorithms.pose import Pose2
 from app.palette import LIGHT
@@ -159,3 +163,69 @@ def test_a_distance_is_measured_with_two_clicks_or_a_drag_and_the_map_stays_wher
     tab.page.keyboard.press("Escape")
     assert line() is None
     assert tab.page.get_by_role("button", name="Measure").get_attribute("aria-pressed") == "false"
+
+
+def test_everything_is_taken_away_at_once_and_reads_back_and_the_report_opens_without_a_net(
+    tab, browser, sample, tmp_path
+):
+    def named(name: str):
+        return tab.page.get_by_role("button", name=name, exact=True)
+
+    assert tab.page.get_by_text("After a merge it can be taken away from here").count() == 1
+    assert not named("Download everything").is_visible()
+    assert not named("Download this file").is_visible()
+    tab.press("Instant")
+    tab.press("Merge")
+    tab.wait_for("accepted")
+    with tab.page.expect_download() as download:
+        tab.press("Download everything")
+    with zipfile.ZipFile(download.value.path()) as packed:
+        packed.extractall(tmp_path)
+    expected = merge(sample.ref, sample.mov, sample.observations)
+    assert np.array_equal(read_map(tmp_path / "merged.yaml").cells, expected.fusion.merged.cells)
+    assert read_observations(tmp_path / "observation.yaml") == sample.observations
+    with tab.page.expect_download() as download:
+        tab.press("Download this file")
+    assert download.value.suggested_filename == "report.html"
+    (tmp_path / "alone.html").write_bytes(download.value.path().read_bytes())
+    for name in ("report.html", "alone.html"):
+        asked, said = [], []
+        page = browser.new_page(viewport={"width": 900, "height": 900})
+        page.on("request", lambda request, asked=asked: asked.append(request.url))
+        page.on("console", lambda message, said=said: said.append(message.text))
+        page.goto((tmp_path / name).as_uri())
+        assert [url.split(":")[0] for url in asked if not url.startswith("data:")] == ["file"]
+        assert said == []  # nothing that the page's own policy had to forbid
+        assert page.locator(".verdict.accepted").inner_text() == expected.verdict.reason
+        assert page.locator("figure svg").count() == 4
+        drawn = "() => [...document.querySelectorAll('figure svg')].every((one) => one.clientHeight > 150)"
+        assert page.evaluate(drawn)
+        assert not page.evaluate("() => document.documentElement.scrollWidth > innerWidth")
+        page.close()
+
+
+def test_the_publishing_line_is_copied_at_a_press_and_a_moved_slider_greys_it(tab):
+    tab.press("Instant")
+    tab.press("Merge")
+    tab.wait_for("accepted")
+    tab.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    tab.press("Copy the line")
+    settle(lambda: tab.page.get_by_role("button", name="Copied").count() == 1, "a word that it is done")
+    line = tab.page.evaluate("() => navigator.clipboard.readText()")
+    assert line.startswith("ros2 run tf2_ros static_transform_publisher --x ")
+    assert line == tab.page.locator(".mm-publish code").inner_text()
+    tab.page.evaluate("() => { navigator.clipboard.writeText = () => Promise.reject(new Error('no')); }")
+    settle(lambda: tab.page.get_by_role("button", name="Copy the line").count() == 1, "the button's own word")
+    tab.press("Copy the line")
+    settle(lambda: tab.page.get_by_role("button", name="Copied").count() == 1, "the old way to copy")
+    tab.page.evaluate(  # what is greyed may be so for some milliseconds only
+        """() => {
+            window.greyed = false;
+            new MutationObserver(() => {
+                if (document.querySelector("[data-mm-copy]:disabled")) window.greyed = true;
+            }).observe(document.body, { childList: true, subtree: true });
+        }"""
+    )
+    tab.move("spread", 5)
+    settle(lambda: tab.page.evaluate("() => window.greyed"), "the line to be greyed")
+    settle(lambda: tab.page.get_by_role("button", name="Copy the line").is_enabled(), "the new line")

@@ -239,7 +239,7 @@ def test_the_downloaded_map_reads_back_to_the_merged_cells(tab, tmp_path, sample
     tab.press("Merge")
     tab.wait_for("accepted")
     with tab.page.expect_download() as download:
-        tab.press("Download merged map")
+        tab.press("Download everything")
     assert download.value.suggested_filename == "merged.zip"
     with zipfile.ZipFile(download.value.path()) as packed:
         packed.extractall(tmp_path)
@@ -392,7 +392,7 @@ def test_a_refused_map_is_downloaded_only_after_a_warning(open_tab, sample: Case
         tab.press("Instant")
         tab.press("Merge")
         tab.wait_for("refused")
-        tab.press("Download merged map")
+        tab.press("Download everything")
         with tab.page.expect_download() as download:
             tab.press("Download the refused map anyway")
         assert download.value.suggested_filename == "merged.zip"

@@ -1,0 +1,181 @@
+"""The report to read, and what leaves the page: whole, escaped, nothing fetched, refused on top."""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+import yaml
+
+from algorithms.casefiles import observations_from_bytes
+from algorithms.mapio import read_map
+from algorithms.methods import DEFAULT_METHOD, METHODS, merge
+from algorithms.pose import Pose2
+from algorithms.steps import MergeResult
+from app.export import ACTED_UPON, ALONE, Harvest
+from app.inputs import Inputs
+from app.panels.tables import box
+from app.publish import publish_command
+from app.report import report_of
+from app.report_page import report_page
+
+DEFAULTS = METHODS[DEFAULT_METHOD].defaults
+VOID = {"meta"}
+
+
+@pytest.fixture(scope="module")
+def inputs(small_case) -> Inputs:
+    return Inputs.of(small_case)
+
+
+@pytest.fixture(scope="module")
+def result(inputs) -> MergeResult:
+    return merge(inputs.ref, inputs.mov, inputs.observations)
+
+
+def page_of(result: MergeResult, inputs: Inputs, config=DEFAULTS, **named: str) -> str:
+    return report_page(result, inputs, config, report_of(result, config, inputs=named)).decode()
+
+
+def refused(result: MergeResult) -> MergeResult:
+    verdict = replace(result.verdict, accepted=False, reason="Refused: the maps disagree.")
+    return replace(result, verdict=verdict)
+
+
+class Reader(HTMLParser):
+    """What a page holds: its tags, whether each is closed, what it would fetch."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.open: list[str] = []
+        self.links: list[str] = []
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        if tag not in VOID:
+            self.open.append(tag)
+        self.links += [value for name, value in attrs if name in ("href", "src", "srcset", "action")]
+
+    def handle_startendtag(self, tag, attrs):
+        self.handle_starttag(tag, attrs)
+        self.open.remove(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+def read(page: str) -> Reader:
+    reader = Reader()
+    reader.feed(page)
+    reader.close()
+    assert reader.open == []
+    return reader
+
+
+def test_the_page_is_whole_and_fetches_nothing(result, inputs):
+    page = page_of(result, inputs)
+    told = read(page)
+    assert "script" not in told.tags
+    assert told.links  # the pictures are in it
+    assert all(link.startswith("data:image/png;base64,") for link in told.links)
+    assert "default-src 'none'" in page
+    assert not re.search(r"url\(|@import|\bon\w+=", page)
+    assert told.tags.count("svg") == 4  # sources, merge, contradictions, proof
+
+
+def test_the_verdict_comes_first_then_pictures_then_numbers(result, inputs):
+    page = page_of(result, inputs)
+    order = [
+        result.verdict.reason,
+        "Pictures",
+        "place by place",
+        "<h2>The numbers",
+        "Is there a better place?",
+    ]
+    order += ["What robot 1 saw", "How it was merged", publish_command(result), "Made with mapmeld"]
+    assert sorted(order, key=page.index) == order
+    assert "REFUSED" not in page
+
+
+def test_a_refused_merge_says_so_at_the_top_and_offers_nothing_to_publish(result, inputs):
+    page = page_of(refused(result), inputs)
+    assert page.index("<strong>REFUSED</strong>") < page.index("The maps disagree.") < page.index("Pictures")
+    assert "<title>Refused: " in page
+    assert "static_transform_publisher" not in page
+    assert "map_server" not in page
+
+
+def test_every_name_is_words_and_never_html(result, inputs):
+    nasty = "<img src=x onerror=alert(1)>\"'&"
+    named = replace(inputs, name=nasty)
+    page = page_of(replace(result, method=nasty), named, map1=nasty)
+    assert "<img" not in page
+    assert page.count("&lt;img src=x onerror=alert(1)&gt;") >= 4  # title, heading, method, file
+    read(page)
+
+
+def test_a_setting_that_was_changed_tells_what_it_usually_is(result, inputs):
+    assert "usually" not in page_of(result, inputs)
+    changed = replace(DEFAULTS, augment=replace(DEFAULTS.augment, spread=2.5))
+    assert "<td>2.5 (usually 4)</td>" in page_of(result, inputs, changed)
+
+
+@pytest.mark.parametrize("method", ["spectra-swarm", "bilateral"])
+def test_a_method_without_a_proof_has_a_page_without_one(inputs, method):
+    config = METHODS[method].defaults
+    page = page_of(merge(inputs.ref, inputs.mov, inputs.observations, method), inputs, config)
+    assert "Is there a better place?" not in page
+    read(page)
+
+
+def test_a_proof_that_met_nothing_and_settings_that_are_not_known_still_make_a_page(result, inputs):
+    nothing = replace(
+        result.proof,
+        best=None,
+        best_value=-np.inf,
+        proven=False,
+        stopped="none",
+        empty=True,
+        rivals=np.zeros((0, 3)),
+        rival_values=np.zeros(0),
+        **dict.fromkeys(("turns", "ceilings", "found"), np.zeros(0)),
+    )
+    page = page_of(replace(refused(result), proof=nothing, value=None), inputs, None)
+    assert "No transform agrees with every sighting" in page
+    assert read(page).tags.count("svg") == 3
+
+
+def test_maps_that_do_not_touch_make_a_page(result, inputs):
+    far = replace(result, T_ref_mov=Pose2(500.0, 0.0, 1.0))
+    fused = replace(result.fusion, mov_cells=np.full_like(result.fusion.mov_cells, -1))
+    read(page_of(replace(far, fusion=fused), inputs))
+
+
+def test_the_page_is_the_same_for_the_same_result(result, inputs):
+    assert page_of(result, inputs) == page_of(result, inputs)
+
+
+def test_the_archive_reads_back_to_what_was_merged(result, inputs, tmp_path):
+    harvest = Harvest(result, inputs, DEFAULTS)
+    with zipfile.ZipFile(io.BytesIO(harvest.archive())) as packed:
+        assert set(packed.namelist()) == set(ALONE)
+        assert set(ACTED_UPON) < set(ALONE)
+        packed.extractall(tmp_path)
+    merged = read_map(tmp_path / "merged.yaml")
+    assert np.array_equal(merged.cells, result.fusion.merged.cells)
+    told = yaml.safe_load((tmp_path / "transform.yaml").read_text())
+    assert Pose2(**told["T_ref_mov"]) == result.T_ref_mov
+    seen = observations_from_bytes("o.yaml", (tmp_path / "observation.yaml").read_bytes())
+    again = merge(inputs.ref, inputs.mov, seen)
+    assert again.T_ref_mov.x == pytest.approx(result.T_ref_mov.x, abs=1e-3)
+    assert inputs.name in (tmp_path / "report.json").read_text("utf-8")
+
+
+def test_a_sentence_that_is_out_of_date_is_greyed():
+    assert "opacity:.4" in box("Out of date.", "plain", faded=True)
