@@ -26,20 +26,19 @@ from app.desk import Desk
 from app.export import Harvest
 from app.inputs import Inputs
 from app.keep import Keep, Kept
-from app.layout import Layout, lay_out
+from app.layout import lay_out
+from app.learning import Learning
 from app.legend import in_hand, legend
-from app.lesson.mode import Lesson
-from app.lesson.texts import lesson_folder
 from app.palette import DARK, LIGHT, Palette
 from app.panels.export import ExportPanel
 from app.panels.files import FilesPanel
 from app.panels.observation import ObservationPanel
 from app.panels.result import result_html
-from app.panels.run import HEIGHTS, LESSON, MAP, SWARM, RunPanel, Wishes
+from app.panels.run import HEIGHTS, MAP, SWARM, RunPanel, Wishes
 from app.panels.tuning import TuningPanel
 from app.replay import replay_of
 from app.session import Job, Session
-from app.stage import Item, Stage, TabStage, mark
+from app.stage import Stage, TabStage, mark
 from app.story import Story
 from app.timeline import Timeline
 from app.views.ground import Mode
@@ -51,7 +50,7 @@ from app.views.swarm_space import SwarmSpaceView
 log = logging.getLogger(__name__)
 
 
-class Page:
+class Page(Learning):
     """Listens to its session and draws; the callbacks of its widgets only ask."""
 
     def __init__(
@@ -81,8 +80,7 @@ class Page:
         self._channel.on("compare", self._compare, mode=MODES)
         inputs = Inputs.of(initial) if initial else Inputs()
         self._build(inputs.name)
-        texts = lesson or lesson_folder()
-        self._lesson = Lesson(self, client.gui, self._tuning, self._turn, texts)
+        self._learn_with(client.gui, lesson)
         self._channel.on("hello", lambda **who: self._greet(inputs, **who), key=str, again=bool)
         self._stage.flush()  # the page says hello when it has read where to
 
@@ -375,79 +373,6 @@ class Page:
             self._notice.remove()
         self._notice = self._client.add_notification(title, text, auto_close_seconds=12.0, color=colour)
 
-    # --- the lesson -------------------------------------------------------------------------------
-
-    @property
-    def inputs(self) -> Inputs:
-        """What is loaded."""
-        return self._inputs
-
-    @property
-    def layout(self) -> Layout:
-        """Where the maps lie in the scene."""
-        return self._maps.layout
-
-    @property
-    def palette(self) -> Palette:
-        """The colours of the page."""
-        return self._palette
-
-    @property
-    def seed(self) -> int:
-        """Where the luck of a run comes from."""
-        return self._run.seed
-
-    def _learn(self, what: str) -> None:
-        if what == LESSON and self._lesson.open:
-            self._lesson.leave()
-        elif what == LESSON:
-            self._lesson.enter()
-
-    def entered(self, open_: bool) -> None:
-        """The lesson takes the place of the plots, or gives it back."""
-        self._hand.end()
-        self._run.learning = [LESSON] if open_ else []
-        self._plots.visible(not open_)
-        self._comparison.clear()
-        self._stage.layer("lesson", None)
-        if open_ and self._run.view != MAP:
-            self._run.view = MAP
-            self._turn_view()
-        self._press()
-
-    def came_back(self) -> None:
-        """Show again what there was before the lesson."""
-        if self._timeline.desk is not None:
-            self._restore(self._timeline.desk)
-
-    def method_shown(self, method: str) -> None:
-        """The lesson has chosen a method."""
-        self._run.restore(method, self._run.seed)
-
-    def report(self, error: MapMergeError) -> None:
-        """Something the lesson needs cannot be used."""
-        self._report(error)
-
-    def present(
-        self, story: Story, says: str, ink: list[Item], turn: float | None, look: bool, busy: bool
-    ) -> None:
-        """Show a run on the map, as far as the story goes, and what the lesson draws over it."""
-        with self.session.drawing, self._client.atomic():
-            self._story = story
-            if self._run.view != MAP:
-                self._draw(story, live=False)
-            elif story.reached(AugmentDetail):
-                self._maps.show(story, self._tuning.config, camera=look, live=True)
-            else:
-                self._maps.apart()
-            if turn is not None and self._run.view == MAP:
-                self._maps.turned(turn)
-            self._stage.layer("lesson", ink if self._run.view == MAP else None)
-            mood = "running" if busy else "idle"
-            shown = legend(self._palette, self._run.view, story, mode=self._comparison.mode)
-            self._stage.hud(state=says, mood=mood, progress=None, legend=shown)
-            self._stage.flush()
-
     # --- what the session tells -------------------------------------------------------------------
 
     def begun(self, job: Job) -> None:
@@ -506,6 +431,7 @@ class Page:
         self._comparison.offer(self._conflicts, self._palette)
         self._stage.hud(mood="accepted" if result.verdict.accepted else "refused", progress=None)
         self._say(story, result)
+        self._museum.told(self._inputs, result.method, config, result)
 
     def stopped(self, job: Job, story: Story) -> None:
         """Someone pressed Stop."""

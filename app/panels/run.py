@@ -12,7 +12,7 @@ from app.palette import LIGHT, QUIET
 from app.player import PACES
 
 MAP, HEIGHTS, SWARM = "Map", "Heights", "Swarm space"
-LESSON = "Lesson"
+LESSON, MUSEUM = "Lesson", "Museum"
 
 
 @dataclass(frozen=True)
@@ -49,9 +49,9 @@ class RunPanel:
         hint = (
             "Lesson: the method step by step on these maps. Museum: where it goes wrong, and what cures it."
         )
-        self._learn = gui.add_button_group("Learn", (LESSON,), order=4.7, hint=hint)
+        self._learn = gui.add_button_group("Learn", (LESSON, MUSEUM), order=4.7, hint=hint)
         self._learn.on_click(lambda _: wishes.learn(self._learn.value))
-        self.learning: list[str] = []  # which of them is open
+        self._open: list[str] = []  # which of them are
         with gui.add_folder("Run", order=50):
             titles = {method.title: name for name, method in METHODS.items()}
             self._method = gui.add_dropdown(
@@ -111,7 +111,11 @@ class RunPanel:
         """Whether the camera goes along."""
         return self._follow.value
 
+    def open(self, what: str, yes: bool) -> None:
+        """The lesson or the museum was opened or closed."""
+        self._open = [name for name in (LESSON, MUSEUM) if (yes if name == what else name in self._open)]
+
     @property
     def pressed(self) -> list[str]:
         """The chosen button of each group."""
-        return [self._speed.value, self._view.value, *self.learning]
+        return [self._speed.value, self._view.value, *self._open]

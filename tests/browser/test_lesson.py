@@ -180,3 +180,30 @@ def test_rewritten_texts_show_at_once_and_a_broken_one_is_named(open_tab, sample
         at_step(tab, 2)
     finally:
         own.stop()
+
+
+def test_an_exhibit_fails_as_told_and_its_cure_merges(tab):
+    tab.press("Instant")
+    tab.move("deviations", 2)
+    settle(lambda: "up to date" in tab.state, "a setting of the person's own")
+    tab.press("Museum")
+    settle(lambda: "candidates.twins" in tab.text or "twins" in tab.text, "the first exhibit")
+    tab.choose("Exhibit", "3. One aisle too far")
+    settle(lambda: "warehouse_r3_r2" in tab.page.locator(".mm-title").inner_text(), "its maps")
+    assert tab.state == "Ready. Press Merge."
+    assert tab.page.get_by_role("button", name="Cure: Use the coupled window").count() == 0
+    tab.press("Merge")
+    settle(lambda: "Wrong: 3.6 m and 0° from the truth." in tab.text, "the failure")
+    assert tab.mood == "refused"
+    assert "an aisle too far" in tab.text
+    tab.press("Cure: Use the coupled window")
+    settle(lambda: "Cured: " in tab.text, "the cure")
+    assert tab.mood == "accepted"
+    tab.press("Once more, uncured")
+    settle(lambda: tab.state == "Ready. Press Merge.", "the exhibit again")
+    tab.press("Leave the museum")
+    settle(lambda: "office_r2_r1" in tab.page.locator(".mm-title").inner_text(), "the maps of before")
+    label = tab.page.locator("label", has_text="deviations").first
+    thumb = tab.page.locator(f'[id="{label.get_attribute("for")}"]').get_by_role("slider")
+    settle(lambda: thumb.get_attribute("aria-valuenow") == "4.5", "the person's own setting")
+    assert not tab.page.get_by_text("Leave the museum").is_visible()

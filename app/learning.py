@@ -1,0 +1,205 @@
+"""The part of a page that is about the lesson and the museum: what they borrow, and how it comes back."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from pathlib import Path
+from threading import RLock
+from typing import Any
+
+import viser
+
+from algorithms.errors import MapMergeError
+from algorithms.steps import AugmentDetail
+from app.byhand import ByHand
+from app.comparison import Comparison
+from app.desk import Desk
+from app.inputs import Files, Inputs
+from app.layout import Layout
+from app.legend import legend
+from app.lesson.mode import Lesson
+from app.lesson.museum import Museum
+from app.lesson.texts import lesson_folder, museum_folder
+from app.palette import Palette
+from app.panels.files import FilesPanel
+from app.panels.run import LESSON, MAP, MUSEUM, RunPanel
+from app.panels.tuning import TuningPanel
+from app.session import Session
+from app.stage import Item, Stage
+from app.story import Story
+from app.timeline import Timeline
+from app.views.maps import MapView
+from app.views.plots import PlotDock
+
+
+class Learning(ABC):
+    """Half of a Page; the attributes below are the other half's."""
+
+    session: Session
+    _client: viser.ClientHandle
+    _stage: Stage
+    _maps: MapView
+    _plots: PlotDock
+    _comparison: Comparison
+    _run: RunPanel
+    _tuning: TuningPanel
+    _files: FilesPanel
+    _timeline: Timeline
+    _palette: Palette
+    _inputs: Inputs
+    _story: Story
+    _turn: RLock
+    _hand: ByHand
+
+    def _learn_with(self, gui: viser.GuiApi, lesson: Path | None) -> None:
+        """Add both to the page; ``lesson`` is the folder of its texts, None for those that come along."""
+        self._lesson = Lesson(self, gui, self._tuning, self._turn, lesson or lesson_folder())
+        self._museum = Museum(self, gui, self._turn, museum_folder())
+
+    def _learn(self, what: str) -> None:
+        """Open or close the one or the other."""
+        if what == LESSON and self._lesson.open:
+            self._lesson.leave()
+        elif what == LESSON:
+            self._lesson.enter()
+        elif self._museum.open:
+            self._museum.leave()
+        else:
+            self._lesson.leave()
+            self._museum.enter()
+
+    # --- what the other half does -----------------------------------------------------------------
+
+    @abstractmethod
+    def _press(self) -> None:
+        """Show which buttons are the chosen ones."""
+
+    @abstractmethod
+    def _turn_view(self) -> None:
+        """Show the chosen view."""
+
+    @abstractmethod
+    def _merge(self) -> None:
+        """Merge what is loaded as it is set."""
+
+    @abstractmethod
+    def _restore(self, desk: Desk) -> None:
+        """Put a desk back."""
+
+    @abstractmethod
+    def _desk(self) -> Desk:
+        """What is on the page."""
+
+    @abstractmethod
+    def _show_inputs(self, inputs: Inputs) -> bool:
+        """Show these in place of everything there was."""
+
+    @abstractmethod
+    def _report(self, error: MapMergeError) -> None:
+        """Tell the person what is wrong."""
+
+    @abstractmethod
+    def _draw(self, story: Story, live: bool, look: bool = False) -> None:
+        """Draw a story in the chosen view."""
+
+    # --- the lesson -------------------------------------------------------------------------------
+
+    @property
+    def inputs(self) -> Inputs:
+        """What is loaded."""
+        return self._inputs
+
+    @property
+    def layout(self) -> Layout:
+        """Where the maps lie in the scene."""
+        return self._maps.layout
+
+    @property
+    def palette(self) -> Palette:
+        """The colours of the page."""
+        return self._palette
+
+    @property
+    def seed(self) -> int:
+        """Where the luck of a run comes from."""
+        return self._run.seed
+
+    def entered(self, open_: bool) -> None:
+        """The lesson takes the place of the plots, or gives it back."""
+        self._hand.end()
+        self._run.open(LESSON, open_)
+        self._plots.visible(not open_)
+        self._comparison.clear()
+        self._stage.layer("lesson", None)
+        if open_ and self._run.view != MAP:
+            self._run.view = MAP
+            self._turn_view()
+        self._press()
+
+    def came_back(self) -> None:
+        """Show again what there was before the lesson."""
+        if self._timeline.desk is not None:
+            self._restore(self._timeline.desk)
+
+    def method_shown(self, method: str) -> None:
+        """The lesson has chosen a method."""
+        self._run.restore(method, self._run.seed)
+
+    def report(self, error: MapMergeError) -> None:
+        """Something the lesson needs cannot be used."""
+        self._report(error)
+
+    def present(
+        self, story: Story, says: str, ink: list[Item], turn: float | None, look: bool, busy: bool
+    ) -> None:
+        """Show a run on the map, as far as the story goes, and what the lesson draws over it."""
+        with self.session.drawing, self._client.atomic():
+            self._story = story
+            if self._run.view != MAP:
+                self._draw(story, live=False)
+            elif story.reached(AugmentDetail):
+                self._maps.show(story, self._tuning.config, camera=look, live=True)
+            else:
+                self._maps.apart()
+            if turn is not None and self._run.view == MAP:
+                self._maps.turned(turn)
+            self._stage.layer("lesson", ink if self._run.view == MAP else None)
+            mood = "running" if busy else "idle"
+            shown = legend(self._palette, self._run.view, story, mode=self._comparison.mode)
+            self._stage.hud(state=says, mood=mood, progress=None, legend=shown)
+            self._stage.flush()
+
+    # --- the museum -------------------------------------------------------------------------------
+
+    @property
+    def desk(self) -> Desk | None:
+        """What is on the page, with what has come of it."""
+        return self._timeline.desk
+
+    def museum_entered(self, open_: bool) -> None:
+        """The museum was opened or closed."""
+        self._run.open(MUSEUM, open_)
+        self._press()
+
+    def hang(self, inputs: Inputs, method: str, config: Any, label: str) -> None:
+        """Put an exhibit on the page, without merging it."""
+        self.session.stop()
+        self._lesson.shut()
+        self._tuning.restore(method, config)
+        self._run.restore(method, 0)
+        self._files.restore(Files(inputs.name))
+        with self.session.drawing:
+            if self._show_inputs(inputs):
+                self._timeline.note(self._desk(), label)
+
+    def treat(self, method: str, config: Any) -> None:
+        """Take the settings that cure an exhibit, and merge."""
+        self._tuning.restore(method, config)
+        self._run.restore(method, 0)
+        self._merge()
+
+    def museum_left(self, desk: Desk | None) -> None:
+        """Put back what was on the page before the visit."""
+        if desk is not None:
+            self._timeline.note(desk, "leave the museum")
+            self._restore(desk)

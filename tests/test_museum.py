@@ -1,0 +1,88 @@
+"""The museum: every exhibit fails as it says, with its method and settings, and its cure merges."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from algorithms.errors import InputFileError
+from algorithms.methods import METHODS, merge
+from algorithms.pose import pose_error
+from algorithms.steps import MergeResult
+from app.lesson.texts import Exhibit, exhibit_case, files, museum_folder, read_exhibit, with_settings
+
+GOOD = """\
+---
+title: Mine
+case: office_r2_r1
+method: spectra-swarm
+settings: {candidates.twins: false}
+why: It was the twin.
+cure: {button: Twins, settings: {candidates.twins: true}}
+cured: Now it is there.
+---
+Press Merge.
+"""
+
+
+def off(exhibit: Exhibit, method: str, settings) -> tuple[bool, MergeResult]:
+    """Whether a merge is wrong by the truth, and its result."""
+    case = exhibit_case(exhibit)
+    config = with_settings(METHODS[method].defaults, settings)
+    result = merge(case.ref, case.mov, case.observations, method, config)
+    distance, angle = pose_error(result.T_ref_mov, case.truth.T_ref_mov, result.encounter.x_mov)
+    return distance > case.truth.tolerance_m or angle > case.truth.tolerance_rad, result
+
+
+@pytest.fixture(scope="module", params=files(museum_folder()), ids=lambda path: path.stem)
+def exhibit(request) -> Exhibit:
+    return read_exhibit(request.param)
+
+
+def test_an_exhibit_fails_as_it_says(exhibit):
+    wrong, _ = off(exhibit, exhibit.method, exhibit.settings)
+    assert wrong
+
+
+def test_its_cure_merges_and_is_accepted(exhibit):
+    wrong, result = off(exhibit, exhibit.cure_method, (*exhibit.settings, *exhibit.cure_settings))
+    assert not wrong
+    assert result.verdict.accepted
+
+
+def test_the_failures_that_everyone_should_know_are_there():
+    shown = {path.stem.split("-", 1)[1] for path in files(museum_folder())}
+    assert {"twin", "one-aisle-on", "too-near-sighted", "too-sure"} <= shown
+
+
+def test_a_cure_of_the_same_method_changes_what_the_exhibit_has_set(tmp_path):
+    read = exhibit_of(tmp_path, GOOD)
+    assert read.cure_method == read.method
+    assert read.settings == ((("candidates", "twins"), False),)
+    assert read.cure_settings == ((("candidates", "twins"), True),)
+
+
+def exhibit_of(folder: Path, text: str) -> Exhibit:
+    path = folder / "07-mine.md"
+    path.write_text(text, encoding="utf-8")
+    return read_exhibit(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("case: office_r2_r1", "case: castle", "case is 'castle'; known are"),
+        ("method: spectra-swarm", "method: magic", "method is 'magic'; known are"),
+        ("why: It was the twin.\n", "", "why is missing"),
+        ("{candidates.twins: false}", "{candidates.twins: maybe}", "candidates.twins is 'maybe'"),
+        ("button: Twins, ", "", "cure.button is missing"),
+        ("title: Mine", "titel: Mine", "did you mean title"),
+        ("Press Merge.", "", "no text below"),
+    ],
+)
+def test_what_is_wrong_with_an_exhibit_is_told_with_its_file(tmp_path, old, new, said):
+    assert old in GOOD
+    with pytest.raises(InputFileError, match=said) as told:
+        exhibit_of(tmp_path, GOOD.replace(old, new, 1))
+    assert "07-mine.md" in str(told.value)
