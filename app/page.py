@@ -193,6 +193,8 @@ class Page(Learning):
             bare = desk.goal is None or (desk.goal == "candidates" and self._result is not None)
             if desk.inputs is not self._inputs or bare:
                 self._show_inputs(desk.inputs)
+            if desk.result is None:
+                self._comparison.clear()
             self._merged, self._asked = desk.goal == "merge", desk.goal is not None
             if desk.outcome is not None and desk.result is not None:
                 self._answered(desk.outcome, desk.result, desk.config, live=False)
@@ -331,8 +333,9 @@ class Page(Learning):
         """Look at both maps in another way."""
         with self.session.drawing:
             if self._run.view == MAP and self._comparison.choose(mode):
-                self._maps.show(self._story, self._tuning.config, camera=False, live=False)
-                self._stage.hud(legend=legend(self._palette, MAP, self._story, mode=mode))
+                if not self._hand.active:
+                    self._maps.show(self._story, self._tuning.config, camera=False, live=False)
+                self._tell_legend()
                 self._stage.flush()
 
     def _switch(self, dark: bool) -> None:
@@ -487,8 +490,8 @@ class Page(Learning):
         self.session.stop()
 
     def hand_begins(self) -> None:
-        """What was found is out of the way from now on."""
-        self._comparison.clear()
+        """What was found is out of the way from now on; blink and curtain go along with the hand."""
+        self._comparison.offer(None, self._palette)
         if self._run.view != MAP:
             self._run.view = MAP
             self._turn_view()
@@ -496,7 +499,7 @@ class Page(Learning):
             told = result_html(self._result, self._inputs, self._config, self._conflicts, faded=True)
             self._plots.tell(told)
         self._export.offer(None)
-        self._stage.hud(legend=in_hand(self._palette))
+        self._tell_legend()
 
     def hand_moved(self, T_ref_mov: Pose2) -> None:
         """Map 2 was put there."""
@@ -567,8 +570,13 @@ class Page(Learning):
         else:
             self._swarm.show(story, self._palette, look)
         self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
-        held = view == MAP and self._hand.active
-        usual = legend(self._palette, view, story, mode=self._comparison.mode)
+        self._tell_legend()
+
+    def _tell_legend(self) -> None:
+        """What the colours of the picture mean."""
+        view, mode = self._run.view, self._comparison.mode
+        held = view == MAP and self._hand.active and mode == "overlay"
+        usual = legend(self._palette, view, self._story, mode=mode)
         self._stage.hud(legend=in_hand(self._palette) if held else usual)
 
     def _say(self, story: Story, result: MergeResult) -> None:

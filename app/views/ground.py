@@ -158,7 +158,7 @@ class Ground:
         self.which, self._hidden = which, False
         floor, walls = self._merged
         seen: str = which
-        if which in ("sources", "merged") and self._mode in ("blink", "curtain"):
+        if which != "levels" and self._mode in ("blink", "curtain"):
             seen = "sources"
         elif which == "merged" and self._mode == "difference" and self._contrast():
             seen = "difference"

@@ -84,6 +84,13 @@ def test_a_curtain_has_map_1_to_its_left_and_map_2_to_its_right_wherever_it_is_d
     merged.press("Overlay")
     seen_at(merged, STEM, LIGHT.agreed, "both again")
     assert not handle.is_visible()
+    merged.press("Move map 2 by hand")
+    difference = merged.page.get_by_role("button", name="Difference", exact=True)
+    settle(lambda: not difference.is_visible(), "no difference of cells that are not merged")
+    merged.press("Curtain")
+    seen_at(merged, STEM, LIGHT.mov, "the curtain where it was, over a map in the hand")
+    merged.press("Leave it as it was")
+    settle(difference.is_visible, "the answer to come back")
 
 
 def test_maps_take_turns_until_one_is_held_and_stay_for_who_wants_no_motion(merged):
