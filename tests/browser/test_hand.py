@@ -172,7 +172,7 @@ def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(ta
     settle(lambda: tab.state.startswith("By hand. Merged: "), "the answer")
     assert settle(lambda: tab.number("made"), "who made it") == "by hand"
     with tab.page.expect_download() as download:
-        tab.press("Download merged map")
+        tab.press("Download everything")
     download.value.save_as(tmp_path / "merged.zip")
     with zipfile.ZipFile(tmp_path / "merged.zip") as archive:
         assert 'method: "by hand"' in archive.read("transform.yaml").decode()
