@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from algorithms.agreement import distance_to_walls, surface
+from algorithms.agreement import surface
+from algorithms.discs import distances, near
 from algorithms.evidence import SAME_WALL
 from algorithms.fuse import Fusion
 from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, BoolArray, CellArray
@@ -77,8 +78,8 @@ def find_conflicts(fusion: Fusion, gap: float = GAP) -> Conflicts:
     if part is None:
         return Conflicts(ref_only, mov_only, (), 0.0)
     ref, mov = _Side(fusion.ref_cells[part]), _Side(fusion.mov_cells[part])
-    near = SAME_WALL / fusion.merged.resolution
-    ref_only[part], mov_only[part] = ref.denied_by(mov, near), mov.denied_by(ref, near)
+    same = SAME_WALL / fusion.merged.resolution
+    ref_only[part], mov_only[part] = ref.denied_by(mov, same), mov.denied_by(ref, same)
     places, specks = _places(fusion, ref_only, mov_only, ref.surface, mov.surface, part, gap)
     return Conflicts(ref_only, mov_only, places, specks)
 
@@ -91,9 +92,10 @@ class _Side:
         self.free: BoolArray = (cells >= FREE) & (cells <= FREE_UP_TO)
         self.surface = surface(self.walls, self.free)
 
-    def denied_by(self, other: _Side, near: float) -> BoolArray:
+    def denied_by(self, other: _Side, same: float) -> BoolArray:
         """Walls where the other saw free floor and has no wall within so many cells."""
-        return np.asarray(self.walls & other.free & (distance_to_walls(other.walls) > near))
+        drawn = near(other.walls, distances(ceil(same)) <= same)
+        return np.asarray(self.walls & other.free & ~drawn)
 
 
 def _part_around(mask: BoolArray, margin: int) -> tuple[slice, slice] | None:
@@ -118,7 +120,7 @@ def _places(
 ) -> tuple[tuple[Place, ...], float]:
     cell = fusion.merged.resolution
     denied = ref_only[part] | mov_only[part]
-    reach = distance_to_walls(denied) * cell <= gap / 2
+    reach = near(denied, distances(ceil(gap / 2 / cell)) * cell <= gap / 2)
     labels, count = ndimage.label(reach, structure=np.ones((3, 3), dtype=int))
     if count == 0 or not denied.any():
         return (), 0.0

@@ -17,10 +17,9 @@ from math import ceil, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.agreement import distance_to_walls, surface
+from algorithms.discs import distances, stamp
 from algorithms.gridmap import BoolArray, GridMap
 from algorithms.kernels import kernel, spread
-from algorithms.objective import Float32Array
 from algorithms.pose import FloatArray, Pose2
 
 SAME_WALL = 0.12  # metres; two drawings of one wall: the sum of two ragged cells of 0.05 m and a bit
@@ -31,7 +30,11 @@ SLIP = 0.6  # metres that a patch may slip
 SLIP_STEP = 0.15  # metres; a wall within SAME_WALL of a step is met by it
 TURN = 0.07  # radians that a patch may turn, 4°
 TURN_STEPS = 2  # to either side
+FLOOR, NEAR, SAME = 1, 2, 4  # of the other map: free floor; a wall within NEAR_WALL; within SAME_WALL
 INERTIA = 0.05  # share of a patch's walls that the farthest slip must win to be worth it
+
+GroundArray = NDArray[np.uint8]
+IntArray = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -83,7 +86,7 @@ def evidence(ref: GridMap, mov: GridMap, T_ref_mov: Pose2) -> Evidence:
 
 def _one_way(source: GridMap, target: GridMap, T_target_source: Pose2) -> FloatArray:
     """(5,) cells of the source's walls, in the order of ``Evidence``; the last times squared slips, m²."""
-    rows, cols = np.nonzero(_surface_of(source))
+    rows, cols = _surface_cells(source)
     places = target.grid_coordinates(T_target_source.apply(source.centres(rows, cols)))
     margin = ceil((SLIP + PATCH * TURN + NEAR_WALL) / target.resolution) + 1
     inside = np.all((places >= 0) & (places < (target.width, target.height)), axis=1)
@@ -93,23 +96,32 @@ def _one_way(source: GridMap, target: GridMap, T_target_source: Pose2) -> FloatA
     low = np.maximum(0, places.min(axis=0).astype(int) - margin)
     high = np.minimum((target.width, target.height), places.max(axis=0).astype(int) + margin + 1)
     part = slice(low[1], high[1]), slice(low[0], high[0])
-    distance = distance_to_walls(target.occupied[part]) * np.float32(target.resolution)
-    free = target.free[part]
+    ground = _ground(target.occupied[part], target.free[part], target.resolution)
     places = places - low
     at = places.astype(np.intp)
-    shared = free[at[:, 1], at[:, 0]] | (distance[at[:, 1], at[:, 0]] <= NEAR_WALL)
-    places = places[shared]
+    places = places[ground[at[:, 1], at[:, 0]] > 0]
     if not len(places):
         return np.zeros(5)
     totals = np.zeros(5)
     for offset in RASTERS:
-        totals += _patch_by_patch(places, offset, distance, free, target.resolution)
+        totals += _patch_by_patch(places, offset, ground, target.resolution)
     return totals / len(RASTERS)
 
 
-def _patch_by_patch(
-    places: FloatArray, offset: float, distance: Float32Array, free: BoolArray, cell: float
-) -> FloatArray:
+def _ground(walls: BoolArray, free: BoolArray, cell: float) -> GroundArray:
+    """(H, W) what is at a place, as a sum: FLOOR on free floor, NEAR and SAME by the nearest wall.
+
+    A disc is stamped around every wall: beyond NEAR_WALL nobody asks how far it is.
+    """
+    ground = free.astype(np.uint8)  # FLOOR is 1
+    metres = distances(ceil(NEAR_WALL / cell) + 1) * np.float32(cell)
+    kind = np.where(metres <= np.float32(NEAR_WALL), NEAR, 0)
+    kind[metres.astype(np.float64) <= SAME_WALL] = NEAR | SAME
+    stamp(walls, kind.astype(np.uint8), ground)
+    return ground
+
+
+def _patch_by_patch(places: FloatArray, offset: float, ground: GroundArray, cell: float) -> FloatArray:
     """(5,) the sums over all patches; offset: of the raster of patches, in patches."""
     patch = np.floor(places * (cell / PATCH) + offset).astype(np.int64)
     number = patch[:, 1] * (patch[:, 0].max() + 1) + patch[:, 0]
@@ -120,14 +132,22 @@ def _patch_by_patch(
     counts = np.zeros((len(starts) - 1, 5))
 
     def work(start: int, stop: int) -> None:
-        _slip(places, starts[start : stop + 1], distance, free, cell, counts[start:stop])
+        _slip(places, starts[start : stop + 1], ground, cell, counts[start:stop])
 
     spread(work, len(counts), at_least=4)
     return np.asarray(counts.sum(axis=0), dtype=np.float64)
 
 
-def _surface_of(grid: GridMap) -> BoolArray:
-    return surface(grid.occupied, grid.free)
+def _surface_cells(grid: GridMap) -> tuple[IntArray, IntArray]:
+    """Rows and columns of the walls that were seen, as ``agreement.surface`` defines them."""
+    rows, cols = np.nonzero(grid.occupied)
+    seen = np.zeros(len(rows), dtype=bool)
+    for down in (-1, 0, 1):
+        for right in (-1, 0, 1):
+            row, col = rows + down, cols + right
+            inside = (row >= 0) & (row < grid.height) & (col >= 0) & (col < grid.width)
+            seen[inside] |= grid.free[row[inside], col[inside]]
+    return rows[seen], cols[seen]
 
 
 @kernel
@@ -135,8 +155,7 @@ def _look(
     places: FloatArray,
     start: int,
     stop: int,
-    distance: Float32Array,
-    free: BoolArray,
+    ground: GroundArray,
     x: float,
     y: float,
     turn: float,
@@ -151,10 +170,10 @@ def _look(
         u, v = places[n, 0] - middle_x, places[n, 1] - middle_y
         col = int(np.floor(c * u - s * v + middle_x + x))
         row = int(np.floor(s * u + c * v + middle_y + y))
-        if 0 <= row < distance.shape[0] and 0 <= col < distance.shape[1]:
-            if distance[row, col] <= SAME_WALL:
+        if 0 <= row < ground.shape[0] and 0 <= col < ground.shape[1]:
+            if ground[row, col] & SAME:
                 agreeing += 1
-            elif free[row, col]:
+            elif ground[row, col] & FLOOR:
                 contradicting += 1
     return agreeing, contradicting
 
@@ -162,9 +181,8 @@ def _look(
 @kernel
 def _slip(
     places: FloatArray,
-    starts: NDArray[np.intp],
-    distance: Float32Array,
-    free: BoolArray,
+    starts: IntArray,
+    ground: GroundArray,
     cell: float,
     out: FloatArray,
 ) -> None:
@@ -179,7 +197,7 @@ def _slip(
                     if i * i + j * j > steps * steps:
                         continue
                     agreeing, contradicting = _look(
-                        places, start, stop, distance, free,
+                        places, start, stop, ground,
                         i * SLIP_STEP / cell, j * SLIP_STEP / cell, turn,
                     )  # fmt: skip
                     far = (i * i + j * j) / (steps * steps) + (a / TURN_STEPS) ** 2

@@ -29,10 +29,15 @@ def known_corners(grid: GridMap) -> FloatArray:
 
 def known_hull(grid: GridMap) -> FloatArray:
     """(N, 2) corners of the convex hull of all known cells; metres, map frame."""
-    rows, cols = np.nonzero(grid.cells != UNKNOWN)
+    known = grid.cells != UNKNOWN
+    rows = np.flatnonzero(known.any(axis=1))
     if len(rows) == 0:
         return grid.corners()
-    centres = np.stack([cols, rows], axis=1).astype(np.float32) + 0.5
+    # the outermost cells of each row are enough
+    first = known[rows].argmax(axis=1)
+    last = grid.width - 1 - known[rows, ::-1].argmax(axis=1)
+    ends = np.concatenate([np.stack([first, rows], axis=1), np.stack([last, rows], axis=1)])
+    centres = ends.astype(np.float32) + 0.5
     return grid.origin.apply(cv2.convexHull(centres)[:, 0].astype(np.float64) * grid.resolution)
 
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from skimage.measure import block_reduce
 
 from algorithms.augment import AugmentedMap
 from algorithms.conflicts import Conflicts
@@ -46,7 +45,14 @@ def pool(cells: CellArray, factor: int) -> CellArray:
     """Cells of ``factor`` x ``factor`` cells each; the highest value wins, so that no thin wall is lost."""
     if factor == 1:
         return cells
-    return np.asarray(block_reduce(cells, (factor, factor), np.max, cval=UNKNOWN), dtype=np.int8)
+    rows, cols = -(-cells.shape[0] // factor), -(-cells.shape[1] // factor)
+    pooled = np.full((rows, cols), UNKNOWN, dtype=np.int8)
+    for row in range(factor):  # a look at every cell's place in its group: no group is copied
+        for col in range(factor):
+            part = cells[row::factor, col::factor]
+            seen = pooled[: part.shape[0], : part.shape[1]]
+            np.maximum(seen, part, out=seen)
+    return pooled
 
 
 def _tinted(mask: NDArray[np.bool_], colour: Rgb, alpha: int = 255) -> Pixels:
@@ -146,7 +152,7 @@ def denied_walls(fusion: Fusion, found: Conflicts, palette: Palette, most: int =
 
 def _pool_mask(mask: BoolArray, factor: int) -> BoolArray:
     """Where a block of ``factor`` x ``factor`` cells holds one of the mask."""
-    return mask if factor == 1 else np.asarray(block_reduce(mask, (factor, factor), np.max), dtype=np.bool_)
+    return mask if factor == 1 else pool(mask.astype(np.int8), factor) > 0
 
 
 def upright(pixels: Pixels) -> Pixels:

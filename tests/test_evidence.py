@@ -1,11 +1,22 @@
 import numpy as np
 import pytest
-from drawn import T_MOV_WORLD, WALLS, drawn_map, flat_pair, poses
+from drawn import T_MOV_WORLD, WALLS, drawn_map, flat_pair, poses, small_maps
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from algorithms import kernels
-from algorithms.evidence import SLIP, evidence
+from algorithms.agreement import distance_to_walls, surface
+from algorithms.evidence import (
+    FLOOR,
+    NEAR,
+    NEAR_WALL,
+    SAME,
+    SAME_WALL,
+    SLIP,
+    _ground,
+    _surface_cells,
+    evidence,
+)
 from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.pose import Pose2, rotation
 
@@ -143,3 +154,17 @@ def test_a_turn_of_the_whole_by_a_patch_turn_is_bent_not_wrong():
     found = evidence(turned, turned, Pose2(*shift.tolist(), angle))
     assert found.contradiction < found.rigid_contradiction
     assert found.contradiction < 0.1
+
+
+@given(small_maps(side=60))
+def test_the_ground_around_walls_is_what_their_distances_say(grid):
+    ground = _ground(grid.occupied, grid.free, grid.resolution)
+    metres = distance_to_walls(grid.occupied) * np.float32(grid.resolution)
+    assert np.array_equal(ground & FLOOR > 0, grid.free)
+    assert np.array_equal(ground & NEAR > 0, metres <= np.float32(NEAR_WALL))
+    assert np.array_equal(ground & SAME > 0, metres.astype(float) <= SAME_WALL)
+
+
+@given(small_maps())
+def test_the_walls_that_count_are_those_with_free_floor_beside_them(grid):
+    assert np.array_equal(_surface_cells(grid), np.nonzero(surface(grid.occupied, grid.free)))
