@@ -37,7 +37,8 @@
   // S.hand says what can be taken hold of; everything is optional:
   //   mov    {hull, arm, cell}: map 2, by the inside of its hull (points of its frame), and turned by a
   //          knob so many px off its anchor; cell in metres
-  //   grips  [{id, f, p, a}]: signs at p in frame f that can be carried; with a heading a, turned too
+  //   grips  [{id, f, p, a, vague}]: signs at p in frame f that can be carried; with a heading a, turned
+  //          too; a vague one is not known before it is turned
   //   place  {id, f}: the next touch puts this sign down, and a drag from there turns it
   // While something is held the browser draws it by itself; Python is told 15 times a second, and at the end.
   const REACH = 15, ARM = 34, EVERY = 66; // px to a sign, px from it to its knob, ms between two words
@@ -89,7 +90,8 @@
     if (!hold || hold.kind === "carry" || hold.kind === "turn") {
       S.tell(last ? "put" : "carry", { x: round(S.mov.x), y: round(S.mov.y), theta: round(wrap(S.mov.theta)) });
     } else {
-      S.tell(last ? "drop" : "drag", { id: hold.id, at: hold.p.map(round), heading: hold.a === null || hold.a === undefined ? [] : [round(wrap(hold.a))] });
+      const known = hold.a !== null && hold.a !== undefined && !(hold.vague && hold.kind === "body");
+      S.tell(last ? "drop" : "drag", { id: hold.id, at: hold.p.map(round), heading: known ? [round(wrap(hold.a))] : [] });
     }
   }
   const stop = (e) => { e.preventDefault(); e.stopImmediatePropagation(); };

@@ -82,7 +82,7 @@ class Inputs:
                 f"Map {1 if self.mov is None else 2} is here. Load map {2 if self.mov is None else 1}, too."
             )
         if not self.observations:
-            return "Both maps are here. Load the observation: where robot 1 saw robot 2."
+            return "Both maps are here. Load the observation, or place the robots: where robot 1 saw robot 2."
         return ""
 
     def doubt(self) -> str:

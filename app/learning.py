@@ -71,6 +71,10 @@ class Learning(ABC):
     # --- what the other half does -----------------------------------------------------------------
 
     @abstractmethod
+    def _placing_done(self) -> None:
+        """The robots are no longer being placed."""
+
+    @abstractmethod
     def _press(self) -> None:
         """Show which buttons are the chosen ones."""
 
@@ -127,6 +131,7 @@ class Learning(ABC):
     def entered(self, open_: bool) -> None:
         """The lesson takes the place of the plots, or gives it back."""
         self._hand.end()
+        self._placing_done()
         self._run.open(LESSON, open_)
         self._plots.visible(not open_)
         self._comparison.clear()

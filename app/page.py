@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from threading import RLock
@@ -15,15 +14,14 @@ import viser
 from algorithms.casefiles import Case
 from algorithms.conflicts import Conflicts, find_conflicts
 from algorithms.errors import MapMergeError, TooLargeError
-from algorithms.handmade import BY_HAND, Scales, known_answers, refine
-from algorithms.pose import Pose2
-from algorithms.steps import AugmentDetail, MergeResult, ObservationDetail, RefineDetail, Step
+from algorithms.handmade import BY_HAND
+from algorithms.steps import AugmentDetail, MergeResult, RefineDetail
 from app import words
-from app.byhand import ByHand
 from app.channel import Channel
 from app.comparison import MODES, Comparison
 from app.desk import Desk
 from app.export import Harvest
+from app.handling import Handling
 from app.inputs import Inputs
 from app.keep import Keep, Kept
 from app.layout import lay_out
@@ -50,7 +48,7 @@ from app.views.swarm_space import SwarmSpaceView
 log = logging.getLogger(__name__)
 
 
-class Page(Learning):
+class Page(Handling, Learning):
     """Listens to its session and draws; the callbacks of its widgets only ask."""
 
     def __init__(
@@ -70,8 +68,6 @@ class Page(Learning):
         self._result: MergeResult | None = None  # of the last run that came to its end
         self._conflicts: Conflicts | None = None  # of this result
         self._config: Any = None  # it ran with
-        self._method: Story | None = None  # of the last run whose answer was not made by hand
-        self._refining: tuple[Scales, Pose2] | None = None  # where map 2 was when its refinement began
         self._merged = False  # from the first Merge on, a moved slider runs the whole method again
         self._asked = False  # whether anything was asked for at all
         self._keep, self._key, self._gone = keep, "", False
@@ -141,9 +137,7 @@ class Page(Learning):
         self._observation = ObservationPanel(gui)
         self._tuning = TuningPanel(gui, self._changed, self._report, self._turn)
         self._export = ExportPanel(client)
-        self._hand = ByHand(
-            gui, self._channel, self._stage, self._maps, self._turn, self.session.drawing, self
-        )
+        self._handle_with(gui)
         self._timeline = Timeline(gui, self._channel, self._turn, self._restore)
         self._plots = PlotDock(client, self._press)
         client.scene.on_click()(self._read_out)
@@ -186,6 +180,7 @@ class Page(Learning):
         self.session.stop()
         self._lesson.shut()
         self._hand.end()
+        self._placing.end()
         self._tuning.restore(desk.method, desk.config)
         self._run.restore(desk.method, desk.seed)
         self._files.restore(desk.files)
@@ -216,6 +211,7 @@ class Page(Learning):
             self._notice.remove()
             self._notice = None
         self._hand.end()
+        self._placing.end()
         self._hand.panel.offer(inputs.complete)
         self._inputs, self._result, self._story, self._method = inputs, None, Story(), None
         self._merged = self._asked = False
@@ -268,6 +264,7 @@ class Page(Learning):
             return
         with self._turn, self.session.drawing:
             self._hand.end()
+            self._placing_done()
             self._merged = self._asked = True
             desk, before = self._desk(), self._timeline.desk
             if before is None or before.outcome is None or not before.same_wish(desk):
@@ -292,6 +289,8 @@ class Page(Learning):
                 return
             if self._hand.active:
                 self._hand.begin(self._hand.pose)
+                return
+            if self._placing.active:
                 return
             if self._result is not None:
                 told = result_html(self._result, self._inputs, self._config, self._conflicts, faded=True)
@@ -458,110 +457,13 @@ class Page(Learning):
         self._stage.hud(state=text, mood="failed", progress=None)
         self._stage.flush()
 
-    # --- map 2 by hand: see app/byhand.py -----------------------------------------------------------
-
-    @property
-    def scales(self) -> Scales | None:
-        """What a transform is weighed on; None where something is missing, or wrong, which is told."""
-        i, config = self._inputs, self._tuning.config
-        if i.ref is None or i.mov is None or not i.observations:
-            return None
-        method = self._method
-        known = known_answers(method.get(MergeResult)) if method and method.config == config else ()
-        try:
-            return Scales(i.ref, i.mov, i.observations, config, known)
-        except MapMergeError as error:
-            self._report(error)
-            return None
-
-    @property
-    def found(self) -> Pose2 | None:
-        """What the method has found; None before."""
-        return self._method.answer if self._method is not None else None
-
-    @property
-    def on_map(self) -> bool:
-        """Whether the map is looked at."""
-        return self._run.view == MAP
-
-    def hand_asked(self) -> None:
-        """A person wants map 2 in their hand: whatever else is going on ends."""
-        self._lesson.leave()
-        self.session.stop()
-
-    def hand_begins(self) -> None:
-        """What was found is out of the way from now on; blink and curtain go along with the hand."""
-        self._comparison.offer(None, self._palette)
-        if self._run.view != MAP:
-            self._run.view = MAP
-            self._turn_view()
-        if self._result is not None:
-            told = result_html(self._result, self._inputs, self._config, self._conflicts, faded=True)
-            self._plots.tell(told)
-        self._export.offer(None)
-        self._tell_legend()
-
-    def hand_moved(self, T_ref_mov: Pose2) -> None:
-        """Map 2 was put there."""
-        self._timeline.note(self._desk())
-
-    def hand_taken(self, result: MergeResult) -> None:
-        """This is to be the answer."""
-        story = Story(self._tuning.config)
-        for stage, detail in (
-            ("observe", ObservationDetail(result.encounters)),
-            ("fuse", result.fusion),
-            ("verdict", result),
-        ):
-            story.tell(Step(stage, detail, 0.0))
-        with self.session.drawing:
-            self._timeline.note(replace(self._desk(), hand=result.T_ref_mov), "take it by hand")
-            self._answered(story, result, self._tuning.config, live=False)
-            self._timeline.amend(story)
-            self._stage.flush()
-
-    def hand_refines(self, scales: Scales, T_ref_mov: Pose2) -> None:
-        """Search from there; where it ends map 2 is in the hand again."""
-        seed = self._run.seed
-        job = self._job(pace=self._run.pace, steps=lambda: refine(scales, T_ref_mov, seed))
-        if job is not None:
-            self._refining = scales, T_ref_mov
-            self.session.request(job)
-
-    def _refined(self, story: Story, result: MergeResult) -> None:
-        if self._refining is None:
-            return
-        self._plots.show(story, follow=False)
-        self._hand.take_up(self._refining[0], result.T_ref_mov)
-        self._timeline.note(self._desk(), "refine by hand")
-
-    def hand_snaps(self) -> None:
-        """Take the best of the whole circle: known already, or looked for."""
-        tuning, method = self._tuning, self._method
-        result = method.get(MergeResult) if method and method.config == tuning.config else None
-        label = "snap to the proven optimum"
-        if method is not None and result is not None and result.proven_optimal:
-            self._go_to(replace(self._desk(), outcome=method, goal="merge"), label)
-            return
-        proof = replace(tuning.config.proof, whole_circle=True)
-        tuning.restore(tuning.method, replace(tuning.config, proof=proof))
-        self._go_to(replace(self._desk(), goal="merge"), label)
-
-    def hand_leaves(self) -> None:
-        """Everything as it was before."""
-        method = self._method
-        known = method if method is not None and method.config == self._tuning.config else None
-        self._go_to(replace(self._desk(), outcome=known))
-
-    def _go_to(self, desk: Desk, label: str = "") -> None:
-        self._timeline.note(desk, label)
-        self._restore(desk)
-
     # --- drawing ----------------------------------------------------------------------------------
 
     def _draw(self, story: Story, live: bool, look: bool = False) -> None:
         view, camera = self._run.view, self._run.follow
-        if view == MAP and self._hand.active:
+        if view == MAP and self._placing.active:
+            self._placing.redraw()
+        elif view == MAP and self._hand.active:
             self._hand.redraw()
         elif view == MAP:
             self._maps.show(story, self._tuning.config, camera or look, live)

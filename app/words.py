@@ -43,6 +43,13 @@ _SHARE: dict[type, float] = {
 _MANY_BLOCKS = 20_000  # a proof has seldom more; nobody knows before its end how many there will be
 
 READY = "Ready. Press Merge."
+# what to do next while the robots are placed by hand, by what is missing
+PLACING = {
+    "observer": "1 of 3: where robot 1 stood, in map 1. Press there, and drag the way it looked.",
+    "seen": "2 of 3: where it saw robot 2, in map 1. Press there.",
+    "observed": "3 of 3: where robot 2 was, in its own map, map 2. Press there; drag its heading, if known.",
+    None: "Drag a sign to move it, and the knob of a robot to turn it. Range and bearing follow.",
+}
 SIDE_BY_SIDE = "Two robots, two maps, no common frame."
 UP_TO_DATE = "Everything up to the candidates is up to date. Press Merge."
 

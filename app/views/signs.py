@@ -13,12 +13,14 @@ from algorithms.observation import Encounter, Observation
 from algorithms.pose import FloatArray, Pose2, rotation
 from algorithms.steps import WindowDetail
 from algorithms.window import Box, CoupledWindow, Window
+from app.draft import Draft
 from app.layout import Layout, Rect
 from app.palette import Palette, css
 from app.stage import Item, ellipse, mark, path, rectangle
 
 ZERO = np.zeros(2)  # the meeting place of the first sighting, in both frames
 TURN_ARM = 90  # px from robot 2 to the knob that turns map 2; hand.js knows it as the knob's arm
+KNOB_ARM = 34  # px from a robot to the knob that turns it; hand.js knows it as ARM
 QUIET = 0.55  # opacity of what is told beside the first sighting
 DASHED = {"close": True, "d": [6, 4], "halo": True}
 
@@ -100,6 +102,51 @@ def _sides(o: Observation, dx: float) -> tuple[dict[str, Any], dict[str, Any]]:
     """Where names stand at the near and the far end of a line of sight: beyond it."""
     left, right = {"dx": -dx, "align": "right"}, {"dx": dx, "align": "left"}
     return (left, right) if cos(o.observer.theta + o.bearing) >= 0 else (right, left)
+
+
+def drafts(draft: Draft, others: Sequence[Draft], layout: Layout, colours: Palette) -> list[Item]:
+    """Robots as they are being placed, with knobs on the chosen draft's; the other drafts are quiet."""
+    items = []
+    for one in others:
+        items += _draft(one, layout, colours, QUIET)
+    items += _draft(draft, layout, colours, 1.0)
+    return items
+
+
+def _draft(draft: Draft, layout: Layout, colours: Palette, alpha: float) -> list[Item]:
+    items: list[Item] = []
+    chosen = alpha == 1.0
+    first = draft.observer.xy - layout.anchor_ref if draft.observer else None
+    if first is not None and draft.seen is not None:
+        end = np.array(draft.seen) - layout.anchor_ref
+        items.append(path(np.array([first, end]), colours.text, alpha=alpha, w=1.6, d=[5, 4], halo=chosen))
+        name = {"t": "robot 2, seen here", "size": 11, "dx": 14} if chosen else {}
+        items.append(mark("ring", end, colours.conflict, alpha=alpha, r=7, **name))
+    if first is not None and draft.observer is not None:
+        a = draft.observer.theta
+        if chosen:
+            items.append(mark("dot", first, colours.ref, a=a, r=5, arm=KNOB_ARM))
+        name = {"t": "robot 1", **_beside(a)} if chosen else {}
+        items.append(mark("robot", first, colours.ref, alpha=alpha, a=a, r=9, **name))
+    if draft.observed is not None:
+        there = np.array(draft.observed) - layout.anchor_mov
+        name = {"t": "robot 2", **_beside(draft.heading or 0.0)} if chosen else {}
+        if draft.heading is None:
+            if chosen:  # nobody knows which way it looked: the knob can tell
+                knob = mark("ring", there, colours.mov, "mov", alpha=QUIET, a=0.0, r=5, arm=KNOB_ARM)
+                items.append(knob)
+            items.append(mark("dot", there, colours.mov, "mov", alpha=alpha, r=7, **name))
+        else:
+            if chosen:
+                items.append(mark("dot", there, colours.mov, "mov", a=draft.heading, r=5, arm=KNOB_ARM))
+            shape = mark("robot", there, colours.mov, "mov", alpha=alpha, a=draft.heading, r=9, **name)
+            items.append(shape)
+    return items
+
+
+def _beside(heading: float) -> dict[str, Any]:
+    """Where a robot's name stands clear of its knob."""
+    return {"dx": -14, "align": "right"} if cos(heading) >= 0 else {"dx": 14, "align": "left"}
 
 
 def rings(covariance: FloatArray, colours: Palette, both: bool) -> list[Item]:

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import zipfile
+from math import cos, degrees, sin
 
+import numpy as np
 import pytest
 from driver import READY, settle
 
+from algorithms.casefiles import Case, read_observations
+from algorithms.observation import encounter
 from app.channel import Channel, Numbers
 from app.guard import guarded_server
+from app.layout import lay_out
+from app.server import make_server
 from app.stage import TabStage
 
 pytestmark = pytest.mark.browser
@@ -206,3 +212,67 @@ def test_a_hand_is_refined_snapped_left_and_a_reload_keeps_it(tab):
     tab.press("Leave it as it was")
     settle(lambda: tab.mood == "accepted" and tab.state.startswith("Merged: "), "the method's answer")
     assert tab.layer("grip") == []
+
+
+def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab, sample, tmp_path):
+    own = make_server(port=0, initial=Case("mine", sample.ref, sample.mov, (), "", None))
+    o, at = sample.observations[0], encounter(sample.observations[0])
+    layout = lay_out(sample.ref, sample.mov, None)
+    try:
+        tab = open_tab(size=(1280, 800), at=own)
+        tab.page.add_style_tag(content=".mantine-Notifications-root{display:none}")
+
+        def where(point, frame: str = "scene") -> list[float]:
+            anchor = layout.anchor_ref if frame == "scene" else layout.anchor_mov
+            place = [float(value) for value in np.asarray(point) - anchor]
+            return tab.page.evaluate("([p, f]) => mapmeld.pixel(p, f)", [place, frame])
+
+        assert "place the robots" in tab.state
+        tab.unfold("Observation")
+        tab.press("Place robots on the maps")
+        settle(lambda: tab.state.startswith("1 of 3: "), "the first step")
+        ahead = (40 * cos(o.observer.theta), -40 * sin(o.observer.theta))
+        drag(tab, where(o.observer.xy), ahead)
+        settle(lambda: tab.state.startswith("2 of 3: "), "the second step")
+        assert field(tab, "robot 1: x (m)") == pytest.approx(o.observer.x, abs=0.08)
+        assert field(tab, "robot 1: heading (°)") == pytest.approx(degrees(o.observer.theta), abs=3)
+        tab.page.mouse.click(*where(at.x_ref))
+        settle(lambda: tab.state.startswith("3 of 3: "), "the third step")
+        assert field(tab, "range r (m)") == pytest.approx(o.range, abs=0.15)
+        tab.page.mouse.click(*where(o.observer.xy))
+        settle(lambda: tab.state == "That is not in map 2.", "a touch in the wrong map to be told")
+        drag(tab, where(at.x_mov, "mov"), (0, -40))
+        settle(lambda: tab.state.startswith("Drag a sign"), "all three")
+        assert field(tab, "robot 2: heading (°)") == pytest.approx(90, abs=3)
+
+        before = field(tab, "range r (m)")
+        drag(tab, where(at.x_ref), tuple(0.5 * value for value in ahead))  # along the sight, so farther away
+        settle(lambda: field(tab, "range r (m)") > before + 0.5, "the range to follow")
+        box = tab.page.get_by_label("range r (m)", exact=True)
+        box.fill(f"{o.range:.2f}")
+        box.press("Enter")
+        tab.press("Add another observation")
+        settle(lambda: tab.state.startswith("1 of 3: "), "another one")
+        tab.press("Remove this observation")
+        settle(lambda: tab.state.startswith("Drag a sign"), "the first one again")
+
+        with tab.page.expect_download() as download:
+            tab.press("Save observation")
+        assert download.value.suggested_filename == "observation.yaml"
+        download.value.save_as(tmp_path / "observation.yaml")
+        (saved,) = read_observations(tmp_path / "observation.yaml")
+        assert saved.range == pytest.approx(o.range, abs=0.006)
+        assert encounter(saved).x_mov == pytest.approx(at.x_mov, abs=0.08)
+
+        tab.press("Done")
+        settle(lambda: tab.state == "Ready. Press Merge.", "the end of it")
+        tab.press("Instant")
+        tab.press("Merge")
+        tab.wait_for("accepted")
+        undo = tab.page.get_by_role("button", name="Undo")
+        tab.unfold("History")
+        tab.page.get_by_role("button", name="load mine", exact=True).click()
+        settle(lambda: "place the robots" in tab.state, "everything undone")
+        assert undo.is_disabled()
+    finally:
+        own.stop()

@@ -1,0 +1,65 @@
+"""Placing robots by hand: range and bearing follow, and what was not touched stays as it was."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from algorithms.casefiles import observations_from_bytes, observations_to_bytes
+from algorithms.observation import Observation, encounter
+from algorithms.pose import Pose2
+from app.draft import Draft
+
+metres, angles = st.floats(-50, 50), st.floats(-3.1, 3.1)
+poses = st.builds(Pose2, metres, metres, angles)
+observations = st.builds(
+    Observation,
+    poses,
+    metres,
+    metres,
+    st.floats(0, 30),
+    angles,
+    st.none() | angles,
+    st.floats(0.001, 1),
+    st.floats(0.001, 1),
+    st.none() | angles,
+)
+
+
+@given(observations)
+def test_a_draft_that_nobody_touches_is_the_observation_itself(observation):
+    draft = Draft.of(observation)
+    assert draft.observation == observation
+    assert draft.missing is None
+    assert draft.seen == pytest.approx(encounter(observation).x_ref)
+
+
+@given(poses, st.tuples(metres, metres), st.tuples(metres, metres), st.none() | angles)
+def test_three_places_make_an_observation_that_sees_robot_2_where_it_was_put(observer, seen, was, heading):
+    draft = Draft()
+    assert draft.missing == "observer"
+    draft = draft.stood(observer)
+    assert draft.missing == "seen"
+    draft = draft.saw(seen)
+    assert draft.missing == "observed"
+    assert draft.observation is None
+    made = draft.was(was, heading).observation
+    assert made is not None
+    assert encounter(made).x_ref == pytest.approx(seen, abs=1e-6)
+    assert encounter(made).x_mov == pytest.approx(was)
+    assert made.observed_heading == heading
+
+
+@given(observations, poses)
+def test_robot_1_moves_and_what_it_saw_stays(observation, elsewhere):
+    before = Draft.of(observation)
+    after = before.stood(elsewhere)
+    assert after.seen == pytest.approx(before.seen, abs=1e-6)
+    assert after.observer == elsewhere
+
+
+@given(st.lists(observations, min_size=1, max_size=4), poses)
+def test_what_is_saved_loads_back_to_the_same(several, elsewhere):
+    made = [Draft.of(o).stood(elsewhere).observation for o in several]
+    assert observations_from_bytes("observation.yaml", observations_to_bytes(made)) == tuple(made)
