@@ -151,7 +151,7 @@
   // --- map 2 by the keys ----------------------------------------------------------------------------
   const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
   const TURNS = { "[": 1, "]": -1, "{": 1, "}": -1 };
-  const busy = (e) => e && (typing(e) || e.closest?.("input, textarea, select, [role=slider], [role=listbox], [role=tablist], [role=menu]"));
+  const busy = (e) => document.querySelector("dialog[open], [role=dialog]") || e && (typing(e) || e.closest?.("input, textarea, select, [role=slider], [role=listbox], [role=tablist], [role=menu]"));
   document.addEventListener("keydown", (e) => {
     if (!S.hand || S.view !== "map" || hold || e.ctrlKey || e.metaKey || e.altKey || busy(document.activeElement)) return;
     if (e.key === "Escape" && S.hand.place) { stop(e); S.tell("cancel"); return; }
@@ -166,8 +166,11 @@
     });
     report(true);
   }, true);
+  const KEYS = [["← → ↑ ↓", "one cell; with Shift 1 cm"], ["[ ]", "turn by 0.5°; with Shift 0.1°"], ["Shift drag", "turn about robot 2"]];
   S.heard.push((message) => {
     if (!message.hand) return;
+    const listed = S.keys?.groups.find(([title]) => title === "Map 2 by hand"); // the list that "?" shows
+    if (listed && !listed[1].length) listed[1].push(...KEYS);
     S.hand = Object.keys(message.hand).length ? message.hand : null;
     if (!S.hand && hold) { hold = null; S.held = false; sketch(); }
     if (!S.hand && S.surface()) S.surface().style.cursor = "";

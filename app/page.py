@@ -426,7 +426,9 @@ class Page(Handling, Learning):
         self._plots.tell(result_html(result, self._inputs, config, self._conflicts))
         self._export.offer(Harvest(result, self._inputs, config))
         i = self._inputs
-        if i.ref is not None and i.mov is not None:
+        if result.method == BY_HAND:  # there is no run to play
+            self._export.replay.offer(None)
+        elif i.ref is not None and i.mov is not None:
             job = Job(i.ref, i.mov, i.observations, config, result.method, result.seed)
             self._export.replay.offer(i.name, partial(replay_of, job, self.session.told_again, i))
         self._draw(story, live=live)
