@@ -9,12 +9,14 @@
     m: ["Merge", "merge"], 1: ["Map", "the map"], 2: ["Heights", "the levels as heights"], 3: ["Swarm space", "the swarm's space"],
     o: ["Overlay", "both maps over each other"], b: ["Blink", "the maps take turns"], c: ["Curtain", "one map beside the other"],
     d: ["Difference", "only what differs"], r: ["Measure", "measure a distance"], f: ["Show everything", "show everything"],
+    l: ["Lesson", "the lesson, in and out"], pagedown: ["Next ▶", "next step"], pageup: ["◀ Back", "step before"],
   };
   const GROUPS = [
     ["Work", [["M", BUTTONS.m[1]], ["Esc", "stop a run, end measuring or placing"], ["Ctrl Z", "undo"], ["Ctrl Y", "redo, also Ctrl Shift Z"]]],
     ["Look", [["1", BUTTONS[1][1]], ["2", BUTTONS[2][1]], ["3", BUTTONS[3][1]], ["F", BUTTONS.f[1]], ["R", BUTTONS.r[1]],
       ["drag, wheel", "move and zoom the map"], ["click", "what both maps know of a place"]]],
     ["Compare", [["O", BUTTONS.o[1]], ["B", BUTTONS.b[1]], ["C", BUTTONS.c[1]], ["D", BUTTONS.d[1]], ["← →", "move the curtain, once it is in focus"]]],
+    ["Learn", [["L", BUTTONS.l[1]], ["Page↓", BUTTONS.pagedown[1]], ["Page↑", BUTTONS.pageup[1]]]],
     ["Map 2 by hand", []],
   ];
   K.groups = GROUPS;

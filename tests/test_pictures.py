@@ -204,3 +204,9 @@ def test_a_plot_puts_its_corners_on_its_corners():
 def test_a_dial_knows_its_place_by_its_number(count, place, step):
     dial = Dial("", count, 0, -3.0, step)
     assert place_of(dial, shown(dial, place)) == min(place, count - 1)
+
+
+def test_the_readme_for_teachers_names_every_picture_and_every_number():
+    told = (lesson_folder().parent / "README.md").read_text(encoding="utf-8")
+    assert {name for name in PICTURES if f"`{name}`" not in told} == set()
+    assert {name for name in NUMBERS if f"`{{{name}}}`" not in told} == set()

@@ -11,8 +11,8 @@ from algorithms.merit import performance_index
 from algorithms.steps import MergeResult
 from algorithms.verdict import HALF
 from app.lesson.study import Study
-from app.palette import LIGHT, Palette, css
-from app.pictures.sheet import INK, Sheet
+from app.palette import LIGHT, Palette, Rgb, css
+from app.pictures.sheet import INK, Sheet, worded
 
 GOOD, BAD = css(LIGHT.mov), css(LIGHT.conflict)
 
@@ -71,18 +71,23 @@ def gauges(study: Study) -> list[Gauge]:
     ]  # fmt: skip
 
 
+def _words(good: bool, palette: Palette) -> Rgb:
+    return worded(palette.mov if good else palette.conflict, palette)
+
+
 def verdict(study: Study, at: Sequence[int], palette: Palette) -> str:
     """The bars, one below the other, under the verdict itself."""
     result = study.get(MergeResult)
     sheet, told = Sheet(268), gauges(study)
     accepted = result.verdict.accepted
-    sheet.text(0, 13, "Accepted" if accepted else "Refused", 15, colour=GOOD if accepted else BAD, bold=True)
+    sheet.text(0, 13, "Accepted" if accepted else "Refused", 15, colour=_words(accepted, palette), bold=True)
     sheet.text(380, 13, "line: the limit", 10.5, "end", alpha=0.8)
     for k, gauge in enumerate(told):
         y = 34 + 40 * k
         colour = css(palette.margin) if gauge.limit is None else GOOD if gauge.kept else BAD
         sheet.text(0, y, gauge.name + (" (told, not asked)" if gauge.limit is None else ""), 11)
-        sheet.text(380, y, gauge.words, 12, "end", colour, True)
+        words = INK if gauge.limit is None else _words(gauge.kept, palette)
+        sheet.text(380, y, gauge.words, 12, "end", words, True)
         sheet.rect(0, y + 5, 380, 10, palette.margin, None, 0.18)
         sheet.rect(0, y + 5, 380 * min(1.0, max(0.0, gauge.value / gauge.top)), 10, colour)
         if gauge.limit is not None:

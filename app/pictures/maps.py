@@ -15,8 +15,8 @@ from algorithms.steps import AugmentDetail, HoughDetail, MergeResult
 from app.lesson.study import Study
 from app.palette import VIRIDIS, Palette
 from app.pictures.plan import robot, scale_bar, scene, view_of
-from app.pictures.raster import draw_levels, draw_map
-from app.pictures.sheet import INK, Plot, Sheet, number, turn_label
+from app.pictures.raster import draw_levels, draw_map, under
+from app.pictures.sheet import INK, Plot, Sheet, number, turn_label, worded
 from app.stage import ellipse
 
 HALF = 184.0  # width of one of two pictures side by side
@@ -170,7 +170,7 @@ def turned(study: Study, at: Sequence[int], palette: Palette) -> str:
     sheet = Sheet(232)
     half = 2.0 * study.config.augment.spread
     about = Pose2(0.0, 0.0, match.turns[k]) @ Pose2(*(-detail.mov.x_hat).tolist())
-    places = ((0.0, detail.ref, detail.ref.x_hat, Pose2()), (196.0, detail.mov, np.zeros(2), about))
+    places = ((0.0, detail.ref, detail.ref.x_hat, None), (196.0, detail.mov, np.zeros(2), about))
     for x, lifted, centre, T in places:
         view = view_of(centre, half, HALF, HALF)
         plot = scene(sheet, x, 18, HALF, HALF, view)
@@ -203,11 +203,7 @@ def merged(study: Study, at: Sequence[int], palette: Palette) -> str:
     plot = scene(sheet, 0, 18, HALF, HALF, view)
     sheet.text(0, 11, "around the meeting place", 11, bold=True)
     pixels = view.blank(palette)
-    col, row = np.floor(fusion.merged.grid_coordinates(view.places())).astype(int).T
-    inside = (row >= 0) & (row < fusion.merged.height) & (col >= 0) & (col < fusion.merged.width)
-    here = np.full((2, len(row)), 2)
-    here[:, inside] = first[row[inside], col[inside]], second[row[inside], col[inside]]
-    a, b = here.reshape(2, *pixels.shape[:2])
+    a, b = (under(part, fusion.merged, view, None, 2) for part in (first, second))
     for mask, colour in (
         ((a == 1) | (b == 1), palette.free),
         (a == 0, palette.ref),
@@ -220,8 +216,8 @@ def merged(study: Study, at: Sequence[int], palette: Palette) -> str:
     sheet.rect(0, 18, HALF, HALF, None, INK, 0.35)
     scale_bar(plot)
     x, y, wide, high = 242.0, 62.0, 45.0, 38.0
-    sheet.text(x + 1.5 * wide, 30, "map 2 says", 11, "middle", palette.mov, True)
-    sheet.text(x - 44, 51, "map 1", 11, colour=palette.ref, bold=True)
+    sheet.text(x + 1.5 * wide, 30, "map 2 says", 11, "middle", worded(palette.mov, palette), True)
+    sheet.text(x - 44, 51, "map 1", 11, colour=worded(palette.ref, palette), bold=True)
     names = ("wall", "free", "unknown")
     colours = {(0, 0): palette.agreed, (0, 1): palette.conflict, (1, 0): palette.conflict}
     colours |= {(0, 2): palette.ref, (2, 0): palette.mov}

@@ -16,11 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.pose import FloatArray
-from app.palette import Rgb, css
+from app.palette import Palette, Rgb, css
 
 WIDE = 380.0
 INK = "currentColor"
 FAINT = 0.35  # opacity of axes
+
+# words in these colours are too dark on a dark page; ink.js has the same ones
+LIGHTER: dict[Rgb, Rgb] = {
+    (0x00, 0x72, 0xB2): (0x56, 0xB4, 0xE9),
+    (0x00, 0x9E, 0x73): (0x34, 0xD3, 0x99),
+    (0xD5, 0x5E, 0x00): (0xFB, 0x92, 0x3C),
+}
 
 Colour = Rgb | str
 Range = tuple[float, float]
@@ -28,6 +35,11 @@ Range = tuple[float, float]
 
 def _css(colour: Colour | None) -> str:
     return "none" if colour is None else colour if isinstance(colour, str) else css(colour)
+
+
+def worded(colour: Rgb, palette: Palette) -> Rgb:
+    """A colour of the palette as words are written in it."""
+    return LIGHTER.get(colour, colour) if palette.dark else colour
 
 
 def number(value: float) -> str:

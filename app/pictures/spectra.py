@@ -14,7 +14,7 @@ from app.lesson.study import Study
 from app.palette import Palette, viridis
 from app.pictures.plan import scale_bar, scene
 from app.pictures.raster import View, around, draw_map, walls
-from app.pictures.sheet import INK, Plot, Sheet, number, turn_label
+from app.pictures.sheet import INK, Plot, Sheet, number, turn_label, worded
 from app.stage import ellipse, rectangle
 
 DEGREES = (0, 30, 60, 90, 120, 150, 180)
@@ -67,7 +67,7 @@ def hough(study: Study, at: Sequence[int], palette: Palette) -> str:
     rows = ((18.0, first, palette.ref, "map 1"), (186.0, second, palette.mov, "map 2"))
     for y, votes, colour, name in rows:
         plot = Plot(sheet, 42, y, 324, 122, (0, 180), (-reach, reach))
-        sheet.text(0, y - 7, name, 11, colour=colour, bold=True)
+        sheet.text(0, y - 7, name, 11, colour=worded(colour, palette), bold=True)
         sheet.text(380, y - 7, "votes of the wall cells (bright: many)", 10.5, "end", alpha=0.8)
         _votes(plot, votes, step)
         plot.axes("θ, direction of the normal (°)" if y > 100 else "", "ρ (m)", DEGREES)
