@@ -63,15 +63,15 @@ def objective(study: Study, at: Sequence[int], palette: Palette) -> str:
     turn = best.theta + off
     place = best.apply(coupled.pivot)
     x0, y0 = coupled.x_ref[0].tolist()
-    sheet, side = Sheet(392), 144.0
+    sheet, side = Sheet(336), 124.0
     turns = np.radians(np.arange(0.0, 360.0, 0.5))
     round_ = transforms(np.full(720, place[0]), np.full(720, place[1]), turns, coupled.pivot)
     order = np.argsort(np.mod(np.degrees(turns) + 180, 360))
-    below = Plot(sheet, 42, 262, 324, 86, (-180, 180), (-0.35, 1.1))
-    sheet.text(0, 255, "both over the turn, at the best shift (each of its highest)", 11, bold=True)
+    below = Plot(sheet, 42, 226, 324, 68, (-180, 180), (-0.35, 1.1))
+    sheet.text(0, 219, "both over the turn (each of its highest)", 11, bold=True)
     rows: tuple[tuple[float, Objective, Measure, str], ...] = (
         (42.0, study.gamma, GAMMA, css(palette.best)),
-        (232.0, study.agreement, AGREEMENT, css(palette.particle)),
+        (226.0, study.agreement, AGREEMENT, css(palette.particle)),
     )
     for x, value, measure, colour in rows:
         grid = _landscape(value, study, turn, half)
@@ -90,14 +90,14 @@ def objective(study: Study, at: Sequence[int], palette: Palette) -> str:
         curve = curve / max(float(curve.max()), 1e-12)
         below.curve(np.mod(np.degrees(turns) + 180, 360)[order] - 180, curve[order], colour, 1.5)
     sheet.text(
-        0, 222, f"at Δθ = {_turn(turn)}, {_turn(off)} off the best. Dashed: the window. Star: the best.", 10
+        0, 186, f"at Δθ = {_turn(turn)}, {_turn(off)} off the best. Dashed: the window. Star: the best.", 10
     )
-    sheet.text(0, 236, "Dark: nothing fits, or more is denied than agrees.", 10, alpha=0.8)
+    sheet.text(0, 200, "Dark: nothing fits, or more is denied than agrees.", 10, alpha=0.8)
     here = (degrees(turn) + 180) % 360 - 180
     below.upright(here, INK, 1, "3 3")
     below.axes("turn Δθ (°)", "", (-180, -90, 0, 90, 180), (0, 0.5, 1), grid=True)
-    after = sheet.chip(42, 388, palette.best, "Γ", "line")
-    sheet.chip(after, 388, palette.particle, "agreement", "line")
+    after = sheet.chip(250, 219, palette.best, "Γ", "line")
+    sheet.chip(after, 219, palette.particle, "agreement", "line")
     return sheet.svg("Landscapes of both objectives")
 
 

@@ -63,10 +63,10 @@ def _votes(plot: Plot, votes: FloatArray, step: float) -> None:
 def hough(study: Study, at: Sequence[int], palette: Palette) -> str:
     """Both accumulators, their strongest lines marked."""
     first, second, step = study.votes
-    reach, sheet = _reach(study), Sheet(352)
-    rows = ((18.0, first, palette.ref, "map 1"), (186.0, second, palette.mov, "map 2"))
+    reach, sheet = _reach(study), Sheet(308)
+    rows = ((18.0, first, palette.ref, "map 1"), (164.0, second, palette.mov, "map 2"))
     for y, votes, colour, name in rows:
-        plot = Plot(sheet, 42, y, 324, 122, (0, 180), (-reach, reach))
+        plot = Plot(sheet, 42, y, 324, 100, (0, 180), (-reach, reach))
         sheet.text(0, y - 7, name, 11, colour=worded(colour, palette), bold=True)
         sheet.text(380, y - 7, "votes of the wall cells (bright: many)", 10.5, "end", alpha=0.8)
         _votes(plot, votes, step)
@@ -75,40 +75,41 @@ def hough(study: Study, at: Sequence[int], palette: Palette) -> str:
             px, py = plot.one(degrees(theta), rho)
             chosen = k == at[0]
             sheet.dot(px, py, 8 if chosen else 6, None, palette.conflict if chosen else "#fff", width=2)
-            sheet.text(px + 11, py + 4, str(k + 1), 13 if chosen else 10, colour="#fff", bold=True)
+            side, anchor = (-11, "end") if chosen else (10, "start")
+            sheet.text(px + side, py + 4, str(k + 1), 13 if chosen else 10, anchor, "#fff", True)
     return sheet.svg("Hough accumulators of both maps over θ and ρ")
 
 
 def spectrum(study: Study, at: Sequence[int], palette: Palette) -> str:
     """The votes of each map, and below them what is left when each column is squared and summed."""
-    match, reach, sheet = study.get(HoughDetail).match, _reach(study), Sheet(322)
+    match, reach, sheet = study.get(HoughDetail).match, _reach(study), Sheet(286)
     first, second, step = study.votes
     x = np.degrees(match.angles)
-    for y, votes, name in ((14.0, first, "map 1"), (92.0, second, "map 2")):
-        plot = Plot(sheet, 42, y, 324, 66, (0, 180), (-reach, reach))
+    for y, votes, name in ((14.0, first, "map 1"), (80.0, second, "map 2")):
+        plot = Plot(sheet, 42, y, 324, 54, (0, 180), (-reach, reach))
         _votes(plot, votes, step)
         plot.axes("", "ρ (m)", (), (-5 * (reach // 5), 0, 5 * (reach // 5)) if reach >= 5 else (0,))
         sheet.text(46, y + 12, name, 11, colour="#fff", bold=True)
     top = max(float(match.ref.max()), float(match.mov.max()), 1e-12)
-    plot = Plot(sheet, 42, 178, 324, 100, (0, 180), (0, 1.08))
+    plot = Plot(sheet, 42, 154, 324, 88, (0, 180), (0, 1.08))
     plot.curve(x, match.ref / top, palette.ref, 2, fill=True)
     plot.curve(x, match.mov / top, palette.mov, 2, fill=True)
     plot.axes("θ, direction of the normal (°)", "HS, of its highest", DEGREES, (0, 0.5, 1))
-    after = sheet.chip(262, 190, palette.ref, "map 1", "line")
-    sheet.chip(after, 190, palette.mov, "map 2", "line")
-    sheet.text(0, 318, "A column's votes, squared and summed. A peak: long walls run so.", 10)
+    after = sheet.chip(262, 167, palette.ref, "map 1", "line")
+    sheet.chip(after, 167, palette.mov, "map 2", "line")
+    sheet.text(0, 282, "A column's votes, squared and summed. A peak: long walls run so.", 10)
     return sheet.svg("Hough spectra of both maps")
 
 
 def correlation(study: Study, at: Sequence[int], palette: Palette) -> str:
     """Map 2's spectrum slid over map 1's by the chosen turn, and the correlation at every turn."""
-    match, sheet = study.get(HoughDetail).match, Sheet(316)
+    match, sheet = study.get(HoughDetail).match, Sheet(282)
     size = len(match.angles)
     x, turn = np.degrees(match.angles), float(at[0])
     k = round(turn / 180 * size) % size
     top = max(float(match.ref.max()), float(match.mov.max()), 1e-12)
     ref, mov = match.ref / top, np.roll(match.mov, k) / top
-    plot = Plot(sheet, 42, 18, 324, 104, (0, 180), (0, 1.08))
+    plot = Plot(sheet, 42, 18, 324, 86, (0, 180), (0, 1.08))
     sheet.text(0, 11, f"map 2's spectrum, slid by {turn:.0f}°", 11, bold=True)
     after = sheet.chip(238, 11, palette.ref, "map 1", "line")
     sheet.chip(after, 11, palette.mov, "map 2, slid", "line")
@@ -118,8 +119,8 @@ def correlation(study: Study, at: Sequence[int], palette: Palette) -> str:
     plot.axes("direction (°)", "HS", DEGREES, (0, 0.5, 1))
     low = float(match.correlation.min())
     low = low - 0.06 * (1 - low) if low < 0.99 else 0.0
-    plot = Plot(sheet, 42, 178, 324, 92, (0, 360), (low, 1 + 0.12 * (1 - low)))
-    sheet.text(0, 171, "their correlation CC; shaded: the same again, the twins", 11, bold=True)
+    plot = Plot(sheet, 42, 158, 324, 78, (0, 360), (low, 1 + 0.12 * (1 - low)))
+    sheet.text(0, 151, "their correlation CC; shaded: the same again, the twins", 11, bold=True)
     twice = np.concatenate([match.correlation, match.correlation])
     plot.band(180, 360, palette.margin, 0.12)
     plot.curve(np.arange(2 * size) * 180 / size, twice, INK, 1.6)
@@ -131,8 +132,8 @@ def correlation(study: Study, at: Sequence[int], palette: Palette) -> str:
     for there in (turn, turn + 180):
         plot.upright(there, palette.best, 1.5, "3 3")
         sheet.dot(*plot.one(there, value), 4.5, palette.best, "#fff", width=1)
-    after = sheet.chip(42, 313, palette.particle, "candidates", "dot")
-    sheet.chip(after, 313, palette.best, f"slid by {turn:.0f}°, or {turn + 180:.0f}°: {value:.0%}", "dot")
+    after = sheet.chip(42, 279, palette.particle, "candidates", "dot")
+    sheet.chip(after, 279, palette.best, f"slid by {turn:.0f}°, or {turn + 180:.0f}°: {value:.0%}", "dot")
     return sheet.svg("Correlation of the two Hough spectra")
 
 
@@ -145,7 +146,7 @@ def shift(study: Study, at: Sequence[int], palette: Palette) -> str:
     """Both maps at a candidate's turn and shift with their sums beside them, and the correlations."""
     told, lifted = study.all(ShiftDetail), study.get(AugmentDetail)
     candidate = told[min(at[0], len(told) - 1)].candidate
-    sheet, wide, high = Sheet(372), 210.0, 150.0
+    sheet, wide, high = Sheet(320), 210.0, 120.0
     half = 2.2 * study.config.augment.spread
     view = View(around(lifted.ref.x_hat, half, wide / high), int(2 * wide), int(2 * high))
     plot = scene(sheet, 42, 18, wide, high, view)
@@ -159,7 +160,7 @@ def shift(study: Study, at: Sequence[int], palette: Palette) -> str:
     words = f"candidate {min(at[0], len(told) - 1) + 1}: turned by {turn_label(candidate.T_ref_mov.theta)}"
     sheet.text(42, 11, words, 11, bold=True)
     x0, y0, x1, y1 = view.rect
-    below = Plot(sheet, 42, 18 + high + 4, wide, 48, (x0, x1), (0, 1.08))
+    below = Plot(sheet, 42, 18 + high + 4, wide, 40, (x0, x1), (0, 1.08))
     beside = Plot(sheet, 42 + wide + 4, 18, 76, high, (0, 1.08), (y0, y1))
     for curves, places, colour in (
         ((candidate.x.ref, candidate.y.ref), (candidate.x.ref_at, candidate.y.ref_at), palette.ref),
@@ -175,15 +176,15 @@ def shift(study: Study, at: Sequence[int], palette: Palette) -> str:
         sheet.path(points, colour, 1.6)
     for frame in (below, beside):
         sheet.rect(frame.x, frame.y, frame.wide, frame.high, None, INK, 0.35)
-    sheet.text(38, 18 + high + 32, "XS", 11, "end")
+    sheet.text(38, 18 + high + 28, "XS", 11, "end")
     sheet.text(42 + wide + 42, 11, "YS", 11, "middle")
-    sheet.text(300, 190, "sums of all", 10, alpha=0.8)
-    sheet.text(300, 203, "levels in a", 10, alpha=0.8)
-    sheet.text(300, 216, "column, a row", 10, alpha=0.8)
+    sheet.text(300, 158, "sums of all", 10, alpha=0.8)
+    sheet.text(300, 171, "levels in a", 10, alpha=0.8)
+    sheet.text(300, 184, "column, a row", 10, alpha=0.8)
     for x, match, name in ((30.0, candidate.x, "x"), (218.0, candidate.y, "y")):
         pad = max(3.0, 0.3 * (match.high - match.low))
-        plot = Plot(sheet, x, 246, 150, 84, (match.low - pad, match.high + pad), (0, 1.15))
-        sheet.text(x, 239, f"C{name.upper()}: sliding along {name}", 11, bold=True)
+        plot = Plot(sheet, x, 208, 150, 70, (match.low - pad, match.high + pad), (0, 1.15))
+        sheet.text(x, 201, f"C{name.upper()}: sliding along {name}", 11, bold=True)
         plot.band(match.low, match.high, palette.margin, 0.3)
         near = (match.shifts >= plot.across[0]) & (match.shifts <= plot.across[1])
         plot.curve(match.shifts[near], match.correlation[near], INK, 1.6)
