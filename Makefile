@@ -15,7 +15,7 @@ help:
 	@echo "make test         check style and types, run every test, browser tests included"
 	@echo "make bench        time the stages of a merge"
 	@echo "make samples      simulate the maps in sample_maps again"
-	@echo "make screenshots  take the README's pictures again"
+	@echo "make screenshots  take the pictures of the README and the guides again"
 	@echo "make equations    typeset the equations in static/equations again"
 	@echo "make replays      record the pages in static/replays again"
 	@echo "make clean        remove the environment and everything that was made"
@@ -39,7 +39,7 @@ samples: $(VENV)/ready
 
 screenshots: $(VENV)/ready-to-test
 	@chromium="$$($(BIN)/python tests/chromium.py)" && \
-	  CHROMIUM="$$chromium" $(BIN)/python tests/browser/screenshots.py $(or $(ARGS),static/screenshots swarm merged)
+	  CHROMIUM="$$chromium" $(BIN)/python tests/browser/screenshots.py $(or $(ARGS),static/screenshots shown)
 
 equations: $(VENV)/ready
 	@$(PIP) install -e '.[equations]'

@@ -18,6 +18,7 @@ from app.inputs import Inputs
 from app.measure import measure_of
 from app.panels.places import MOST_PLACES, signed, summary, whose
 from app.panels.result import STAGES, numbers
+from app.panels.tables import typeset
 from app.pictures import outcome
 from app.publish import publish_command
 
@@ -76,7 +77,7 @@ def _verdict(result: MergeResult, config: Any) -> str:
         f"x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°."
     )
     mood = "accepted" if verdict.accepted else "refused"
-    where = where.replace("-", "−")
+    where = typeset(where)
     return f'<div class="verdict {mood}">{stop}<p>{escape(reason)}</p>{more}</div><p>{where}</p>'
 
 
@@ -205,8 +206,8 @@ def _table(rows: Iterable[Row], kind: str = "", head: Row = ()) -> str:
     """A table, first column words; kind "two" sets it in two columns, "words" has words beside words."""
 
     def row(cells: Row, tag: str) -> str:
-        proper = ("−" + cell[1:] if cell.startswith("-") else cell for cell in cells)
-        return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in proper) + "</tr>"
+        shown = cells if kind == "words" else map(typeset, cells)  # words may be names of files
+        return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in shown) + "</tr>"
 
     body = "".join(row(cells, "td") for cells in rows)
     top = row(head, "th") if head else ""

@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from algorithms.casefiles import Truth, observations_to_bytes
 from algorithms.errors import InputFileError
@@ -18,7 +20,7 @@ from app.inputs import Inputs
 from app.panels.files import Upload, inputs_from
 from app.panels.observation import observations_html
 from app.panels.result import numbers, result_html, times
-from app.panels.tables import box, table
+from app.panels.tables import box, table, typeset
 from app.story import Story
 from app.words import progress, sentence
 
@@ -181,3 +183,16 @@ def test_the_curves_share_one_axis_and_mark_what_was_chosen(inputs):
         x, ref, mov = charts.shift_spectra(axis)
         assert len(x) == len(ref) == len(mov)
         assert max(ref.max(), mov.max()) <= 1.0
+
+
+@given(st.floats(-1e4, 1e4, allow_nan=False))
+def test_a_negative_number_has_a_minus_sign_and_nothing_else_changes(value):
+    text = f"{value:.3f} m"
+    assert typeset(text).replace("−", "-") == text
+    assert "-" not in typeset(text)
+
+
+def test_a_hyphen_in_a_name_stays_one():
+    for name in ("map-1.yaml", "floor 2-3", "2026-11-22", "well-known"):
+        assert typeset(name) == name
+    assert typeset("-1.5, -2 m") == "−1.5, −2 m"

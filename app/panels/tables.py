@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from html import escape
 
 LONGEST = 26  # letters of a cell that is kept on one line; more would push the table out of its panel
+
+
+def typeset(text: str) -> str:
+    """The text with a minus sign before its negative numbers, where a keyboard has a hyphen."""
+    return re.sub(r"(?<![\w.)\]-])-(?=\.?\d)", "−", text)
 
 
 def table(rows: Iterable[tuple[str, ...]], head: tuple[str, ...] = (), faded: bool = False) -> str:
@@ -17,7 +23,7 @@ def table(rows: Iterable[tuple[str, ...]], head: tuple[str, ...] = (), faded: bo
         inner = f'<{tag} style="text-align:left;font-weight:400;opacity:.75">{escape(first)}</{tag}>'
         for cell in rest:
             wrap = "normal" if len(cell) > LONGEST else "nowrap"
-            inner += f'<{tag} style="{style};white-space:{wrap}">{escape(cell)}</{tag}>'
+            inner += f'<{tag} style="{style};white-space:{wrap}">{escape(typeset(cell))}</{tag}>'
         return inner
 
     body = "".join(f"<tr>{row(cells, 'td')}</tr>" for cells in rows)

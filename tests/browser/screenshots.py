@@ -1,22 +1,29 @@
-"""Pictures of every stage of the page: ``python tests/browser/screenshots.py FOLDER [NAME ...]``.
+"""Pictures of the page: ``python tests/browser/screenshots.py FOLDER [NAME ...]``.
 
-With names only those are kept; ``static/screenshots swarm merged`` makes the README's pictures anew.
+Without names every picture is kept, ``shown`` stands for those that the README and the guides show.
 """
 
 from __future__ import annotations
 
+import io
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
 from chromium import find_chromium  # noqa: E402
 from driver import ARGUMENTS, Tab, settle  # noqa: E402
-from playwright.sync_api import sync_playwright  # noqa: E402
+from PIL import Image  # noqa: E402
+from playwright.sync_api import Browser, sync_playwright  # noqa: E402
 
 from algorithms.casefiles import Case, read_case  # noqa: E402
+from algorithms.mapio import map_to_bytes  # noqa: E402
 from algorithms.observation import Observation  # noqa: E402
 from app.paths import samples  # noqa: E402
 from app.server import make_server  # noqa: E402
@@ -24,53 +31,84 @@ from app.server import make_server  # noqa: E402
 SIZE = (1280, 800)
 SAMPLE = "office_r2_r1"
 ALIKE = "corridor_r3_r2"  # two places that look alike when turned
+SHOWN = (
+    "swarm", "merged", "proof", "rival", "curtain", "by_hand", "place", "plain_image", "lesson_hough",
+    "lesson_swarm", "museum",
+)  # fmt: skip
+
+Keep = Callable[[str], None]
 
 
 def main(folder: Path, names: list[str]) -> None:
-    """Drive the page through a merge and keep a picture of every stage."""
+    """Play every scene and keep the pictures that are asked for."""
     folder.mkdir(parents=True, exist_ok=True)
-    case = read_case(samples()[SAMPLE])
-    o = case.observations[0]
-    wrong = Observation(o.observer, o.observed_x + 6.0, o.observed_y - 5.0, o.range, o.bearing)
+    wanted = set(SHOWN if names == ["shown"] else names)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=find_chromium(), args=ARGUMENTS)
-        for name, initial, script in (
-            ("", case, a_merge),
-            ("refused", Case("a wrong sighting", case.ref, case.mov, (wrong,), "", None), a_refusal),
-            ("rival", read_case(samples()[ALIKE]), a_refusal),
-            ("empty", None, an_empty_page),
-        ):
-            server = make_server(port=0, initial=initial)
-            tab = Tab(browser, f"http://127.0.0.1:{server.get_port()}/", SIZE)
+        for scene, pictures in SCENES.items():
+            if wanted and not wanted & set(pictures):
+                continue
+            with opened(browser, opening(scene)) as tab:
 
-            def keep(picture: str, tab: Tab = tab) -> None:
-                if not names or picture in names:
-                    tab.page.screenshot(path=str(folder / f"{picture}.png"))
+                def keep(name: str, tab: Tab = tab) -> None:
+                    if not wanted or name in wanted:
+                        tab.page.screenshot(path=folder / f"{name}.png")
 
-            script(tab, keep, name)
-            tab.close()
-            server.stop()
+                scene(tab, keep)
         browser.close()
 
 
-def a_merge(tab: Tab, keep: Callable[[str], None], _: str) -> None:
-    """Every stage, every view, light and dark."""
+@contextmanager
+def opened(browser: Browser, initial: Case | None) -> Iterator[Tab]:
+    """A tab of a server of its own."""
+    server = make_server(port=0, initial=initial)
+    tab = Tab(browser, f"http://127.0.0.1:{server.get_port()}/", SIZE)
+    tab.page.wait_for_timeout(800)
+    yield tab
+    tab.close()
+    server.stop()
 
-    def until(words: str, pause: int = 0) -> None:
-        settle(lambda: words in tab.state, words)
-        tab.page.wait_for_timeout(pause)
 
+def opening(scene: Callable[[Tab, Keep], None]) -> Case | None:
+    """What a scene begins with."""
+    case = read_case(samples()[ALIKE if scene is a_rival else SAMPLE])
+    if scene is a_wrong_sighting:
+        o = case.observations[0]
+        wrong = Observation(o.observer, o.observed_x + 6.0, o.observed_y - 5.0, o.range, o.bearing)
+        return Case("a wrong sighting", case.ref, case.mov, (wrong,), "", None)
+    return None if scene is an_empty_page else case
+
+
+def until(tab: Tab, words: str, pause: int = 0) -> None:
+    """Wait for words at the top, and so many milliseconds."""
+    settle(lambda: words in tab.state, words)
+    tab.page.wait_for_timeout(pause)
+
+
+def merged(tab: Tab, mood: str = "accepted") -> None:
+    """Merge without waiting, and come to rest."""
+    tab.press("Instant")
+    tab.press("Merge")
+    tab.wait_for(mood)
     tab.page.wait_for_timeout(1500)
+
+
+# --- scenes ---------------------------------------------------------------------------------------
+
+
+def a_merge(tab: Tab, keep: Keep) -> None:
+    """Every stage, every view, light and dark."""
+    tab.page.wait_for_timeout(700)
     keep("loaded")
     tab.press("Slow")
     tab.press("Merge")
-    until("Augmenting", 900)
+    until(tab, "Augmenting", 900)
     keep("augmented")
-    until("Turning", 1800)
+    until(tab, "Turning", 1800)
     keep("turned")
-    until("candidate 3", 700)
+    until(tab, "candidate 3", 700)
     keep("shifted")
-    until("Searching: candidate 1", 1200)
+    until(tab, "Searching: candidate 1", 1200)
     keep("swarm")
     tab.press("Swarm space")
     tab.page.wait_for_timeout(700)
@@ -79,12 +117,9 @@ def a_merge(tab: Tab, keep: Callable[[str], None], _: str) -> None:
     tab.press("Stop")
     tab.page.wait_for_timeout(800)
     keep("stopped")
-    tab.press("Instant")
-    tab.press("Merge")
-    tab.wait_for("accepted")
+    merged(tab)
     tab.press("Show everything")
     tab.page.wait_for_timeout(1500)
-    tab.page.locator(".mm-state").scroll_into_view_if_needed()
     tab.page.get_by_role("button", name="Merge", exact=True).scroll_into_view_if_needed()
     tab.page.wait_for_timeout(300)
     keep("merged")
@@ -102,22 +137,104 @@ def a_merge(tab: Tab, keep: Callable[[str], None], _: str) -> None:
     keep("dark")
 
 
-def a_refusal(tab: Tab, keep: Callable[[str], None], name: str) -> None:
-    """A sighting that is wrong by some metres, or a rival that fits nearly as well."""
-    tab.press("Instant")
-    tab.press("Merge")
-    tab.wait_for("refused")
-    tab.page.wait_for_timeout(1500)
-    keep(name)
+def a_comparison(tab: Tab, keep: Keep) -> None:
+    """The merged map looked at in every way, then taken into the hand."""
+    merged(tab)
+    for name in ("Curtain", "Blink", "Difference"):
+        tab.press(name)
+        tab.page.wait_for_timeout(900)
+        keep(name.lower())
+    tab.press("Overlay")
+    tab.press("Move map 2 by hand")
+    tab.page.wait_for_timeout(1200)
+    x, y = tab.page.evaluate("() => window.mapmeld.pixel([2, -2], 'mov')")
+    tab.page.mouse.move(x, y)
+    tab.page.mouse.down()
+    tab.page.mouse.move(x + 9, y - 6, steps=6)
+    tab.page.wait_for_timeout(900)
+    keep("by_hand")
+    tab.page.mouse.up()
+    tab.page.keyboard.press("?")
+    tab.page.wait_for_timeout(400)
+    keep("keys")
+
+
+def a_rival(tab: Tab, keep: Keep) -> None:
+    """Two places fit nearly as well."""
+    merged(tab, "refused")
+    keep("rival")
+
+
+def a_wrong_sighting(tab: Tab, keep: Keep) -> None:
+    """A sighting that is wrong by some metres, and the question before its map is taken away."""
+    merged(tab, "refused")
+    keep("refused")
     tab.press("Download everything")
     tab.page.wait_for_timeout(800)
-    keep(f"{name}_download")
+    keep("refused_download")
 
 
-def an_empty_page(tab: Tab, keep: Callable[[str], None], name: str) -> None:
-    """Nothing loaded yet; then a file that cannot be used."""
-    tab.page.wait_for_timeout(800)
-    keep(name)
+def an_empty_page(tab: Tab, keep: Keep) -> None:
+    """Nothing loaded yet; then an image alone, and the form that asks what it means."""
+    keep("empty")
+    case = read_case(samples()[SAMPLE])
+    with TemporaryDirectory() as folder:
+        image = Path(folder) / "floor.png"
+        pixels = np.asarray(Image.open(io.BytesIO(map_to_bytes(case.ref, "floor")["floor.pgm"])))
+        Image.fromarray(pixels).save(image)
+        tab.unfold("Upload your own")
+        tab.upload(1, image)
+        until(tab, "has no YAML file yet", 600)
+    tab.page.locator("img[alt='what each pixel means']").first.scroll_into_view_if_needed()
+    tab.page.wait_for_timeout(900)
+    keep("plain_image")
+
+
+def a_placement(tab: Tab, keep: Keep) -> None:
+    """Robots placed by hand."""
+    tab.unfold("Observation")
+    tab.page.wait_for_timeout(1200)
+    keep("place")
+
+
+def a_lesson(tab: Tab, keep: Keep) -> None:
+    """Every step of the lesson."""
+    tab.press("Lesson")
+    steps = {4: "lesson_hough", 12: "lesson_swarm"}
+    number = 1
+    while True:
+        settle(lambda at=number: f"step {at} of" in tab.state, f"step {number}")
+        tab.page.wait_for_timeout(1800)
+        keep(steps.get(number, f"lesson_{number:02d}"))
+        if f"step {number} of {number}:" in tab.state:
+            return
+        tab.press("Next ▶")
+        number += 1
+
+
+def a_museum(tab: Tab, keep: Keep) -> None:
+    """The first exhibit fails as told."""
+    tab.press("Museum")
+    tab.page.wait_for_timeout(1500)
+    tab.page.mouse.move(640, 500)  # no hint over the panel
+    merged(tab, "refused")
+    keep("museum")
+
+
+# what each scene is played for; the steps of the lesson that are not shown anywhere have their numbers
+SCENES: dict[Callable[[Tab, Keep], None], tuple[str, ...]] = {
+    a_merge: (
+        "loaded", "augmented", "turned", "shifted", "swarm", "swarm_space", "stopped", "merged", "proof",
+        "heights", "dark",
+    ),
+    a_comparison: ("curtain", "blink", "difference", "by_hand", "keys"),
+    a_rival: ("rival",),
+    a_wrong_sighting: ("refused", "refused_download"),
+    an_empty_page: ("empty", "plain_image"),
+    a_placement: ("place",),
+    a_lesson: ("lesson_hough", "lesson_swarm"),
+    a_museum: ("museum",),
+}  # fmt: skip
 
 
 if __name__ == "__main__":
