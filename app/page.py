@@ -426,8 +426,8 @@ class Page(Handling, Learning):
         self._plots.tell(result_html(result, self._inputs, config, self._conflicts))
         self._export.offer(Harvest(result, self._inputs, config))
         i = self._inputs
-        if result.method == BY_HAND:  # there is no run to play
-            self._export.replay.offer(None)
+        if result.method == BY_HAND:  # there was no run that could be told again
+            self._export.replay.visible(False)
         elif i.ref is not None and i.mov is not None:
             job = Job(i.ref, i.mov, i.observations, config, result.method, result.seed)
             self._export.replay.offer(i.name, partial(replay_of, job, self.session.told_again, i))

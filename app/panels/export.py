@@ -95,7 +95,16 @@ class ExportPanel:
         if not self._at_work.acquire(blocking=False):
             return  # a second click while the files are being made
         try:
-            content = harvest.archive() if name == ARCHIVE else harvest.files[name]
+            notice = self._client.add_notification(
+                "Making the files",
+                "Map, pictures and report; of large maps this takes some seconds.",
+                loading=True,
+                with_close_button=False,
+            )
+            try:
+                content = harvest.archive() if name == ARCHIVE else harvest.files[name]
+            finally:
+                notice.remove()
             self._client.send_file_download(name, content, save_immediately=True)
         finally:
             self._at_work.release()

@@ -177,6 +177,8 @@ def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(ta
     tab.press("Take this as the answer")
     settle(lambda: tab.state.startswith("By hand. Merged: "), "the answer")
     assert settle(lambda: tab.number("made"), "who made it") == "by hand"
+    replay = tab.page.get_by_role("button", name="Save replay")
+    settle(lambda: not replay.is_visible(), "no replay where there was no run")
     with tab.page.expect_download() as download:
         tab.press("Download everything")
     download.value.save_as(tmp_path / "merged.zip")
