@@ -372,3 +372,13 @@ def test_a_browser_is_opened_only_where_there_is_a_screen(monkeypatch):
     assert not _has_display()
     monkeypatch.setitem(os.environ, "DISPLAY", ":0")
     assert _has_display()
+
+
+def test_a_lesson_with_a_broken_text_is_refused_before_anyone_sees_it(tmp_path, capsys):
+    assert main(["serve", "--no-browser", "--lesson", str(tmp_path)]) == 2
+    assert "holds no text" in capsys.readouterr().err
+    (tmp_path / "01-mine.md").write_text("---\ntitle: Mine\npicture: hoof\n---\nText.\n")
+    assert main(["serve", "--no-browser", "--lesson", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert "01-mine.md: picture is 'hoof'; known are " in said
+    assert said.count("\n") == 1

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import degrees
 
 import numpy as np
+from scipy.ndimage import maximum_filter
 
 from algorithms.pose import FloatArray, Pose2, rotation, wrap_angle
 from algorithms.steps import AugmentDetail, HoughDetail, ShiftDetail, WindowDetail
@@ -29,7 +30,11 @@ def strongest(votes: FloatArray, step: float, count: int = LINES) -> list[tuple[
     step  : width of a bin of ρ; metres
     """
     directions, bins = votes.shape
-    left = votes.copy()
+    # a ridge beside a spot that is taken is no line: only the tops of hills are asked
+    size = 2 * round(APART[0] * directions / 180) + 1, 2 * round(APART[1] / step) + 1
+    edge = size[0] // 2
+    round_ = np.concatenate([votes[-edge:, ::-1], votes, votes[:edge, ::-1]])
+    left = np.where(maximum_filter(round_, size)[edge : edge + directions] == votes, votes, 0.0)
     rho = (np.arange(bins) - bins // 2) * step
     found: list[tuple[float, float]] = []
     for _ in range(count):
