@@ -47,6 +47,8 @@ from app.views.swarm_space import SwarmSpaceView
 
 log = logging.getLogger(__name__)
 
+LARGE = 2_000_000  # cells of a map that takes a while to draw
+
 
 class Page(Handling, Learning):
     """Listens to its session and draws; the callbacks of its widgets only ask."""
@@ -133,7 +135,7 @@ class Page(Handling, Learning):
                 learn=self._learn,
             ),
         )
-        self._files = FilesPanel(gui, self._load, self._report, chosen, self._save, self._turn)
+        self._files = FilesPanel(gui, self._load, self._report, chosen, self._save, self._turn, self._busy)
         self._observation = ObservationPanel(gui)
         self._tuning = TuningPanel(gui, self._changed, self._report, self._turn)
         self._export = ExportPanel(client)
@@ -171,6 +173,12 @@ class Page(Handling, Learning):
         tuning, goal = self._tuning, "merge" if self._merged else "candidates" if self._asked else None
         inputs, files, hand = self._inputs, self._files.files, self._hand.pose
         return Desk(inputs, files, tuning.method, tuning.config, self._run.seed, goal, hand)
+
+    def _busy(self, doing: str, share: float = 0.3) -> None:
+        """Say what is being done before there is anything new to be seen; share: of the work, done."""
+        with self.session.drawing:
+            self._stage.hud(state=doing, mood="running", progress=share)
+            self._stage.flush()
 
     def _save(self, name: str, content: bytes) -> None:
         self._client.send_file_download(name, content, save_immediately=True)
@@ -219,6 +227,8 @@ class Page(Handling, Learning):
         self._plots.clear()
         self._heights.hide()
         self._comparison.clear()
+        if any(grid is not None and grid.cells.size >= LARGE for grid in (inputs.ref, inputs.mov)):
+            self._busy("Drawing the maps.", 0.6)
         self._maps.load(inputs, layout, self._palette)
         self._run.view = MAP
         self._turn_view()

@@ -196,3 +196,18 @@ def test_a_hyphen_in_a_name_stays_one():
     for name in ("map-1.yaml", "floor 2-3", "2026-11-22", "well-known"):
         assert typeset(name) == name
     assert typeset("-1.5, -2 m") == "−1.5, −2 m"
+
+
+def test_a_map_that_was_read_is_not_read_again_when_another_file_comes(inputs):
+    files = map_to_bytes(inputs.ref, "m")
+    uploads = {"yaml1": Upload("m.yaml", files["m.yaml"]), "image1": Upload("m.pgm", files["m.pgm"])}
+    known = {}
+    first = inputs_from(uploads, known).ref
+    uploads["observation"] = Upload("o.yaml", b"range: 3")
+    with pytest.raises(InputFileError):
+        inputs_from(uploads, known)
+    uploads["observation"] = Upload("o.yaml", observations_to_bytes(inputs.observations))
+    assert inputs_from(uploads, known).ref is first
+    uploads["yaml1"] = Upload("m.yaml", files["m.yaml"].replace(b"0.05", b"0.1"))
+    assert inputs_from(uploads, known).ref.resolution == 0.1
+    assert len(known) == 1

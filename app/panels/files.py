@@ -12,6 +12,7 @@ import viser
 
 from algorithms.casefiles import observations_from_bytes, read_case
 from algorithms.errors import MapMergeError
+from algorithms.gridmap import GridMap
 from algorithms.mapio import map_from_bytes
 from app import paths
 from app.inputs import Files, Inputs, Upload
@@ -32,29 +33,43 @@ SLOTS = {
 }
 
 MAPS = (1, 2)
+LARGE = 1_000_000  # bytes; to read less takes no time to speak of
 
 
-def inputs_from(uploads: dict[str, Upload]) -> Inputs:
+Known = dict[tuple[Upload, Upload], GridMap]
+
+
+def inputs_from(uploads: dict[str, Upload], known: Known | None = None) -> Inputs:
     """What the files so far make up: a map where both its files are there, observations.
 
+    known  : maps that were read before, by their two files; holds these in the end
     raises : MapMergeError that names the file, the finding and the remedy
     """
+    known = {} if known is None else known
+    now: Known = {}
 
     def grid(number: int):  # type: ignore[no-untyped-def]
         text, image = uploads.get(f"yaml{number}"), uploads.get(f"image{number}")
         if text is None or image is None:
             return None
-        return map_from_bytes(text.name, text.content, image.name, image.content)
+        found = known.get((text, image))
+        if found is None:
+            found = map_from_bytes(text.name, text.content, image.name, image.content)
+        now[text, image] = found
+        return found
 
     seen = uploads.get("observation")
     bare = tuple(n for n in MAPS if f"image{n}" in uploads and f"yaml{n}" not in uploads)
-    return Inputs(
+    inputs = Inputs(
         ref=grid(1),
         mov=grid(2),
         observations=observations_from_bytes(seen.name, seen.content) if seen else (),
         name="your files" if uploads else "",
         bare=bare,
     )
+    known.clear()  # of what is not there any more
+    known.update(now)
+    return inputs
 
 
 class FilesPanel:
@@ -68,10 +83,14 @@ class FilesPanel:
         chosen: str,
         save: Callable[[str, bytes], None],
         turn: RLock | None = None,
+        tell: Callable[[str], None] | None = None,
     ) -> None:
-        """save : sends a file to the person."""
-        self._load, self._report = load, report
+        """save : sends a file to the person
+        tell : says what is being done, where it takes a while
+        """
+        self._load, self._report, self._tell = load, report, tell
         self._uploads: dict[str, Upload] = {}
+        self._known: Known = {}
         # viser calls back from a thread of its own for each file: two that were dropped together must
         # not be read, and shown, across each other
         self._turn = turn or RLock()
@@ -136,16 +155,18 @@ class FilesPanel:
         with self._turn:
             before = dict(self._uploads)
             self._uploads[key] = upload
+            if self._tell is not None and len(upload.content) >= LARGE:
+                self._tell(f"Reading {upload.name}, {len(upload.content) / 1e6:.0f} MB.")
             text = self._uploads.get(key.replace("image", "yaml"))
             if key.startswith("image") and text is not None and text.by_form:
                 del self._uploads[key.replace("image", "yaml")]  # it was filled in for another image
             try:
                 self._offer_forms()
-                inputs = inputs_from(self._uploads)
+                inputs = inputs_from(self._uploads, self._known)
             except MapMergeError as error:
                 self._uploads = before
                 self._offer_forms()
-                self._show(inputs_from(self._uploads), bad=key)
+                self._show(inputs_from(self._uploads, self._known), bad=key)
                 self._report(error)
                 return
             self._show(inputs)

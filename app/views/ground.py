@@ -64,6 +64,7 @@ class Ground:
         self._ghost_at: Pose2 | None = None
         pairs = (*self._free, *self._walls, *self._levels, *self._merged, *self._touches)
         self._all = (*pairs, self._denied, self._ghost)
+        self._shown: tuple[GridMap | None, GridMap | None] = (None, None)
         self._layout: Layout | None = None
         self._palette: Palette | None = None
         self._mov: GridMap | None = None
@@ -76,16 +77,25 @@ class Ground:
         self._hidden = False
 
     def load(self, ref: GridMap | None, mov: GridMap | None, layout: Layout, palette: Palette) -> None:
-        """Draw two maps; what was there before is gone."""
+        """Draw two maps; what was there before is gone. A map that was there already is only moved."""
+        grids = (ref, mov)
+        old = self._shown if palette is self._palette else (None, None)
+        same = [grid is not None and grid is old[k] for k, grid in enumerate(grids)]
+        stay = [image for k in (0, 1) if same[k] for image in (self._free[k], self._walls[k])]
         for image in self._all:
-            image.remove()
+            if image not in stay:
+                image.remove()
+        self._shown = grids
         self._layout, self._palette, self._lifted, self._fused = layout, palette, None, None
         self._haunted = self._contrasted = None
         self._mov = mov
         colours, anchors = (palette.ref, palette.mov), (layout.anchor_ref, layout.anchor_mov)
         most = self._most
-        for k, grid in enumerate((ref, mov)):
-            if grid is not None:
+        for k, grid in enumerate(grids):
+            if same[k]:
+                self._free[k].move(anchors[k])
+                self._walls[k].move(anchors[k])
+            elif grid is not None:
                 self._free[k].show(render.floor(grid.cells, palette, most=most), grid, anchors[k])
                 self._walls[k].show(render.walls(grid.cells, colours[k], most=most), grid, anchors[k])
         self.show("sources")

@@ -18,6 +18,7 @@ class GridImage:
     def __init__(self, scene: viser.SceneApi, name: str, height: float) -> None:
         self._scene, self._name, self._height = scene, name, height
         self._handle: viser.ImageHandle | None = None
+        self._middle = np.zeros(2)  # of the picture, in the grid's frame
 
     def show(self, picture: Picture, grid: GridMap, anchor: FloatArray) -> None:
         """Draw a picture of ``grid``.
@@ -26,7 +27,7 @@ class GridImage:
         """
         rows, cols = picture.pixels.shape[:2]
         size = np.array([cols, rows]) * picture.pooled * grid.resolution
-        centre = grid.origin.apply(size / 2) - anchor
+        self._middle = grid.origin.apply(size / 2)
         half = grid.origin.theta / 2
         if self._handle is not None:
             self._handle.remove()
@@ -36,11 +37,20 @@ class GridImage:
             float(size[0]),
             float(size[1]),
             format="png",
-            position=(float(centre[0]), float(centre[1]), self._height),
+            position=self._position(anchor),
             wxyz=(cos(half), 0.0, 0.0, sin(half)),
             cast_shadow=False,
             receive_shadow=False,
         )
+
+    def move(self, anchor: FloatArray) -> None:
+        """Put the picture where another point of the grid's frame lies at the parent's origin."""
+        if self._handle is not None:
+            self._handle.position = self._position(anchor)
+
+    def _position(self, anchor: FloatArray) -> tuple[float, float, float]:
+        x, y = (self._middle - anchor).tolist()
+        return x, y, self._height
 
     def repaint(self, picture: Picture, grid: GridMap, anchor: FloatArray) -> None:
         """Draw another picture of the same grid in place of the last one, without a flicker."""

@@ -1,0 +1,52 @@
+"""Pictures of maps in the scene: a map that is there already is moved, not sent again."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from algorithms.casefiles import Case
+from app.inputs import Inputs
+from app.layout import lay_out
+from app.palette import DARK, LIGHT
+from app.replay.pictures import PictureScene
+from app.views.ground import Ground
+
+
+@pytest.fixture
+def scene():
+    return PictureScene()
+
+
+def sent(scene: PictureScene) -> int:
+    return len(scene.pictures)
+
+
+def test_a_map_that_is_there_already_is_moved_and_not_sent_again(scene, small_case: Case):
+    inputs = Inputs.of(small_case)
+    ground = Ground(scene)
+    ground.load(inputs.ref, inputs.mov, lay_out(inputs.ref, inputs.mov, None), LIGHT)
+    before, seen = sent(scene), scene.seen
+    layout = lay_out(inputs.ref, inputs.mov, inputs.at)  # the observation has come: other anchors
+    ground.load(inputs.ref, inputs.mov, layout, LIGHT)
+    assert sent(scene) == before
+    assert scene.seen == seen
+    grid = small_case.ref
+    middle = grid.origin.apply(np.array([grid.width, grid.height]) * grid.resolution / 2)
+    assert scene.shown[0].position[:2] == pytest.approx((middle - layout.anchor_ref).tolist())
+
+
+def test_another_map_or_other_colours_are_sent(scene, small_case: Case):
+    inputs = Inputs.of(small_case)
+    layout = lay_out(inputs.ref, inputs.mov, inputs.at)
+    ground = Ground(scene)
+    ground.load(inputs.ref, inputs.mov, layout, LIGHT)
+    first = sent(scene)
+    ground.load(inputs.ref, inputs.ref, layout, LIGHT)
+    assert sent(scene) == first + 2  # floor and walls of map 2
+    assert len(scene.seen) == 4
+    ground.load(inputs.ref, inputs.ref, layout, DARK)
+    assert sent(scene) == first + 6
+    ground.load(inputs.ref, None, layout, DARK)
+    assert sent(scene) == first + 6
+    assert len(scene.seen) == 2
