@@ -10,6 +10,7 @@ from algorithms.errors import InputFileError
 from algorithms.methods import METHODS, merge
 from algorithms.pose import pose_error
 from algorithms.steps import MergeResult
+from app.lesson.museum import rows
 from app.lesson.texts import Exhibit, exhibit_case, files, museum_folder, read_exhibit, with_settings
 
 GOOD = """\
@@ -61,6 +62,16 @@ def test_a_cure_of_the_same_method_changes_what_the_exhibit_has_set(tmp_path):
     assert read.cure_method == read.method
     assert read.settings == ((("candidates", "twins"), False),)
     assert read.cure_settings == ((("candidates", "twins"), True),)
+
+
+def test_what_is_set_for_an_exhibit_is_told_in_the_words_of_the_panel(tmp_path):
+    read = exhibit_of(tmp_path, GOOD.replace("case:", "rough: true\ncase:"))
+    config = with_settings(METHODS[read.method].defaults, read.settings)
+    assert rows(read, config) == [
+        ("sample", "office_r2_r1, badly measured"),
+        ("method", METHODS["spectra-swarm"].title),
+        ("twins", "off"),
+    ]
 
 
 def exhibit_of(folder: Path, text: str) -> Exhibit:

@@ -16,12 +16,12 @@ from algorithms.gridmap import FREE, OCCUPIED, GridMap
 from algorithms.methods import METHODS, run
 from algorithms.pose import Pose2
 from algorithms.spectra import hough_transform
-from algorithms.steps import HoughDetail, MergeResult, ShiftDetail
+from algorithms.steps import HoughDetail, MergeResult, RefineDetail, ShiftDetail, Step
 from app.inputs import Inputs
 from app.layout import lay_out
 from app.lesson import equations
 from app.lesson.numbers import NUMBERS, numbers_of
-from app.lesson.study import FEW, Study
+from app.lesson.study import FEW, Study, keep
 from app.lesson.texts import PLACEHOLDER, files, filled, lesson_folder, read_step
 from app.palette import DARK, LIGHT
 from app.pictures.book import PICTURES, Dial, place_of, shown
@@ -35,9 +35,10 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 def study_of(case: Case) -> Study:
-    inputs = Inputs.of(case)
-    steps = run("spectra-proven", case.ref, case.mov, case.observations, CONFIG)
-    return Study(inputs, CONFIG, 0, tuple(steps))
+    steps: list[Step] = []
+    for step in run("spectra-proven", case.ref, case.mov, case.observations, CONFIG):
+        keep(steps, step)
+    return Study(Inputs.of(case), CONFIG, 0, tuple(steps))
 
 
 @pytest.fixture(scope="module")
@@ -210,3 +211,15 @@ def test_the_readme_for_teachers_names_every_picture_and_every_number():
     told = (lesson_folder().parent / "README.md").read_text(encoding="utf-8")
     assert {name for name in PICTURES if f"`{name}`" not in told} == set()
     assert {name for name in NUMBERS if f"`{{{name}}}`" not in told} == set()
+
+
+def test_of_each_search_one_snapshot_is_kept_and_nothing_else_is_left_out(study, small_case):
+    told = run("spectra-proven", small_case.ref, small_case.mov, small_case.observations, CONFIG)
+    every = [step.detail for step in told]
+    kept = [step.detail for step in study.steps]
+    searches = [detail for detail in kept if isinstance(detail, RefineDetail)]
+    assert [detail.index for detail in searches] == list(range(CONFIG.refine.candidates))[: len(searches)]
+    assert all(detail.state.stopped for detail in searches)
+    others = [[type(d) for d in some if not isinstance(d, RefineDetail)] for some in (every, kept)]
+    assert others[0] == others[1]
+    assert sum(isinstance(detail, RefineDetail) for detail in every) > len(searches)

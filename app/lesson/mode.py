@@ -17,7 +17,7 @@ from algorithms.steps import Step
 from app.inputs import Inputs
 from app.layout import Layout
 from app.lesson.numbers import NUMBERS, numbers_of
-from app.lesson.study import Study
+from app.lesson.study import Study, keep
 from app.lesson.texts import StepText, files, filled, read_step, with_settings
 from app.palette import Palette
 from app.panels.lesson import LessonPanel, LessonWishes
@@ -232,10 +232,10 @@ class Lesson:
         return self._study.inputs.complete and isinstance(self._study.config, PipelineConfig)
 
     def _record(self, *how: Any) -> Iterator[Step]:
-        """Run a method and keep every step of it."""
+        """Run a method and keep its steps."""
         self._steps = steps = []
         for step in methods.run(*how):
-            steps.append(step)
+            keep(steps, step)
             yield step
 
     def begun(self, job: Job) -> None:

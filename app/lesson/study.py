@@ -33,6 +33,17 @@ FEW = 14  # particles: so many can be followed by eye
 DRAWS = 60  # batches of the Monte-Carlo search that are looked at
 
 
+def keep(steps: list[Step], step: Step) -> None:
+    """Add a step of a run; of the search on one candidate the newest alone, or a long one would fill the
+    memory.
+    """
+    if steps:
+        last, new = steps[-1].detail, step.detail
+        if isinstance(last, RefineDetail) and isinstance(new, RefineDetail) and last.index == new.index:
+            steps.pop()
+    steps.append(step)
+
+
 class Study:
     """One run, as far as it has come. Everything drawn from it is worked out once, when asked for.
 
@@ -113,8 +124,3 @@ class Study:
         settled = settled_within(self.get(CandidatesDetail).objective.cell)
         rng = np.random.default_rng([self.seed, 3])
         return list(swarm(self._values, self.box, config, settled, rng))
-
-    @property
-    def refined(self) -> list[RefineDetail]:
-        """The run's own swarm on the best candidate."""
-        return [detail for detail in self.all(RefineDetail) if detail.index == 0]
