@@ -473,6 +473,8 @@ class Page(Handling, Learning):
 
     def _draw(self, story: Story, live: bool, look: bool = False) -> None:
         view, camera = self._run.view, self._run.follow
+        if look and view == MAP and (self._placing.active or self._hand.active):
+            self._stage.look_down(self._maps.extent())
         if view == MAP and self._placing.active:
             self._placing.redraw()
         elif view == MAP and self._hand.active:

@@ -31,17 +31,22 @@ class GridImage:
         half = grid.origin.theta / 2
         if self._handle is not None:
             self._handle.remove()
+        x, y, height = self._position(anchor)
         self._handle = self._scene.add_image(
             self._name,
             picture.pixels,
             float(size[0]),
             float(size[1]),
             format="png",
-            position=self._position(anchor),
-            wxyz=(cos(half), 0.0, 0.0, sin(half)),
+            position=(x + 1.0, y, height),
+            wxyz=(0.0, 0.0, 0.0, 1.0),
             cast_shadow=False,
             receive_shadow=False,
         )
+        # viser does not tell a new node's pose where it is the default one, and the browser then keeps
+        # that of the last node of this name: moved from elsewhere, it is always told
+        self._handle.position = x, y, height
+        self._handle.wxyz = (cos(half), 0.0, 0.0, sin(half))
 
     def move(self, anchor: FloatArray) -> None:
         """Put the picture where another point of the grid's frame lies at the parent's origin."""

@@ -198,6 +198,11 @@ def test_a_hand_is_refined_snapped_left_and_a_reload_keeps_it(tab):
     proven = settle(lambda: tab.number("T: Δx"), "the answer")
     tab.press("Move map 2 by hand")
     settle(lambda: tab.state.startswith("By hand, would be merged: "), "map 2 in the hand")
+    tab.press("Heights")
+    settle(lambda: tab.layer("floor"), "the heights")
+    tab.press("Map")
+    settle(lambda: tab.layer("grip") and tab.page.evaluate("() => mapmeld.view") == "map", "the map again")
+    tab.page.wait_for_function("() => !mapmeld.layers.floor")
     drag(tab, at_mov(tab, (1.5, -1.0)), (9, 6))
     settle(lambda: tab.state.startswith("By hand, would be refused: "), "half a metre off")
     tab.press("Refine from here")
@@ -273,6 +278,22 @@ def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab
 
         tab.press("Done")
         settle(lambda: tab.state == "Ready. Press Merge.", "the end of it")
+        tab.press("Move the robots by hand")  # floor and walls move to the map's middle together
+        lies = (
+            "(name) => { const at = window.__viserMutable.nodeRefFromName[name]?.position; "
+            "return at && [at.x, at.y]; }"
+        )
+        for number in ("ref", "mov"):
+            floor, walls = f"/world/{number}/free", f"/world/{number}/walls"
+            settle(
+                lambda f=floor, w=walls: (
+                    tab.page.evaluate(lies, f) == pytest.approx(tab.page.evaluate(lies, w), abs=1e-6)
+                ),
+                "floor under walls",
+            )
+        assert tab.page.evaluate(lies, "/world/ref/free") == pytest.approx([0, 0], abs=1e-6)
+        tab.press("Done")
+        settle(lambda: tab.state == "Ready. Press Merge.", "the end of it again")
         tab.press("Instant")
         tab.press("Merge")
         tab.wait_for("accepted")
