@@ -263,6 +263,11 @@ def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab
         box = tab.page.get_by_label("range r (m)", exact=True)
         box.fill(f"{o.range:.2f}")
         box.press("Enter")
+        sight = (
+            "() => { const p = (id) => mapmeld.hand.grips.find((g) => g.id === id).p, "
+            "a = p('observer'), b = p('seen'); return Math.hypot(a[0] - b[0], a[1] - b[1]); }"
+        )
+        settle(lambda: tab.page.evaluate(sight) == pytest.approx(o.range, abs=0.006), "the typed range")
         tab.press("Add another observation")
         settle(lambda: tab.state.startswith("1 of 3: "), "another one")
         tab.press("Remove this observation")
