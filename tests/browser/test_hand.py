@@ -288,6 +288,8 @@ def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab
             "(name) => { const at = window.__viserMutable.nodeRefFromName[name]?.position; "
             "return at && [at.x, at.y]; }"
         )
+        middle = pytest.approx([0, 0], abs=1e-6)
+        settle(lambda: tab.page.evaluate(lies, "/world/ref/free") == middle, "map 1 around its middle")
         for number in ("ref", "mov"):
             floor, walls = f"/world/{number}/free", f"/world/{number}/walls"
             settle(
@@ -296,7 +298,6 @@ def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab
                 ),
                 "floor under walls",
             )
-        assert tab.page.evaluate(lies, "/world/ref/free") == pytest.approx([0, 0], abs=1e-6)
         tab.press("Done")
         settle(lambda: tab.state == "Ready. Press Merge.", "the end of it again")
         tab.press("Instant")
