@@ -40,6 +40,7 @@ class Keep:
         self._grace, self._most, self._clock = grace, most, clock
         self._here: dict[str, Leave] = {}
         self._away: OrderedDict[str, tuple[float, Kept]] = OrderedDict()
+        self._sweeping = False  # whether a timer is set
         self._lock = Lock()
 
     def enter(self, key: str, again: bool, leave: Leave) -> tuple[str, Kept | None]:
@@ -72,14 +73,24 @@ class Keep:
         with self._lock:
             self._away[key] = self._clock(), kept
             self._forget()
-        timer = Timer(self._grace, self.forget)
-        timer.daemon = True
-        timer.start()
+            self._sweep_later()
 
-    def forget(self) -> None:
+    def sweep(self) -> None:
         """Let go of what nobody came back for."""
         with self._lock:
+            self._sweeping = False
             self._forget()
+            self._sweep_later()
+
+    def _sweep_later(self) -> None:
+        """One timer for all: it is set for the tab that is away longest."""
+        if self._sweeping or not self._away:
+            return
+        self._sweeping = True
+        since, _ = next(iter(self._away.values()))
+        timer = Timer(max(1.0, since + self._grace - self._clock()), self.sweep)
+        timer.name, timer.daemon = "mapmeld-keep", True
+        timer.start()
 
     def _forget(self) -> None:
         old = self._clock() - self._grace

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from gc import collect
+from threading import enumerate as enumerate_threads
+from weakref import ref
 
 import numpy as np
 import pytest
@@ -231,6 +234,24 @@ def test_only_so_many_are_kept_and_the_longest_away_goes_first(clock):
     for key in keys:
         keep.leave(key)
     assert [keep.enter(key, False, kept)[1] is not None for key in keys] == [False, False, True, True, True]
+
+
+def test_what_nobody_came_back_for_is_let_go_of_by_one_timer_for_all(clock):
+    before = sum(thread.name == "mapmeld-keep" for thread in enumerate_threads())
+    keep = Keep(grace=10_000, clock=clock)
+    left = kept()
+    gone = ref(left)
+    key, _ = keep.enter("", False, lambda box=[left]: box.pop())
+    del left
+    for _ in range(5):
+        keep.leave(keep.enter("", False, kept)[0])
+    keep.leave(key)
+    assert sum(thread.name == "mapmeld-keep" for thread in enumerate_threads()) == before + 1
+    assert gone() is not None
+    clock.now += 10_000
+    keep.sweep()
+    collect()
+    assert gone() is None
 
 
 def test_keys_are_long_and_never_the_same():
