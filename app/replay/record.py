@@ -21,6 +21,7 @@ from app.palette import LIGHT
 from app.panels.observation import numbers as sighting
 from app.panels.result import STAGES, numbers
 from app.panels.run import MAP
+from app.panels.tables import typeset
 from app.player import FRAME, dwell
 from app.replay.curves import curves
 from app.replay.pictures import PictureScene
@@ -117,7 +118,7 @@ def record(steps: Iterable[Step], inputs: Inputs, config: Any) -> Recording:
         if result is not None:
             break
     assert result is not None
-    rows = [list(row) for row in numbers(result, inputs, config)]
+    rows = _typeset(numbers(result, inputs, config))
     mood = "accepted" if result.verdict.accepted else "refused"
     stage.hud(mood=mood, state=result.verdict.reason)
     stage.extra(table={"rows": rows, "says": words.remedy(result, config), "mood": mood})
@@ -145,7 +146,11 @@ def observed(inputs: Inputs) -> dict[str, Any]:
     """The numbers of the first sighting."""
     o, at = inputs.observations[0], inputs.encounters[0]
     of = f", the first of {len(inputs.observations)}" if len(inputs.observations) > 1 else ""
-    return {"title": f"What robot 1 saw{of}", "rows": [list(row) for row in sighting(o, at)]}
+    return {"title": f"What robot 1 saw{of}", "rows": _typeset(sighting(o, at))}
+
+
+def _typeset(rows: Iterable[tuple[str, ...]]) -> list[list[str]]:
+    return [[name, *map(typeset, values)] for name, *values in rows]
 
 
 def _draw(story: Story, stage: Recorder, maps: MapView, inputs: Inputs, config: Any) -> None:
