@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 from threading import RLock
-from typing import Any, Protocol
+from typing import Any
 
 import viser
 
@@ -15,61 +15,20 @@ from algorithms.methods import DEFAULT_METHOD, METHODS
 from algorithms.pipeline import PipelineConfig
 from algorithms.steps import Step
 from app.inputs import Inputs
-from app.layout import Layout
+from app.lesson.hosts import Host
 from app.lesson.numbers import NUMBERS, numbers_of
 from app.lesson.study import Study, keep
 from app.lesson.texts import StepText, files, filled, read_step, with_settings
-from app.palette import Palette
 from app.panels.lesson import LessonPanel, LessonWishes
 from app.panels.tuning import TuningPanel
 from app.pictures.book import PICTURES, Dial
 from app.session import Job, Session
-from app.stage import Item
 from app.story import Story
 
 OWN = "Your own settings and results come back when you leave."
 WAIT = "Working it out on these maps …"
 NO_MAPS = "Load two maps and an observation: the lesson is about them."
 NOT_HERE = "The method as it is set does not come to this. Choose another method, or put its settings back."
-
-
-class Host(Protocol):
-    """What the lesson needs of the page."""
-
-    session: Session
-
-    @property
-    def inputs(self) -> Inputs:
-        """What is loaded."""
-
-    @property
-    def layout(self) -> Layout:
-        """Where it lies in the scene."""
-
-    @property
-    def palette(self) -> Palette:
-        """The colours of the page."""
-
-    @property
-    def seed(self) -> int:
-        """Where the luck comes from."""
-
-    def present(
-        self, story: Story, says: str, ink: list[Item], turn: float | None, look: bool, busy: bool
-    ) -> None:
-        """Show a run, as far as a story goes, on the map."""
-
-    def entered(self, open_: bool) -> None:
-        """The lesson was opened or closed."""
-
-    def came_back(self) -> None:
-        """Show again what there was before the lesson."""
-
-    def method_shown(self, method: str) -> None:
-        """The lesson has chosen a method."""
-
-    def report(self, error: MapMergeError) -> None:
-        """Tell the person what is wrong."""
 
 
 class Lesson:

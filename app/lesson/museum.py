@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from threading import RLock
-from typing import Any, Protocol
+from typing import Any
 
 import viser
 
@@ -15,32 +15,10 @@ from algorithms.steps import MergeResult
 from app.controls import settings_of, value_at, word_for
 from app.desk import Desk
 from app.inputs import Inputs
+from app.lesson.hosts import Hall
 from app.lesson.texts import Exhibit, Settings, exhibit_case, files, read_exhibit, with_settings
 from app.panels.museum import MuseumPanel, MuseumWishes
 from app.words import apart_by
-
-
-class Hall(Protocol):
-    """What the museum needs of the page."""
-
-    @property
-    def desk(self) -> Desk | None:
-        """What is on the page."""
-
-    def hang(self, inputs: Inputs, method: str, config: Any, label: str) -> None:
-        """Put these maps and settings on the page, without merging them."""
-
-    def treat(self, method: str, config: Any) -> None:
-        """Take these settings, and merge."""
-
-    def museum_left(self, desk: Desk | None) -> None:
-        """Put back what was on the page before."""
-
-    def museum_entered(self, open_: bool) -> None:
-        """The museum was opened or closed."""
-
-    def report(self, error: MapMergeError) -> None:
-        """Tell the person what is wrong."""
 
 
 class Museum:
