@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import inf, radians
+from itertools import product
+from math import degrees, hypot, inf, radians
 from typing import Any
 
 import numpy as np
 
+from algorithms.agreement import AgreementConfig, make_agreement
+from algorithms.augment import AugmentConfig
 from algorithms.chain import Chain
 from algorithms.conclude import conclude
 from algorithms.errors import SettingError
@@ -42,8 +45,21 @@ from algorithms.window import Box, CoupledWindow, coupled_window
 
 BY_HAND = "by hand"
 ELSEWHERE = 0.5, radians(3)  # metres, radians: from here on another answer is another one
+AS_GOOD = 0.8  # of the best value nearby; less is not the top of the hill: some 5 cm or 1° off it
 FAR_BETTER = 100.0  # share of a rival of what is worth nothing, or next to nothing
 UNSURE = np.diag([1.0, 1.0, radians(5)]) ** 2  # (3, 3) of a method without an objective; m², rad²
+
+
+def _nearby() -> FloatArray:
+    """(N, 3) steps in x, y, theta to the surroundings of a place, the place itself first; m, rad."""
+    wide, fine = np.arange(-4, 5) * 0.15, np.arange(-2, 3) * 0.05
+    steps = [(0.0, 0.0, 0.0)]
+    steps += product(wide.tolist(), wide.tolist(), np.radians([-4, -2, 0, 2, 4]).tolist())
+    steps += product(fine.tolist(), fine.tolist(), np.radians([-1, 0, 1]).tolist())
+    return np.array(steps)
+
+
+NEARBY = _nearby()
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +122,7 @@ class Scales:
             method=BY_HAND,
             seed=seed,
             rivals=self._rivals(T, value),
+            doubts=self._doubts(T),
             margin=config.window.margin if isinstance(config, PipelineConfig) else 0.0,
         )
 
@@ -120,6 +137,32 @@ class Scales:
             if (distance > ELSEWHERE[0] or turn > ELSEWHERE[1]) and worth > 0 and share > RIVAL_FLOOR:
                 told.append((other, share))
         return told
+
+    @cached_property
+    def _yardstick(self) -> Objective:
+        """What a place is held against its surroundings with, also for a method that maximises nothing."""
+        if self.objective is not None:
+            return self.objective
+        return make_agreement(self.ref, self.mov, self.encounters, AugmentConfig(), AgreementConfig())
+
+    def _doubts(self, T: Pose2) -> list[str]:
+        """What speaks against a transform that no search has taken to the top of its hill.
+
+        The verdict lets patches of bent maps slip by half a metre, so by itself it would take a right
+        answer that is half a metre off for a right one.
+        """
+        at = np.append(T.apply(self.encounters[0].x_mov), T.theta)
+        near = Box(at, at, self.encounters[0].x_mov).transforms(at + NEARBY)
+        here, *values = self._yardstick(near).tolist()
+        if here <= 0:
+            return ["near the encounter more wall contradicts than agrees"]
+        best = int(np.argmax(values)) + 1
+        if here >= AS_GOOD * values[best - 1]:
+            return []
+        x, y, turn = NEARBY[best].tolist()
+        return [
+            f"the walls fit better {hypot(x, y):.2f} m and {abs(degrees(turn)):.0f}° from there: refine it"
+        ]
 
     def _covariance(self, T: Pose2, weighed: Evidence) -> FloatArray:
         if self.objective is None:

@@ -55,6 +55,18 @@ def test_a_wrong_hand_is_refused_and_told_that_another_answer_fits_better(scales
     assert "another answer, 90° apart, fits better" in verdict.reason or "too little" in verdict.reason
 
 
+@pytest.mark.parametrize("method", ["spectra-proven", "spectra-swarm", "bilateral"])
+@pytest.mark.parametrize(("dx", "dy", "turn"), [(0.4, 0.0, 0.0), (0.0, -0.25, 0.0), (0.1, 0.1, 3.0)])
+def test_a_hand_beside_the_right_place_is_refused_although_bent_maps_may_slip_so_far(
+    small_case, result, method, dx, dy, turn
+):
+    beside = about(result.T_ref_mov, result.encounter.x_mov, dx, dy, radians(turn))
+    config = METHODS[method].defaults
+    verdict = Scales(small_case.ref, small_case.mov, small_case.observations, config).weigh(beside).verdict
+    assert not verdict.accepted
+    assert "fit better" in verdict.reason or "more wall contradicts than agrees" in verdict.reason
+
+
 def test_a_hand_far_off_the_sighting_is_told_so(scales, result):
     away = about(result.T_ref_mov, result.encounter.x_mov, 3.0, 0.0, 0.0)
     assert "standard deviations from where it was seen" in scales.weigh(away).verdict.reason

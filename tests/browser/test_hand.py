@@ -178,6 +178,9 @@ def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(ta
     settle(lambda: field(tab, "T: Δx (m)") == pytest.approx(x + 0.05, abs=0.012), "one cell to the right")
     tab.page.keyboard.press("[")
     settle(lambda: field(tab, "T: Δθ (°)") == pytest.approx(turn + 0.5, abs=0.012), "half a degree")
+    tab.page.keyboard.press("]")
+    tab.page.keyboard.press("ArrowLeft")
+    settle(lambda: field(tab, "T: Δx (m)") == pytest.approx(x, abs=0.012), "both back")
 
     tab.press("Take this as the answer")
     settle(lambda: tab.state.startswith("By hand. Merged: "), "the answer")
