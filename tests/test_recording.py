@@ -236,3 +236,10 @@ def test_what_cannot_be_recorded_is_refused_with_a_remedy(more, finding, tmp_pat
     assert left.value.code == 2
     assert finding in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_pictures_lie_where_the_cells_are(small_case, recording):
+    floor = next(picture for picture in recording["pictures"] if picture["frame"] == "scene")
+    grid, anchor = small_case.ref, Inputs.of(small_case).at.x_ref
+    middle = grid.origin.apply(np.array([grid.width, grid.height]) * grid.resolution / 2) - anchor
+    assert floor["at"] == pytest.approx([*middle.tolist(), grid.origin.theta], abs=1e-3)

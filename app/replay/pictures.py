@@ -15,11 +15,24 @@ FRAMES = {"ref": "scene", "mov": "mov", "ghost": "ghost"}  # of the scene's tree
 
 
 class PictureHandle:
-    """A picture that lies in the scene."""
+    """A picture that lies in the scene; where it lies in the end is what is recorded."""
 
-    def __init__(self, number: int, height: float, scene: PictureScene) -> None:
-        self.number, self.height, self.visible = number, height, True
+    def __init__(
+        self,
+        number: int,
+        position: tuple[float, float, float],
+        wxyz: tuple[float, ...],
+        scene: PictureScene,
+    ) -> None:
+        self.number, self.visible = number, True
+        self.position, self.wxyz = position, wxyz
         self._scene = scene
+
+    @property
+    def at(self) -> list[float]:
+        """Its middle in its frame, metres, and its turn, radians."""
+        x, y, _ = self.position
+        return [round(x, 4), round(y, 4), round(yaw(self.wxyz), 6)]
 
     def remove(self) -> None:
         """It is not shown any more; what was recorded of it stays."""
@@ -43,7 +56,8 @@ class PictureScene:
     """Every picture once, in the order they came, and which of them are seen at the moment."""
 
     def __init__(self) -> None:
-        self.pictures: list[dict[str, Any]] = []
+        self._pictures: list[dict[str, Any]] = []
+        self._handles: list[PictureHandle] = []
         self.shown: list[PictureHandle] = []
         self.ghost: FrameHandle | None = None
 
@@ -66,24 +80,30 @@ class PictureScene:
         **_: Any,
     ) -> PictureHandle:
         """A picture with its middle at ``position`` of its frame; metres."""
-        x, y, height = position
-        self.pictures.append(
+        self._pictures.append(
             {
                 "frame": FRAMES[name.split("/")[2]],
                 "data": data_uri(pixels),
-                "at": [round(x, 4), round(y, 4), round(yaw(wxyz), 6)],
                 "size": [round(wide, 4), round(high, 4)],
                 "thin": "free" not in name,
             }
         )
-        handle = PictureHandle(len(self.pictures) - 1, height, self)
+        handle = PictureHandle(len(self._handles), position, wxyz, self)
+        self._handles.append(handle)
         self.shown.append(handle)
         return handle
 
     @property
+    def pictures(self) -> list[dict[str, Any]]:
+        """Every picture with the place that it was given last."""
+        return [
+            picture | {"at": handle.at} for picture, handle in zip(self._pictures, self._handles, strict=True)
+        ]
+
+    @property
     def seen(self) -> list[int]:
         """Numbers of the pictures that are seen, the lowest first."""
-        return [h.number for h in sorted(self.shown, key=lambda handle: handle.height) if h.visible]
+        return [h.number for h in sorted(self.shown, key=lambda handle: handle.position[2]) if h.visible]
 
 
 def yaw(wxyz: tuple[float, ...]) -> float:
