@@ -38,7 +38,10 @@
       if (M.line && !fixed) { set(M.line.a, place(e)); fixed = true; } // the second place
       else { set(place(e), place(e)); fixed = false; }
     };
-    sheet.onpointermove = (e) => { if (M.line && !fixed) set(M.line.a, place(e)); };
+    sheet.onpointermove = (e) => {
+      if (M.line && !fixed) set(M.line.a, place(e));
+      canvas.dispatchEvent(new PointerEvent(e.type, { clientX: e.clientX, clientY: e.clientY })); // where it is
+    };
     sheet.onpointerup = (e) => { // a drag ends where it is let go; a click waits for the second place
       if (pressed && Math.hypot(e.clientX - pressed[0], e.clientY - pressed[1]) > 4) fixed = true;
       pressed = null;
@@ -62,7 +65,11 @@
   function paint(g, view) {
     if (!M.on || S.view !== "map") return;
     const colour = S.dark ? "#F9FAFB" : "#111827";
-    if (!M.line) return;
+    if (!M.line) {
+      const head = document.querySelector("#mapmeld-hud .mm-head");
+      words(g, view, "Two places, or a drag from one to the other. Esc ends it.", view.wide / 2, head.offsetTop + head.offsetHeight + 16, colour, 12, "center");
+      return;
+    }
     const a = view.project("scene", M.line.a), b = view.project("scene", M.line.b);
     const along = Math.atan2(b[1] - a[1], b[0] - a[0]), nx = -6 * Math.sin(along), ny = 6 * Math.cos(along);
     for (const [width, stroke] of [[5, S.dark ? "rgba(17,24,39,.9)" : "rgba(255,255,255,.95)"], [2, "#CC79A7"]]) {
@@ -71,12 +78,28 @@
       for (const [x, y] of [a, b]) { g.moveTo(x - nx, y - ny); g.lineTo(x + nx, y + ny); }
       g.stroke(); g.lineCap = "butt";
     }
-    // beside the middle, on the side that is up, so that the line is never written over
-    const up = ny > 0 ? -1 : 1, far = 17 + 26 * Math.abs(Math.sin(along));
-    const x = (a[0] + b[0]) / 2 + up * nx / 6 * far, y = (a[1] + b[1]) / 2 + up * ny / 6 * far;
     const [dx, dy] = [M.line.b[0] - M.line.a[0], M.line.b[1] - M.line.a[1]];
-    words(g, view, `${text(M.line.metres, M.line.metres < 10 ? 3 : 2)} m  at ${text(M.line.degrees, 1)}°`, x, y - 7, colour, 14, "center");
-    words(g, view, `Δx ${text(dx, 2)} m, Δy ${text(dy, 2)} m in map 1`, x, y + 8, colour, 11, "center");
+    plate(g, view, [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], along, [
+      [`${text(M.line.metres, M.line.metres < 10 ? 3 : 2)} m  at ${text(M.line.degrees, 1)}°`, 14],
+      [`Δx ${text(dx, 2)} m, Δy ${text(dy, 2)} m in map 1`, 11],
+    ]);
+  }
+  // Lines of text on a plate beside a line on the map: on the side that is up, and never over it.
+  function plate(g, view, [x, y], along, lines) {
+    const colour = view.dark ? "#F9FAFB" : "#111827", pad = 7, high = lines.length * 17 + pad;
+    const wide = 2 * pad + Math.max(...lines.map(([said, size]) => {
+      g.font = `${size}px system-ui, "Segoe UI", sans-serif`;
+      return g.measureText(said).width;
+    }));
+    let [nx, ny] = [-Math.sin(along), Math.cos(along)];
+    if (ny > 0) [nx, ny] = [-nx, -ny];
+    const off = Math.abs(nx) * wide / 2 + Math.abs(ny) * high / 2 + 9;
+    const within = (at, half, most) => Math.min(most - half - 4, Math.max(half + 4, at));
+    const cx = within(x + off * nx, wide / 2, view.wide), cy = within(y + off * ny, high / 2, view.high);
+    g.beginPath(); g.roundRect(cx - wide / 2, cy - high / 2, wide, high, 6);
+    g.fillStyle = view.dark ? "rgba(31,41,55,.94)" : "rgba(255,255,255,.94)"; g.fill();
+    g.setLineDash([]); g.lineWidth = 1; g.strokeStyle = "#CC79A7"; g.stroke();
+    lines.forEach(([said, size], k) => words(g, view, said, cx, cy + (k - (lines.length - 1) / 2) * 17, colour, size, "center"));
   }
   let seenView = "";
   function frame() { if (S.view !== seenView) { seenView = S.view; show(); } }
