@@ -53,6 +53,18 @@ def seen_at(tab: Tab, place: tuple[float, float], colour: tuple[int, ...], what:
     settle(lambda: tab.colour_at(place) == colour, f"{what}; it is {tab.colour_at(place)}")
 
 
+def at_rest(tab: Tab) -> list[float]:
+    """Where the scene's zero is in the window, once the camera has come to rest."""
+    seen: list[list[float]] = []
+
+    def rests() -> bool:
+        seen.append(tab.page.evaluate("() => window.mapmeld.pixel([0, 0])"))
+        return len(seen) > 8 and seen[-8:] == seen[-1:] * 8
+
+    settle(rests, "the camera to rest")
+    return seen[-1]
+
+
 def metre(tab: Tab) -> float:
     """Pixels of a metre on the map."""
     ends = "() => [window.mapmeld.pixel([0, 0]), window.mapmeld.pixel([1, 0])]"
@@ -68,14 +80,15 @@ def test_a_curtain_has_map_1_to_its_left_and_map_2_to_its_right_wherever_it_is_d
     handle = merged.page.get_by_role("slider", name="Curtain between map 1 and map 2")
     box = handle.bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    before = merged.page.evaluate("() => window.mapmeld.pixel([0, 0])")
+    before = at_rest(merged)
     merged.page.mouse.move(x, y)
     merged.page.mouse.down()
     merged.page.mouse.move(merged.page.evaluate("() => window.mapmeld.pixel([2.5, 0])")[0], y, steps=6)
     seen_at(merged, FOOT, LIGHT.ref, "map 1 where map 2 was")
     seen_at(merged, BLOCK, LIGHT.free, "no block in map 1")
     merged.page.mouse.up()
-    assert merged.page.evaluate("() => window.mapmeld.pixel([0, 0])") == before  # the map was not dragged
+    stayed = merged.page.evaluate("() => window.mapmeld.pixel([0, 0])")
+    assert stayed == pytest.approx(before, abs=0.01)  # the map was not dragged
     assert merged.page.evaluate("() => window.mapmeld.hud.readout || ''") == ""  # nor clicked
     for _ in range(9):
         merged.page.keyboard.press("PageDown")
@@ -147,7 +160,7 @@ def test_a_distance_is_measured_with_two_clicks_or_a_drag_and_the_map_stays_wher
     def line() -> dict[str, float] | None:
         return tab.page.evaluate("() => window.mapmeld.measure.line")
 
-    before = settle(lambda: at(0, 0), "the map")
+    before = at_rest(tab)
     tab.press("Measure")
     tab.page.mouse.click(*at(0, 0))
     tab.page.mouse.click(*at(3, -4))
@@ -162,7 +175,7 @@ def test_a_distance_is_measured_with_two_clicks_or_a_drag_and_the_map_stays_wher
     tab.page.mouse.up()
     assert line()["metres"] == pytest.approx(2.0, abs=0.01)
     assert line()["degrees"] == pytest.approx(90.0, abs=0.5)
-    assert at(0, 0) == before
+    assert at(0, 0) == pytest.approx(before, abs=0.01)
     assert tab.page.evaluate("() => window.mapmeld.hud.readout || ''") == ""
     near = metre(tab)
     tab.page.mouse.wheel(0, -200)
