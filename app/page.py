@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from functools import partial
 from pathlib import Path
 from threading import RLock
 from typing import Any, Literal
@@ -12,21 +11,19 @@ import numpy as np
 import viser
 
 from algorithms.casefiles import Case
-from algorithms.conflicts import Conflicts, find_conflicts
+from algorithms.conflicts import Conflicts
 from algorithms.errors import MapMergeError, TooLargeError
-from algorithms.handmade import BY_HAND
-from algorithms.steps import AugmentDetail, MergeResult, RefineDetail
+from algorithms.steps import MergeResult, RefineDetail
 from app import words
 from app.channel import Channel
 from app.comparison import MODES, Comparison
 from app.desk import Desk
-from app.export import Harvest
 from app.handling import Handling
 from app.inputs import Inputs
 from app.keep import Keep, Kept
 from app.layout import lay_out
 from app.learning import Learning
-from app.legend import in_hand, legend
+from app.legend import legend
 from app.palette import DARK, LIGHT, Palette
 from app.panels.export import ExportPanel
 from app.panels.files import FilesPanel
@@ -34,10 +31,10 @@ from app.panels.observation import ObservationPanel
 from app.panels.result import result_html
 from app.panels.run import HEIGHTS, MAP, SWARM, RunPanel, Wishes
 from app.panels.tuning import TuningPanel
-from app.replay import replay_of
 from app.session import Job, Session
 from app.stage import Stage, TabStage, mark
 from app.story import Story
+from app.telling import Telling
 from app.timeline import Timeline
 from app.views.ground import Mode
 from app.views.heights import HeightsView
@@ -50,7 +47,7 @@ log = logging.getLogger(__name__)
 LARGE = 2_000_000  # cells of a map that takes a while to draw
 
 
-class Page(Handling, Learning):
+class Page(Telling, Handling, Learning):
     """Listens to its session and draws; the callbacks of its widgets only ask."""
 
     def __init__(
@@ -384,128 +381,3 @@ class Page(Handling, Learning):
         if self._notice is not None:
             self._notice.remove()
         self._notice = self._client.add_notification(title, text, auto_close_seconds=12.0, color=colour)
-
-    # --- what the session tells -------------------------------------------------------------------
-
-    def begun(self, job: Job) -> None:
-        """A run starts."""
-        self._run.stop.disabled = False
-        if job.pace > 0:  # told step by step; a run at once leaves what is seen until it has ended
-            self._comparison.clear()
-        self._stage.hud(state="Starting.", mood="running", progress=0.0)
-        self._stage.flush()
-
-    def show(self, job: Job, story: Story) -> None:
-        """Draw the newest state."""
-        self._story = story
-        with self._client.atomic():
-            if job.pace > 0:
-                self._draw(story, live=True)
-            elif self._run.view == SWARM:
-                self._draw(story, live=False)
-            self._plots.show(story, follow=job.goal == "merge")
-            self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
-            self._stage.hud(state=words.sentence(story), mood="running", progress=words.progress(story))
-            self._stage.flush()
-
-    def ended(self, job: Job, story: Story) -> None:
-        """The run came to its goal."""
-        self._run.stop.disabled = True
-        result = story.get(MergeResult)
-        with self._client.atomic():
-            if result is not None and job.steps is not None:
-                self._refined(story, result)
-            elif result is None:
-                self._story = story
-                self._plots.show(story, follow=False)
-                self._maps_preview(job)
-                self._stage.hud(state=words.UP_TO_DATE, mood="idle", progress=None)
-            else:
-                self._answered(story, result, job.config, live=job.pace > 0)
-                self._timeline.amend(story)
-            self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
-            self._stage.flush()
-
-    def _answered(self, story: Story, result: MergeResult, config: Any, live: bool) -> None:
-        """Show an answer and everything that led to it."""
-        self._story, self._result, self._config = story, result, config
-        if result.method != BY_HAND:
-            self._method = story
-        self._plots.show(story, follow=True)
-        self._conflicts = find_conflicts(result.fusion)
-        self._plots.tell(result_html(result, self._inputs, config, self._conflicts))
-        self._export.offer(Harvest(result, self._inputs, config))
-        i = self._inputs
-        if result.method == BY_HAND:  # there was no run that could be told again
-            self._export.replay.visible(False)
-        elif i.ref is not None and i.mov is not None:
-            job = Job(i.ref, i.mov, i.observations, config, result.method, result.seed)
-            self._export.replay.offer(i.name, partial(replay_of, job, self.session.told_again, i))
-        self._draw(story, live=live)
-        self._comparison.offer(self._conflicts, self._palette)
-        self._stage.hud(mood="accepted" if result.verdict.accepted else "refused", progress=None)
-        self._say(story, result)
-        self._museum.told(self._inputs, result.method, config, result)
-
-    def stopped(self, job: Job, story: Story) -> None:
-        """Someone pressed Stop."""
-        self._run.stop.disabled = True
-        if self._maps.together:
-            self._comparison.offer(None, self._palette)
-        if job.steps is not None and self._refining is not None:
-            self._hand.take_up(*self._refining)
-            return
-        self._stage.hud(state=f"Stopped, unfinished. {words.sentence(story)}", mood="stopped", progress=None)
-        self._stage.flush()
-
-    def failed(self, job: Job, error: Exception) -> None:
-        """The run could not go on."""
-        self._run.stop.disabled = True
-        if isinstance(error, MapMergeError):
-            self._report(error)
-            return
-        text = f"A bug of mapmeld's ended the run ({type(error).__name__}); the server's log has the details."
-        self._notify("The run ended", text, "red")
-        self._stage.hud(state=text, mood="failed", progress=None)
-        self._stage.flush()
-
-    # --- drawing ----------------------------------------------------------------------------------
-
-    def _draw(self, story: Story, live: bool, look: bool = False) -> None:
-        view, camera = self._run.view, self._run.follow
-        if look and view == MAP and (self._placing.active or self._hand.active):
-            self._stage.look_down(self._maps.extent())
-        if view == MAP and self._placing.active:
-            self._placing.redraw()
-        elif view == MAP and self._hand.active:
-            self._hand.redraw()
-        elif view == MAP:
-            self._maps.show(story, self._tuning.config, camera or look, live)
-        elif view == HEIGHTS:
-            self._heights.show(story.get(AugmentDetail), self._palette, look)
-        else:
-            self._swarm.show(story, self._palette, look)
-        self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
-        self._tell_legend()
-
-    def _tell_legend(self) -> None:
-        """What the colours of the picture mean."""
-        view, mode = self._run.view, self._comparison.mode
-        held = view == MAP and self._hand.active and mode == "overlay"
-        usual = legend(self._palette, view, self._story, mode=mode)
-        self._stage.hud(legend=in_hand(self._palette) if held else usual)
-
-    def _say(self, story: Story, result: MergeResult) -> None:
-        """The verdict; over the swarm whether it found the proven optimum, and the verdict's first word."""
-        found, reason = words.found_it(story), result.verdict.reason
-        if result.method == BY_HAND:
-            reason = words.of_hand(result, taken=True)
-        brief = f"{found} {reason.split(':')[0]}."
-        self._stage.hud(state=brief if found and self._run.view == SWARM else reason)
-
-    def _maps_preview(self, job: Job) -> None:
-        if self._run.view == MAP:
-            self._maps.preview(self._story, job.config)
-            self._stage.hud(legend=legend(self._palette, MAP, self._story, preview=True))
-        elif self._run.view == HEIGHTS:
-            self._draw(self._story, live=False)

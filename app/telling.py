@@ -1,0 +1,197 @@
+"""The part of a page that its session tells of its work: what is drawn, and what is said of it."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Literal
+
+import viser
+
+from algorithms.conflicts import Conflicts, find_conflicts
+from algorithms.errors import MapMergeError
+from algorithms.handmade import BY_HAND
+from algorithms.steps import AugmentDetail, MergeResult
+from app import words
+from app.byhand import ByHand
+from app.comparison import Comparison
+from app.export import Harvest
+from app.inputs import Inputs
+from app.legend import in_hand, legend
+from app.lesson.museum import Museum
+from app.palette import Palette
+from app.panels.export import ExportPanel
+from app.panels.result import result_html
+from app.panels.run import HEIGHTS, MAP, SWARM, RunPanel
+from app.panels.tuning import TuningPanel
+from app.placing import Placing
+from app.replay import replay_of
+from app.session import Job, Session
+from app.stage import Stage
+from app.story import Story
+from app.timeline import Timeline
+from app.views.heights import HeightsView
+from app.views.maps import MapView
+from app.views.plots import PlotDock
+from app.views.swarm_space import SwarmSpaceView
+
+
+class Telling(ABC):
+    """Half of a Page, the session's listener; the attributes below are the other half's."""
+
+    session: Session
+    _client: viser.ClientHandle
+    _stage: Stage
+    _maps: MapView
+    _heights: HeightsView
+    _swarm: SwarmSpaceView
+    _plots: PlotDock
+    _comparison: Comparison
+    _run: RunPanel
+    _tuning: TuningPanel
+    _export: ExportPanel
+    _timeline: Timeline
+    _museum: Museum
+    _palette: Palette
+    _inputs: Inputs
+    _story: Story
+    _result: MergeResult | None
+    _config: Any
+    _conflicts: Conflicts | None
+    _method: Story | None
+    _hand: ByHand
+    _placing: Placing
+    _refining: Any  # what the hand had refined, and the callback for it: app/handling.py
+    _refined: Callable[[Story, MergeResult], None]
+
+    @abstractmethod
+    def _report(self, error: MapMergeError) -> None: ...
+
+    @abstractmethod
+    def _notify(self, title: str, text: str, colour: Literal["orange", "red"]) -> None: ...
+
+    # --- what the session tells -------------------------------------------------------------------
+
+    def begun(self, job: Job) -> None:
+        """A run starts."""
+        self._run.stop.disabled = False
+        if job.pace > 0:  # told step by step; a run at once leaves what is seen until it has ended
+            self._comparison.clear()
+        self._stage.hud(state="Starting.", mood="running", progress=0.0)
+        self._stage.flush()
+
+    def show(self, job: Job, story: Story) -> None:
+        """Draw the newest state."""
+        self._story = story
+        with self._client.atomic():
+            if job.pace > 0:
+                self._draw(story, live=True)
+            elif self._run.view == SWARM:
+                self._draw(story, live=False)
+            self._plots.show(story, follow=job.goal == "merge")
+            self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
+            self._stage.hud(state=words.sentence(story), mood="running", progress=words.progress(story))
+            self._stage.flush()
+
+    def ended(self, job: Job, story: Story) -> None:
+        """The run came to its goal."""
+        self._run.stop.disabled = True
+        result = story.get(MergeResult)
+        with self._client.atomic():
+            if result is not None and job.steps is not None:
+                self._refined(story, result)
+            elif result is None:
+                self._story = story
+                self._plots.show(story, follow=False)
+                self._maps_preview(job)
+                self._stage.hud(state=words.UP_TO_DATE, mood="idle", progress=None)
+            else:
+                self._answered(story, result, job.config, live=job.pace > 0)
+                self._timeline.amend(story)
+            self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
+            self._stage.flush()
+
+    def _answered(self, story: Story, result: MergeResult, config: Any, live: bool) -> None:
+        """Show an answer and everything that led to it."""
+        self._story, self._result, self._config = story, result, config
+        if result.method != BY_HAND:
+            self._method = story
+        self._plots.show(story, follow=True)
+        self._conflicts = find_conflicts(result.fusion)
+        self._plots.tell(result_html(result, self._inputs, config, self._conflicts))
+        self._export.offer(Harvest(result, self._inputs, config))
+        i = self._inputs
+        if result.method == BY_HAND:  # there was no run that could be told again
+            self._export.replay.visible(False)
+        elif i.ref is not None and i.mov is not None:
+            job = Job(i.ref, i.mov, i.observations, config, result.method, result.seed)
+            self._export.replay.offer(i.name, partial(replay_of, job, self.session.told_again, i))
+        self._draw(story, live=live)
+        self._comparison.offer(self._conflicts, self._palette)
+        self._stage.hud(mood="accepted" if result.verdict.accepted else "refused", progress=None)
+        self._say(story, result)
+        self._museum.told(self._inputs, result.method, config, result)
+
+    def stopped(self, job: Job, story: Story) -> None:
+        """Someone pressed Stop."""
+        self._run.stop.disabled = True
+        if self._maps.together:
+            self._comparison.offer(None, self._palette)
+        if job.steps is not None and self._refining is not None:
+            self._hand.take_up(*self._refining)
+            return
+        self._stage.hud(state=f"Stopped, unfinished. {words.sentence(story)}", mood="stopped", progress=None)
+        self._stage.flush()
+
+    def failed(self, job: Job, error: Exception) -> None:
+        """The run could not go on."""
+        self._run.stop.disabled = True
+        if isinstance(error, MapMergeError):
+            self._report(error)
+            return
+        text = f"A bug of mapmeld's ended the run ({type(error).__name__}); the server's log has the details."
+        self._notify("The run ended", text, "red")
+        self._stage.hud(state=text, mood="failed", progress=None)
+        self._stage.flush()
+
+    # --- drawing ----------------------------------------------------------------------------------
+
+    def _draw(self, story: Story, live: bool, look: bool = False) -> None:
+        view, camera = self._run.view, self._run.follow
+        if look and view == MAP and (self._placing.active or self._hand.active):
+            self._stage.look_down(self._maps.extent())
+        if view == MAP and self._placing.active:
+            self._placing.redraw()
+        elif view == MAP and self._hand.active:
+            self._hand.redraw()
+        elif view == MAP:
+            self._maps.show(story, self._tuning.config, camera or look, live)
+        elif view == HEIGHTS:
+            self._heights.show(story.get(AugmentDetail), self._palette, look)
+        else:
+            self._swarm.show(story, self._palette, look)
+        self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
+        self._tell_legend()
+
+    def _tell_legend(self) -> None:
+        """What the colours of the picture mean."""
+        view, mode = self._run.view, self._comparison.mode
+        held = view == MAP and self._hand.active and mode == "overlay"
+        usual = legend(self._palette, view, self._story, mode=mode)
+        self._stage.hud(legend=in_hand(self._palette) if held else usual)
+
+    def _say(self, story: Story, result: MergeResult) -> None:
+        """The verdict; over the swarm whether it found the proven optimum, and the verdict's first word."""
+        found, reason = words.found_it(story), result.verdict.reason
+        if result.method == BY_HAND:
+            reason = words.of_hand(result, taken=True)
+        brief = f"{found} {reason.split(':')[0]}."
+        self._stage.hud(state=brief if found and self._run.view == SWARM else reason)
+
+    def _maps_preview(self, job: Job) -> None:
+        if self._run.view == MAP:
+            self._maps.preview(self._story, job.config)
+            self._stage.hud(legend=legend(self._palette, MAP, self._story, preview=True))
+        elif self._run.view == HEIGHTS:
+            self._draw(self._story, live=False)
