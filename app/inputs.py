@@ -42,6 +42,7 @@ class Inputs:
     name         : what to call the pair before a person
     truth        : the known answer of a sample
     bare         : numbers of the maps whose image is there, and nothing that says what it shows
+    imageless    : numbers of the maps whose YAML file is there, and the image it names is not
     """
 
     ref: GridMap | None = None
@@ -50,6 +51,7 @@ class Inputs:
     name: str = ""
     truth: Truth | None = None
     bare: tuple[int, ...] = ()
+    imageless: Mapping[int, str] = field(default_factory=dict)
 
     @property
     def encounters(self) -> tuple[Encounter, ...]:
@@ -73,6 +75,9 @@ class Inputs:
                 f"Map {self.bare[0]}'s image has no YAML file yet: load it, or fill in the form below the "
                 "image and press “Use this map”."
             )
+        if self.imageless:
+            number, image = next(iter(self.imageless.items()))
+            return f"Map {number}'s YAML file is here. Load its image, too: {image}."
         if self.ref is None and self.mov is None:
             if not self.observations:
                 return "Choose a sample, or load two maps and an observation."

@@ -91,5 +91,6 @@ def legend(
     if isinstance(detail, (WindowDetail, ShiftDetail)):
         return [*maps, _chip("diamond", palette.particle, "robot 2 under a candidate")]
     if isinstance(detail, (AugmentDetail, HoughDetail, CandidatesDetail)) and augmented:
-        return [level_scale(augmented)] if not isinstance(detail, CandidatesDetail) else [*maps, best]
+        first = _chip("diamond", palette.best, "robot 2 under the best candidate")
+        return [*maps, first] if isinstance(detail, CandidatesDetail) else [level_scale(augmented)]
     return maps

@@ -99,11 +99,11 @@
   });
   function readings(g, view, camera, colour) { // what a click and the pointer read off the map
     const x = 18, y = view.high - 22;
-    if (S.hud.readout) words(g, view, S.hud.readout, x, y - 54, colour, 12);
+    if (S.hud.readout) words(g, view, S.hud.readout, x, y - 62, colour, 12);
     if (pointer && S.hud.anchor) {
       const x1 = (pointer[0] - view.wide / 2) / view.metre + camera.position.x + S.hud.anchor[0];
       const y1 = (view.high / 2 - pointer[1]) / view.metre + camera.position.y + S.hud.anchor[1];
-      words(g, view, `x ${x1.toFixed(2)} m   y ${y1.toFixed(2)} m   in map 1`, x, y - 34, colour, 11);
+      words(g, view, `x ${x1.toFixed(2)} m   y ${y1.toFixed(2)} m   in map 1`.replaceAll("-", "−"), x, y - 42, colour, 11);
     }
   }
   function paint(time) {

@@ -18,9 +18,9 @@ from app.inputs import Inputs
 from app.measure import measure_of
 from app.panels.places import MOST_PLACES, signed, summary, whose
 from app.panels.result import STAGES, numbers
-from app.panels.tables import typeset
 from app.pictures import outcome
 from app.publish import publish_command
+from app.words import typeset
 
 _STYLE = (Path(__file__).parent / "report.css").read_text(encoding="utf-8")
 # what the file may fetch, said to the browser: nothing; its pictures are in it

@@ -78,7 +78,8 @@ class Telling(ABC):
         self._run.stop.disabled = False
         if job.pace > 0:  # told step by step; a run at once leaves what is seen until it has ended
             self._comparison.clear()
-        self._stage.hud(state="Starting.", mood="running", progress=0.0)
+        self._stage.layer("readout", None)  # of a place that will look otherwise
+        self._stage.hud(state="Starting.", mood="running", progress=0.0, readout="")
         self._stage.flush()
 
     def show(self, job: Job, story: Story) -> None:

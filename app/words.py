@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from math import degrees, isfinite
 from typing import Any
 
@@ -52,6 +53,11 @@ PLACING = {
 }
 SIDE_BY_SIDE = "Two robots, two maps, no common frame."
 UP_TO_DATE = "Everything up to the candidates is up to date. Press Merge."
+
+
+def typeset(text: str) -> str:
+    """The text with a minus sign before its negative numbers, where a keyboard has a hyphen."""
+    return re.sub(r"(?<![\w.)\]-])-(?=\.?\d)", "−", text)
 
 
 def sentence(story: Story) -> str:

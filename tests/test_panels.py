@@ -20,9 +20,9 @@ from app.inputs import Inputs
 from app.panels.files import Upload, inputs_from
 from app.panels.observation import observations_html
 from app.panels.result import numbers, result_html, times
-from app.panels.tables import box, table, typeset
+from app.panels.tables import box, table
 from app.story import Story
-from app.words import progress, sentence
+from app.words import progress, sentence, typeset
 
 DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 
@@ -183,6 +183,16 @@ def test_the_curves_share_one_axis_and_mark_what_was_chosen(inputs):
         x, ref, mov = charts.shift_spectra(axis)
         assert len(x) == len(ref) == len(mov)
         assert max(ref.max(), mov.max()) <= 1.0
+
+
+def test_a_yaml_file_is_read_as_soon_as_it_is_there_and_its_image_asked_for_by_name(inputs):
+    files = map_to_bytes(inputs.ref, "floor")
+    text = Upload("floor.yaml", files["floor.yaml"].replace(b"floor.pgm", b"../maps/floor.pgm"))
+    assert inputs_from({"yaml2": text}).missing() == (
+        "Map 2's YAML file is here. Load its image, too: floor.pgm."
+    )
+    with pytest.raises(InputFileError, match=r"broken\.yaml"):
+        inputs_from({"yaml2": Upload("broken.yaml", b"origin: [0,0")})
 
 
 @given(st.floats(-1e4, 1e4, allow_nan=False))

@@ -13,7 +13,7 @@ import viser
 from algorithms.casefiles import observations_from_bytes, read_case
 from algorithms.errors import MapMergeError
 from algorithms.gridmap import GridMap
-from algorithms.mapio import map_from_bytes
+from algorithms.mapio import map_from_bytes, parse_meta
 from app import paths
 from app.inputs import Files, Inputs, Upload
 from app.palette import QUIET
@@ -39,6 +39,11 @@ LARGE = 1_000_000  # bytes; to read less takes no time to speak of
 Known = dict[tuple[Upload, Upload], GridMap]
 
 
+def _short(name: str) -> str:
+    """The last part of a file's name only, and not much of it: it is shown to a person, nothing else."""
+    return PurePath(name.replace("\\", "/")).name[:80]
+
+
 def inputs_from(uploads: dict[str, Upload], known: Known | None = None) -> Inputs:
     """What the files so far make up: a map where both its files are there, observations.
 
@@ -47,9 +52,12 @@ def inputs_from(uploads: dict[str, Upload], known: Known | None = None) -> Input
     """
     known = {} if known is None else known
     now: Known = {}
+    imageless: dict[int, str] = {}
 
     def grid(number: int):  # type: ignore[no-untyped-def]
         text, image = uploads.get(f"yaml{number}"), uploads.get(f"image{number}")
+        if text is not None and image is None:  # what is wrong with it is told at once
+            imageless[number] = _short(parse_meta(text.name, text.content).image)
         if text is None or image is None:
             return None
         found = known.get((text, image))
@@ -66,6 +74,7 @@ def inputs_from(uploads: dict[str, Upload], known: Known | None = None) -> Input
         observations=observations_from_bytes(seen.name, seen.content) if seen else (),
         name="your files" if uploads else "",
         bare=bare,
+        imageless=imageless,
     )
     known.clear()  # of what is not there any more
     known.update(now)
@@ -144,12 +153,13 @@ class FilesPanel:
             except MapMergeError as error:
                 self._report(error)
                 return
+            self._uploads.clear()
+            self._offer_forms()
+            self._status.content = self._table()
             self._load(Inputs.of(case))
 
     def _take_upload(self, key: str, file: viser.UploadedFile) -> None:
-        # the last part only, and short: it is shown to a person, nothing else
-        name = PurePath(file.name.replace("\\", "/")).name[:80] or key
-        self._take(key, Upload(name, file.content))
+        self._take(key, Upload(_short(file.name) or key, file.content))
 
     def _take(self, key: str, upload: Upload) -> None:
         with self._turn:

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from html import escape
 
+from app.words import typeset
+
 LONGEST = 26  # letters of a cell that is kept on one line; more would push the table out of its panel
-
-
-def typeset(text: str) -> str:
-    """The text with a minus sign before its negative numbers, where a keyboard has a hyphen."""
-    return re.sub(r"(?<![\w.)\]-])-(?=\.?\d)", "−", text)
 
 
 def table(rows: Iterable[tuple[str, ...]], head: tuple[str, ...] = (), faded: bool = False) -> str:

@@ -21,13 +21,13 @@ from app.palette import LIGHT
 from app.panels.observation import numbers as sighting
 from app.panels.result import STAGES, numbers
 from app.panels.run import MAP
-from app.panels.tables import typeset
 from app.player import FRAME, dwell
 from app.replay.curves import curves
 from app.replay.pictures import PictureScene
 from app.stage import Stage
 from app.story import Story
 from app.views.maps import MapView
+from app.words import typeset
 
 BEFORE = 1.2  # seconds that the maps lie side by side
 AFTER = 4.0  # seconds that the verdict stays

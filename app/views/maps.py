@@ -290,9 +290,9 @@ class MapView:
                 lifted = augmented.ref if number == 1 else augmented.mov
                 col, row = np.floor(grid.grid_coordinates(at)).astype(int)
                 level = lifted.levels[(lifted.rows == row) & (lifted.cols == col)]
-                word += f", level {float(level.sum()):.3g}"
+                word += f", level {float(level.sum()):.3g} (eq. 4)"
             parts.append(f"map {number}: {word}")
-        return " · ".join(parts)
+        return words.typeset(" · ".join(parts))
 
     def _robots(self, together: bool, seen: bool = True) -> None:
         at, mov = self._inputs.at, self._inputs.mov is not None
