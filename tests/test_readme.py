@@ -1,7 +1,18 @@
+"""What the README and the guides say is there, is there."""
+
 import doctest
+import re
+import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[1]
+sys.path.append(str(ROOT / "tests" / "browser"))
+
+from screenshots import SHOWN  # noqa: E402
+
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
 def test_the_examples_of_the_readme_do_what_they_say(monkeypatch):
@@ -11,8 +22,21 @@ def test_the_examples_of_the_readme_do_what_they_say(monkeypatch):
     assert tried >= 6
 
 
-def test_every_picture_of_the_readme_is_there():
-    pictures = [part.split(")")[0] for part in (ROOT / "README.md").read_text("utf-8").split("](")[1:]]
-    local = [name for name in pictures if not name.startswith("http")]
-    assert local
-    assert all((ROOT / name).is_file() for name in local)
+def linked(page: Path) -> set[Path]:
+    """Every file of the project that a page links to or shows."""
+    targets = re.findall(r"\]\(([^)#]+)\)", page.read_text("utf-8"))
+    return {(page.parent / name).resolve() for name in targets if not name.startswith("http")}
+
+
+@pytest.mark.parametrize(
+    "page", [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))], ids=lambda p: p.name
+)
+def test_everything_that_a_page_links_to_is_there(page):
+    assert linked(page)
+    assert [target for target in linked(page) if not target.is_file()] == []
+
+
+def test_the_pictures_that_are_kept_are_those_that_are_shown():
+    shown = {target for page in PAGES for target in linked(page) if target.suffix == ".png"}
+    assert shown == set((ROOT / "static" / "screenshots").resolve().glob("*.png"))
+    assert {picture.stem for picture in shown} == set(SHOWN)
