@@ -103,8 +103,8 @@
   function tick(time) {
     if (P.playing) {
       const from = P.time, to = Math.min(LAST, from + (time - ticked) / 1000 * P.speed);
-      const next = R.marks.find((mark) => mark.t > from + 1e-6);
-      const halt = $("halt").checked && next && to >= next.t && from < next.t - 2e-3; // else it was held there
+      const next = R.marks.find((mark) => mark.t > from + 2e-3); // it is held 1e-3 before a mark
+      const halt = $("halt").checked && next && to >= next.t;
       P.time = halt ? next.t - 1e-3 : to;
       if (halt || to >= LAST) P.playing = false;
       dirty = true;

@@ -150,7 +150,7 @@ def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(ta
     tab.page.mouse.up()
     scale = tab.page.evaluate("() => mapmeld.pixel([1, 0])[0] - mapmeld.pixel([0, 0])[0]")  # px per metre
     settle(lambda: field(tab, "T: Δx (m)") == pytest.approx(x + 60 / scale, abs=0.05), "Δx of the drag")
-    assert field(tab, "T: Δy (m)") == pytest.approx(y + 30 / scale, abs=0.05)
+    settle(lambda: field(tab, "T: Δy (m)") == pytest.approx(y + 30 / scale, abs=0.05), "Δy of the drag")
 
     turn = field(tab, "T: Δθ (°)")
     robot = at_mov(tab, (0.0, 0.0))
