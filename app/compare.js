@@ -91,7 +91,7 @@
     redraw();
   }
   function makeCurtain() {
-    const handle = make("div", "mm-handle", "◂▸"), line = make("div", "mm-line");
+    const handle = make("div", "mm-handle", "◂▸"), line = make("div", "mm-rule");
     handle.setAttribute("role", "slider"); handle.tabIndex = 0; handle.title = "Drag, or use the arrow keys.";
     handle.setAttribute("aria-label", "Curtain between map 1 and map 2");
     handle.setAttribute("aria-valuemin", 2); handle.setAttribute("aria-valuemax", 98);
@@ -215,9 +215,9 @@
   style.textContent = `
     .mm-curtain{position:absolute;top:98px;bottom:0;width:0;left:50%}
     .mm-curtain[hidden],.mm-turns[hidden]{display:none}
-    .mm-line{position:absolute;top:0;bottom:0;left:-9px;width:18px;cursor:ew-resize;pointer-events:auto;touch-action:none}
-    .mm-line::after{content:"";position:absolute;left:8px;width:2px;top:0;bottom:0;background:#111827;box-shadow:0 0 0 1.5px rgba(255,255,255,.9)}
-    [data-theme=dark] .mm-line::after{background:#F9FAFB;box-shadow:0 0 0 1.5px rgba(17,24,39,.9)}
+    .mm-rule{position:absolute;top:0;bottom:0;left:-9px;width:18px;cursor:ew-resize;pointer-events:auto;touch-action:none}
+    .mm-rule::after{content:"";position:absolute;left:8px;width:2px;top:0;bottom:0;background:#111827;box-shadow:0 0 0 1.5px rgba(255,255,255,.9)}
+    [data-theme=dark] .mm-rule::after{background:#F9FAFB;box-shadow:0 0 0 1.5px rgba(17,24,39,.9)}
     .mm-handle{position:absolute;left:-15px;top:22%;width:30px;height:30px;border-radius:50%;background:#111827;color:#fff;display:flex;align-items:center;justify-content:center;font-size:12px;letter-spacing:2px;text-indent:2px;cursor:ew-resize;pointer-events:auto;touch-action:none;box-shadow:0 0 0 2px #fff,0 2px 6px rgba(17,24,39,.4)}
     [data-theme=dark] .mm-handle{background:#F9FAFB;color:#111827;box-shadow:0 0 0 2px #111827}
     .mm-handle:focus-visible{outline:3px solid #56B4E9;outline-offset:2px}

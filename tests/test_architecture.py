@@ -1,6 +1,7 @@
 """Who may import whom. Each question is asked in a process that has imported nothing else."""
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -91,3 +92,18 @@ def test_the_page_does_not_know_the_command_line():
 @pytest.mark.parametrize("module", ["session", "render", "controls", "report", "evaluate"])
 def test_what_is_tested_without_a_browser_loads_no_server(module):
     assert "viser" not in loaded_by(f"app.{module}")
+
+
+def test_no_two_scripts_of_the_page_style_the_same_class():
+    """All of their styles are in force at once: a name that two of them use is drawn by both."""
+    styled: dict[str, set[str]] = {}
+    for script in sorted((ROOT / "app").glob("*.js")):
+        # "line" in ".mm-legend i.mm-line{" is styled as well as "legend"
+        rules = re.findall(r"^ +([^{}()=]*\.mm-[^{}()=]*)\{", script.read_text("utf-8"), flags=re.M)
+        for name in {name for rule in rules for name in re.findall(r"\.(mm-[a-z]+)", rule)}:
+            styled.setdefault(name, set()).add(script.name)
+    shared = {"mm-tools", "mm-head"}  # where further scripts put what is theirs
+    assert len(styled) > 20
+    assert {
+        name: scripts for name, scripts in styled.items() if len(scripts) > 1 and name not in shared
+    } == {}

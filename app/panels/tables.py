@@ -7,6 +7,7 @@ from html import escape
 
 from app.words import typeset
 
+SHORT = 6  # letters of a first cell that is a sign or a number, not words
 LONGEST = 26  # letters of a cell that is kept on one line; more would push the table out of its panel
 
 
@@ -16,7 +17,8 @@ def table(rows: Iterable[tuple[str, ...]], head: tuple[str, ...] = (), faded: bo
     def row(cells: tuple[str, ...], tag: str) -> str:
         first, *rest = cells
         style = "text-align:right;font-variant-numeric:tabular-nums;padding-left:8px"
-        inner = f'<{tag} style="text-align:left;font-weight:400;opacity:.75">{escape(first)}</{tag}>'
+        keep = ";white-space:nowrap" if len(first) <= SHORT else ""
+        inner = f'<{tag} style="text-align:left;font-weight:400;opacity:.75{keep}">{escape(first)}</{tag}>'
         for cell in rest:
             wrap = "normal" if len(cell) > LONGEST else "nowrap"
             inner += f'<{tag} style="{style};white-space:{wrap}">{escape(typeset(cell))}</{tag}>'
