@@ -107,6 +107,17 @@ class Tab:
         x, y = self.page.evaluate(where, [list(point), frame])
         return tuple(self.pixels()[round(y), round(x)])
 
+    def at_rest(self) -> list[float]:
+        """Where the scene's zero is in the window, once the camera has come to rest."""
+        seen: list[list[list[float]]] = []
+
+        def rests() -> bool:  # two places: a zoom about the one leaves it where it is
+            seen.append(self.page.evaluate("() => [[0, 0], [7, 4]].map((p) => window.mapmeld.pixel(p))"))
+            return len(seen) > 8 and seen[-8:] == seen[-1:] * 8
+
+        settle(rests, "the camera to rest")
+        return seen[-1][0]
+
     # --- doing ------------------------------------------------------------------------------------
 
     def press(self, name: str) -> None:

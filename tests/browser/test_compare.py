@@ -53,18 +53,6 @@ def seen_at(tab: Tab, place: tuple[float, float], colour: tuple[int, ...], what:
     settle(lambda: tab.colour_at(place) == colour, f"{what}; it is {tab.colour_at(place)}")
 
 
-def at_rest(tab: Tab) -> list[float]:
-    """Where the scene's zero is in the window, once the camera has come to rest."""
-    seen: list[list[float]] = []
-
-    def rests() -> bool:
-        seen.append(tab.page.evaluate("() => window.mapmeld.pixel([0, 0])"))
-        return len(seen) > 8 and seen[-8:] == seen[-1:] * 8
-
-    settle(rests, "the camera to rest")
-    return seen[-1]
-
-
 def metre(tab: Tab) -> float:
     """Pixels of a metre on the map."""
     ends = "() => [window.mapmeld.pixel([0, 0]), window.mapmeld.pixel([1, 0])]"
@@ -80,7 +68,7 @@ def test_a_curtain_has_map_1_to_its_left_and_map_2_to_its_right_wherever_it_is_d
     handle = merged.page.get_by_role("slider", name="Curtain between map 1 and map 2")
     box = handle.bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    before = at_rest(merged)
+    before = merged.at_rest()
     merged.page.mouse.move(x, y)
     merged.page.mouse.down()
     merged.page.mouse.move(merged.page.evaluate("() => window.mapmeld.pixel([2.5, 0])")[0], y, steps=6)
@@ -160,7 +148,7 @@ def test_a_distance_is_measured_with_two_clicks_or_a_drag_and_the_map_stays_wher
     def line() -> dict[str, float] | None:
         return tab.page.evaluate("() => window.mapmeld.measure.line")
 
-    before = at_rest(tab)
+    before = tab.at_rest()
     tab.press("Measure")
     tab.page.mouse.click(*at(0, 0))
     tab.page.mouse.click(*at(3, -4))

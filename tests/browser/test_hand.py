@@ -120,6 +120,7 @@ def drag(tab, start: list[float], by: tuple[float, float]) -> None:
 
 def at_mov(tab, point: tuple[float, float]) -> list[float]:
     """Where a point of map 2, from its anchor, is in the window."""
+    tab.at_rest()
     return tab.page.evaluate("(p) => mapmeld.pixel(p, 'mov')", list(point))
 
 
@@ -163,10 +164,10 @@ def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(ta
     undo.click()
     settle(lambda: field(tab, "T: Δθ (°)") == pytest.approx(turn, abs=0.01), "the turn undone")
 
-    ink = tab.page.locator("#mapmeld-ink").bounding_box()
+    ink, before = tab.page.locator("#mapmeld-ink").bounding_box(), at_mov(tab, (0.0, 0.0))
     drag(tab, [ink["x"] + 15, 140], (30, 0))
-    settle(lambda: at_mov(tab, (0.0, 0.0))[0] > robot[0] + 20, "the empty ground to pan")
-    assert field(tab, "T: Δθ (°)") == pytest.approx(turn, abs=0.01)
+    settle(lambda: at_mov(tab, (0.0, 0.0))[0] > before[0] + 20, "the empty ground to pan")
+    settle(lambda: field(tab, "T: Δθ (°)") == pytest.approx(turn, abs=0.01), "the number")
 
     for label, value in (("T: Δx (m)", x), ("T: Δy (m)", y)):
         box = tab.page.get_by_label(label, exact=True)
@@ -210,7 +211,7 @@ def test_a_hand_is_refined_snapped_left_and_a_reload_keeps_it(tab):
     settle(lambda: tab.state.startswith("By hand, would be refused: "), "half a metre off")
     tab.press("Refine from here")
     settle(lambda: tab.state.startswith("By hand, would be merged: "), "the search from there")
-    assert field(tab, "T: Δx (m)") == pytest.approx(metres(proven), abs=0.06)
+    settle(lambda: field(tab, "T: Δx (m)") == pytest.approx(metres(proven), abs=0.06), "the number")
 
     near = field(tab, "T: Δx (m)")
     drag(tab, at_mov(tab, (1.5, -1.0)), (50, 40))
@@ -219,7 +220,7 @@ def test_a_hand_is_refined_snapped_left_and_a_reload_keeps_it(tab):
     tab.page.reload()
     tab.page.wait_for_function(READY)
     settle(lambda: tab.state.startswith("By hand, would be refused: "), "the hand after a reload")
-    assert field(tab, "T: Δx (m)") == moved
+    settle(lambda: field(tab, "T: Δx (m)") == moved, "the number")
     tab.press("Snap to proven optimum")
     settle(lambda: tab.mood == "accepted" and tab.number("T: Δx") == proven, "the proven optimum")
     tab.page.get_by_role("button", name="Undo").click()
@@ -240,6 +241,7 @@ def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab
         def where(point, frame: str = "scene") -> list[float]:
             anchor = layout.anchor_ref if frame == "scene" else layout.anchor_mov
             place = [float(value) for value in np.asarray(point) - anchor]
+            tab.at_rest()
             return tab.page.evaluate("([p, f]) => mapmeld.pixel(p, f)", [place, frame])
 
         assert "place the robots" in tab.state
@@ -249,16 +251,19 @@ def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab
         ahead = (40 * cos(o.observer.theta), -40 * sin(o.observer.theta))
         drag(tab, where(o.observer.xy), ahead)
         settle(lambda: tab.state.startswith("2 of 3: "), "the second step")
-        assert field(tab, "robot 1: x (m)") == pytest.approx(o.observer.x, abs=0.08)
-        assert field(tab, "robot 1: heading (°)") == pytest.approx(degrees(o.observer.theta), abs=3)
+        settle(lambda: field(tab, "robot 1: x (m)") == pytest.approx(o.observer.x, abs=0.08), "the number")
+        settle(
+            lambda: field(tab, "robot 1: heading (°)") == pytest.approx(degrees(o.observer.theta), abs=3),
+            "the number",
+        )
         tab.page.mouse.click(*where(at.x_ref))
         settle(lambda: tab.state.startswith("3 of 3: "), "the third step")
-        assert field(tab, "range r (m)") == pytest.approx(o.range, abs=0.15)
+        settle(lambda: field(tab, "range r (m)") == pytest.approx(o.range, abs=0.15), "the number")
         tab.page.mouse.click(*where(o.observer.xy))
         settle(lambda: tab.state == "That is not in map 2.", "a touch in the wrong map to be told")
         drag(tab, where(at.x_mov, "mov"), (0, -40))
         settle(lambda: tab.state.startswith("Drag a sign"), "all three")
-        assert field(tab, "robot 2: heading (°)") == pytest.approx(90, abs=3)
+        settle(lambda: field(tab, "robot 2: heading (°)") == pytest.approx(90, abs=3), "the number")
 
         before = field(tab, "range r (m)")
         drag(tab, where(at.x_ref), tuple(0.5 * value for value in ahead))  # along the sight, so farther away
