@@ -6,6 +6,7 @@ One message per ``flush``: everything that belongs together is seen together.
 from __future__ import annotations
 
 import json
+from abc import ABC, abstractmethod
 from pathlib import Path
 from threading import RLock
 from typing import Any
@@ -25,7 +26,7 @@ _SCRIPT = "\n".join((Path(__file__).parent / name).read_text(encoding="utf-8") f
 Item = dict[str, Any]
 
 
-class Stage:
+class Stage(ABC):
     """What is to be drawn, gathered until it is flushed; see ink.js for what each item may hold.
 
     Where it goes is up to the subclass: to a tab (TabStage), or into a recording.
@@ -36,9 +37,9 @@ class Stage:
         self._hud: dict[str, Any] = {}
         self._lock = RLock()  # widgets call from many threads; what gathers while one sends is not lost
 
+    @abstractmethod
     def send(self, message: dict[str, Any]) -> None:
         """Take over what has gathered."""
-        raise NotImplementedError
 
     def layer(self, name: str, items: list[Item] | None) -> None:
         """Replace a layer of ink; None removes it."""
