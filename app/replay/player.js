@@ -102,14 +102,15 @@
   P.theme = (dark) => { P.dark = dark; document.documentElement.dataset.theme = dark ? "dark" : "light"; shown = null; dirty = true; };
   function tick(time) {
     if (P.playing) {
-      const from = P.time, to = Math.min(LAST, from + (time - ticked) / 1000 * P.speed);
+      // A frame's time is when it began, which may be before the click that started the clock.
+      const from = P.time, to = Math.min(LAST, from + Math.max(0, time - ticked) / 1000 * P.speed);
       const next = R.marks.find((mark) => mark.t > from + 2e-3); // it is held 1e-3 before a mark
       const halt = $("halt").checked && next && to >= next.t;
       P.time = halt ? next.t - 1e-3 : to;
       if (halt || to >= LAST) P.playing = false;
       dirty = true;
     }
-    ticked = time;
+    ticked = Math.max(ticked, time);
   }
 
   // --- the map ------------------------------------------------------------------------------------
