@@ -39,7 +39,7 @@ class Lesson:
 
     def __init__(self, host: Host, gui: viser.GuiApi, tuning: TuningPanel, turn: RLock, folder: Path) -> None:
         self._host, self._tuning, self._turn, self._folder = host, tuning, turn, folder
-        wishes = LessonWishes(go=self.go, leave=self.leave, turn=self._dialled, try_=self._try)
+        wishes = LessonWishes(go=self.go, move=self.move, leave=self.leave, turn=self._dialled, try_=self._try)
         self._panel = LessonPanel(gui, wishes)
         self._session = Session(self, run=self._record, beside=host.session)
         self.open = False
@@ -133,6 +133,11 @@ class Lesson:
                     self._host.present(Story(), f"Lesson: {error}", [], None, True, False)
                 return
             self._show(fresh=True)
+
+    def move(self, by: int) -> None:
+        """Go on or back by so many steps; pressed quickly, each press counts."""
+        with self._turn:
+            self.go(self._index + by)
 
     def _dialled(self) -> None:
         self._wish += 1

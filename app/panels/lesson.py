@@ -25,12 +25,14 @@ class LessonWishes:
     """What a person can ask for here.
 
     go    : to the step of this number, from 0
+    move  : by so many steps from where one is
     leave : the lesson
     turn  : a dial was moved
     try_  : the thing to try of this number
     """
 
     go: Callable[[int], None]
+    move: Callable[[int], None]
     leave: Callable[[], None]
     turn: Callable[[], None]
     try_: Callable[[int], None]
@@ -42,12 +44,11 @@ class LessonPanel:
     def __init__(self, gui: viser.GuiApi, wishes: LessonWishes) -> None:
         self._wishes = wishes
         self._titles: tuple[str, ...] = ("…",)
-        self._index = 0
         self._dials: tuple[Dial, ...] = ()
         self._panel = gui.add_panel(visible=False)
         with self._panel.add_tab("Lesson", icon=viser.Icon.SCHOOL):
             moves = gui.add_button_group("", (BACK, NEXT, LEAVE))
-            moves.on_click(lambda _: self._move(moves.value))
+            moves.on_click(lambda event: self._move(event.target.value))
             self._step = gui.add_dropdown("Step", self._titles)
             self._step.on_update(lambda event: self._jump() if event.client_id is not None else None)
             self._title = gui.add_html("")
@@ -81,7 +82,7 @@ class LessonPanel:
         if where == LEAVE:
             self._wishes.leave()
         else:
-            self._wishes.go(self._index + (1 if where == NEXT else -1))
+            self._wishes.move(1 if where == NEXT else -1)
 
     def _jump(self) -> None:
         if self._step.value in self._titles:
@@ -95,7 +96,6 @@ class LessonPanel:
 
     def text(self, index: int, title: str, body: str, equations: Sequence[str], foot: str = "") -> None:
         """Show the words of a step."""
-        self._index = index
         if self._step.value != self._titles[index]:
             self._step.value = self._titles[index]
         dots = "".join(f"<i{' data-on' if k <= index else ''}></i>" for k in range(len(self._titles)))

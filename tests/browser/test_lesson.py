@@ -112,6 +112,16 @@ def test_a_dial_moves_the_picture_and_the_map(tab):
     assert {item["f"] for item in settle(lambda: tab.layer("lesson"), "the lines")} == {"scene", "mov"}
 
 
+def test_each_press_counts_however_quickly_they_follow(tab):
+    enter(tab)
+    for _ in range(5):
+        tab.press("Next ▶")
+    at_step(tab, 6)
+    for _ in range(3):
+        tab.press("◀ Back")
+    at_step(tab, 3)
+
+
 def test_a_slider_of_the_panel_feeds_the_lesson_and_is_put_back(tab):
     enter(tab)
     tab.press("Next ▶")
