@@ -1,4 +1,4 @@
-"""What can be wrong with a user's input. Anything else that is raised is a bug of ours."""
+"""What can be wrong with a user's input, or keep a method from answering. Anything else is a bug of ours."""
 
 from __future__ import annotations
 
@@ -22,6 +22,17 @@ class InputFileError(MapMergeError):
 
 class SettingError(MapMergeError):
     """A setting outside what it may be."""
+
+
+class NoAnswerError(MapMergeError):
+    """A method that found no transform at all: a refused merge without a place to show.
+
+    why : what it lacked, and what would help; the end of a sentence
+    """
+
+    def __init__(self, why: str) -> None:
+        self.why = why
+        super().__init__(f"Refused: {why}.")
 
 
 class TooLargeError(MapMergeError):

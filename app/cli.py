@@ -8,12 +8,13 @@ import traceback
 from collections.abc import Sequence
 from importlib import import_module
 
-from algorithms.errors import MapMergeError
+from algorithms.errors import MapMergeError, NoAnswerError
 from app.usage import Parser, did_you_mean
 
 PROG = "mapmeld"
 
 EXIT_MERGED = 0
+EXIT_REFUSED = 1
 EXIT_BAD_INPUT = 2
 EXIT_BUG = 70  # not 1, which means "refused"
 EXIT_INTERRUPTED = 130
@@ -48,6 +49,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if argv is None else argv)
     try:
         return _run(words)
+    except NoAnswerError as refusal:  # where a command has nothing of its own to say of it
+        return _complain(str(refusal), EXIT_REFUSED)
     except MapMergeError as error:
         return _complain(str(error), EXIT_BAD_INPUT)
     except MemoryError:

@@ -16,7 +16,7 @@ from typing import Any
 
 from algorithms import methods
 from algorithms.casefiles import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, Case, case_folders, read_case
-from algorithms.errors import MapMergeError
+from algorithms.errors import MapMergeError, NoAnswerError
 from algorithms.pose import pose_error
 from algorithms.steps import MergeResult
 from app.report import report_of
@@ -26,7 +26,7 @@ FINE_RAD = radians(1)
 OVERALL = "overall"
 
 Entry = dict[str, Any]
-"""What is told of one case: case, observation, report or error, seconds, truth."""
+"""What is told of one case: case, observation, report or no_answer or error, seconds, truth."""
 
 
 @dataclass(frozen=True)
@@ -110,9 +110,14 @@ def run_case(folder: Path, order: Order) -> Entry:
     try:
         case = read_case(folder, order.rough)
         load_s = perf_counter() - began
-        result = methods.merge(case.ref, case.mov, case.observations, order.method, order.config, order.seed)
-        entry["report"] = report_of(result, order.config, load_s)
-        entry["truth"] = judge_case(case, result)
+        try:
+            result = methods.merge(
+                case.ref, case.mov, case.observations, order.method, order.config, order.seed
+            )
+        except NoAnswerError as refusal:
+            entry |= {"no_answer": str(refusal), "truth": judge_case(case, None)}
+        else:
+            entry |= {"report": report_of(result, order.config, load_s), "truth": judge_case(case, result)}
     except MapMergeError as error:
         entry |= {"error": str(error), "truth": None}
     except Exception as error:  # a bug in one case must not cost the others
@@ -129,19 +134,23 @@ def _entry(folder: Path, order: Order) -> Entry:
     }
 
 
-def judge_case(case: Case, result: MergeResult) -> dict[str, Any] | None:
+def judge_case(case: Case, result: MergeResult | None) -> dict[str, Any] | None:
     """How far a merge is from the truth; None where no truth is known.
 
     Two maps that share no place have no right transform: there, right means refused.
+
+    result : None for a method that found no transform, which refuses
     """
     truth = case.truth
     if truth is None:
         return None
     distance = angle = None
-    if truth.T_ref_mov is not None:
+    if truth.T_ref_mov is not None and result is not None:
         distance, angle = pose_error(result.T_ref_mov, truth.T_ref_mov, result.encounter.x_mov)
     if truth.expected == "refuse":
-        right, fine = not result.verdict.accepted, False
+        right, fine = result is None or not result.verdict.accepted, False
+    elif result is None:
+        right = fine = False
     else:
         assert distance is not None
         assert angle is not None
@@ -166,7 +175,7 @@ def totals_of(entries: Sequence[Entry]) -> dict[str, dict[str, Any]]:
 
     n, judged, errors : cases, those with a truth that ran, those that failed
     right, fine       : of the judged, whether accepted or refused
-    refused           : of all that ran
+    refused           : of all that ran; with those where the method found no transform at all
     wrong_accepted    : of the judged: accepted, and not right
     """
     groups: dict[str, list[Entry]] = {}
@@ -177,7 +186,7 @@ def totals_of(entries: Sequence[Entry]) -> dict[str, dict[str, Any]]:
 
 
 def _totals(entries: Sequence[Entry]) -> dict[str, Any]:
-    ran = [entry for entry in entries if "report" in entry]
+    ran = [entry for entry in entries if "error" not in entry]
     judged = [entry for entry in ran if entry["truth"] is not None]
     return {
         "n": len(entries),
@@ -193,9 +202,8 @@ def _totals(entries: Sequence[Entry]) -> dict[str, Any]:
 
 def is_wrong_accepted(entry: Mapping[str, Any]) -> bool:
     """Whether the method stood by a wrong merge: what must not happen."""
-    judged = "report" in entry and entry["truth"] is not None
-    return judged and _accepted(entry) and not entry["truth"]["right"]
+    return entry["truth"] is not None and _accepted(entry) and not entry["truth"]["right"]
 
 
 def _accepted(entry: Mapping[str, Any]) -> bool:
-    return bool(entry["report"]["verdict"]["accepted"])
+    return "report" in entry and bool(entry["report"]["verdict"]["accepted"])

@@ -12,6 +12,7 @@ from typing import Any
 import cv2
 import numpy as np
 
+from algorithms.errors import NoAnswerError
 from algorithms.mapio import map_to_bytes
 from algorithms.merit import performance_index
 from algorithms.steps import MergeResult
@@ -51,6 +52,35 @@ def report_of(
         "timings_s": {"load": load_s, **result.timings_s},
         "proof": proof_of(result),
         "performance_index_at_estimate": performance_index(result.fusion),
+        "settings": config,
+        "inputs": dict(inputs or {}),
+        "versions": versions(),
+    }
+    return {key: _plain(value) for key, value in report.items()}
+
+
+def report_of_no_answer(
+    refusal: NoAnswerError,
+    method: str,
+    seed: int,
+    config: Any = None,
+    load_s: float = 0.0,
+    inputs: Mapping[str, str] | None = None,
+) -> dict[str, Any]:
+    """What report.json says where the method found no transform: the keys of ``report_of``, null where
+    there is nothing to say.
+    """
+    report = {
+        "T_ref_mov": None,
+        "covariance": None,
+        "verdict": {"accepted": False, "reason": str(refusal)},
+        "objective": None,
+        "proven_optimal": False,
+        "method": method,
+        "seed": seed,
+        "timings_s": {"load": load_s},
+        "proof": None,
+        "performance_index_at_estimate": None,
         "settings": config,
         "inputs": dict(inputs or {}),
         "versions": versions(),

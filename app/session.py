@@ -64,8 +64,10 @@ class Listener(Protocol):
     def stopped(self, job: Job, story: Story) -> None:
         """Someone pressed Stop."""
 
-    def failed(self, job: Job, error: Exception) -> None:
-        """The run could not go on: a MapMergeError to be told, or a bug to be logged."""
+    def failed(self, job: Job, story: Story, error: Exception) -> None:
+        """The run could not go on: a NoAnswerError where the method found no transform, another
+        MapMergeError to be told, or a bug to be logged.
+        """
 
 
 class Session:
@@ -159,7 +161,7 @@ class Session:
                     self._running = None
 
     def _fail(self, job: Job, error: Exception) -> None:
-        self._deliver(job, lambda: self._listener.failed(job, error))
+        self._deliver(job, lambda: self._listener.failed(job, self._story, error))
 
     def _tell(self, job: Job) -> None:
         """Iterate the method; draw at most every FRAME, except where a step is meant to be seen."""

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import viser
 
 from algorithms.conflicts import Conflicts, find_conflicts
-from algorithms.errors import MapMergeError
+from algorithms.errors import MapMergeError, NoAnswerError
 from algorithms.handmade import BY_HAND
 from algorithms.steps import AugmentDetail, MergeResult
 from app import words
@@ -24,6 +24,7 @@ from app.palette import Palette
 from app.panels.export import ExportPanel
 from app.panels.result import result_html
 from app.panels.run import HEIGHTS, MAP, SWARM, RunPanel
+from app.panels.tables import box
 from app.panels.tuning import TuningPanel
 from app.placing import Placing
 from app.replay import replay_of
@@ -145,9 +146,12 @@ class Telling(ABC):
         self._stage.hud(state=f"Stopped, unfinished. {words.sentence(story)}", mood="stopped", progress=None)
         self._stage.flush()
 
-    def failed(self, job: Job, error: Exception) -> None:
+    def failed(self, job: Job, story: Story, error: Exception) -> None:
         """The run could not go on."""
         self._run.stop.disabled = True
+        if isinstance(error, NoAnswerError):
+            self._unanswered(story, error)
+            return
         if isinstance(error, MapMergeError):
             self._report(error)
             return
@@ -155,6 +159,20 @@ class Telling(ABC):
         self._notify("The run ended", text, "red")
         self._stage.hud(state=text, mood="failed", progress=None)
         self._stage.flush()
+
+    def _unanswered(self, story: Story, refusal: NoAnswerError) -> None:
+        """The method found no transform: the maps go back to where they were, with the reason."""
+        self._story, self._method = story, None
+        self._result = self._conflicts = self._config = None
+        with self._client.atomic():
+            self._comparison.clear()
+            self._export.offer(None)
+            self._plots.show(story, follow=True)
+            self._plots.tell(box(str(refusal), "refused"))
+            self._maps.apart()
+            self._draw(story, live=False)
+            self._stage.hud(state=str(refusal), mood="refused", progress=None)
+            self._stage.flush()
 
     # --- drawing ----------------------------------------------------------------------------------
 

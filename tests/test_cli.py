@@ -18,6 +18,7 @@ import yaml
 from algorithms import methods
 from algorithms.bounds import Bounds
 from algorithms.casefiles import read_case, write_observations
+from algorithms.errors import NoAnswerError
 from algorithms.mapio import read_map
 from algorithms.methods import METHODS
 from algorithms.pose import Pose2
@@ -218,6 +219,53 @@ def test_a_refused_merge_takes_an_earlier_map_away_and_says_so(
         "notes.txt",
     }
     assert "removed" in capsys.readouterr().out
+
+
+def without_an_answer(*_):
+    raise NoAnswerError("no two places of these maps are alike")
+    yield
+
+
+def test_a_merge_without_an_answer_is_a_refusal_that_leaves_its_reason_alone(
+    case_folder, tmp_path, capsys, monkeypatch
+):
+    (tmp_path / "notes.txt").write_text("mine")
+    words = ["merge", *inputs(case_folder), "--out", str(tmp_path)]
+    assert main(words) == 0
+    capsys.readouterr()
+    default = methods.DEFAULT_METHOD
+    monkeypatch.setitem(METHODS, default, replace(METHODS[default], run=without_an_answer))
+    assert main([*words, "--force"]) == 1
+    said = capsys.readouterr().out
+    assert said.startswith("Refused: no two places of these maps are alike.\n")
+    assert "merged.yaml" in said.split("removed")[1]
+    assert {path.name for path in tmp_path.iterdir()} == {"report.json", "notes.txt"}
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["T_ref_mov"] is None
+    assert report["verdict"] == {
+        "accepted": False,
+        "reason": "Refused: no two places of these maps are alike.",
+    }
+    assert main([*words, "--json"]) == 1
+    assert json.loads(capsys.readouterr().out) == json.loads((tmp_path / "report.json").read_text())
+
+
+def test_a_report_without_an_answer_has_the_keys_of_one_with(case_folder, tmp_path, monkeypatch):
+    words = ["merge", *inputs(case_folder), "--out", str(tmp_path)]
+    main(words)
+    usual = json.loads((tmp_path / "report.json").read_text())
+    default = methods.DEFAULT_METHOD
+    monkeypatch.setitem(METHODS, default, replace(METHODS[default], run=without_an_answer))
+    main(words)
+    assert list(json.loads((tmp_path / "report.json").read_text())) == list(usual)
+
+
+def test_a_replay_of_no_answer_is_not_written(case_folder, tmp_path, capsys, monkeypatch):
+    default = methods.DEFAULT_METHOD
+    monkeypatch.setitem(METHODS, default, replace(METHODS[default], run=without_an_answer))
+    assert main(["replay", str(case_folder), "--out", str(tmp_path / "a.html")]) == 1
+    assert "Refused: no two places" in capsys.readouterr().err
+    assert not (tmp_path / "a.html").exists()
 
 
 @pytest.mark.parametrize("named", ["merged.yaml", "left.yaml"])

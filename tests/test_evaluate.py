@@ -10,6 +10,7 @@ import pytest
 
 from algorithms import methods
 from algorithms.casefiles import Truth
+from algorithms.errors import NoAnswerError
 from algorithms.pose import Pose2
 from app import evaluate
 from app.cli import main
@@ -230,3 +231,45 @@ def test_one_case_can_be_given_as_the_folder(cases, tmp_path, capsys):
     assert main(["evaluate", str(cases / "flat_1"), "--json", str(tmp_path / "out.json")]) == 0
     told = json.loads((tmp_path / "out.json").read_text())
     assert [case["case"] for case in told["cases"]] == ["flat_1"]
+
+
+# ---- a method that finds no transform
+
+
+@pytest.fixture
+def unanswering(monkeypatch):
+    """A method that sees nothing in any map."""
+
+    def run(*_):
+        raise NoAnswerError("nothing in these maps is like anything else")
+        yield
+
+    monkeypatch.setitem(methods.METHODS, METHOD, replace(methods.METHODS[METHOD], run=run))
+
+
+def test_a_case_without_an_answer_is_refused_not_failed(unanswering, case_folder):
+    told = run_case(case_folder, order(case_folder))
+    assert told["no_answer"] == "Refused: nothing in these maps is like anything else."
+    assert not told.keys() & {"report", "error"}
+    assert (told["truth"]["right"], told["truth"]["distance"]) == (False, None)
+    totals = totals_of([told])["overall"]
+    assert (totals["refused"], totals["errors"], totals["right"]) == (1, 0, 0)
+    assert (totals["judged"], totals["wrong_accepted"]) == (1, 0)
+
+
+def test_where_refusing_is_right_no_answer_is_right(unanswering, strangers_folder):
+    told = run_case(strangers_folder, order(strangers_folder))
+    assert told["truth"]["right"]
+    assert totals_of([told])["overall"]["right"] == 1
+
+
+def test_without_a_truth_no_answer_is_not_judged(unanswering, small_case, case_maker):
+    folder = case_maker(replace(small_case, truth=None), "x_1")
+    told = run_case(folder, order(folder.parent))
+    assert told["truth"] is None
+    assert totals_of([told])["overall"]["refused"] == 1
+
+
+def test_evaluate_ends_with_0_where_a_case_has_no_answer(unanswering, case_folder, capsys):
+    assert main(["evaluate", str(case_folder), "--method", METHOD]) == 0
+    assert "failed" not in capsys.readouterr().out

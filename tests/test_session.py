@@ -55,7 +55,7 @@ class Ear:
         self.heard.append(("stopped", job.config))
         self.done.set()
 
-    def failed(self, job, error):
+    def failed(self, job, story, error):
         self.heard.append(("failed", error))
         self.done.set()
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from algorithms.errors import OutputError, SettingError
+from algorithms.errors import NoAnswerError, OutputError, SettingError
 from app.usage import Parser
 
 if TYPE_CHECKING:
@@ -35,8 +35,9 @@ Files in the folder of --out:
   report.html               all of it to read and print: verdict, pictures, numbers, settings
   report.json               transform, covariance, verdict, proof, times, settings
   overlay.png               both maps under the transform: agreement and contradiction
-A refused merge leaves the reports and overlay.png alone. merged.* and transform.yaml of an
-earlier run are then removed, so that nobody takes them for this run's.
+A refused merge leaves the reports and overlay.png alone, and where the method found no transform
+at all only report.json. What an earlier run left of the other files is then removed, so that nobody
+takes it for this run's.
 
 Exit status: 0 merged, 1 refused (with --force too), 2 bad input, 130 interrupted."""
 
@@ -72,16 +73,26 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     from app.flags import config_from
     from app.inputs import Inputs
     from app.progress import result_of
-    from app.report import MERGED_FILES, TRANSFORM_FILE, report_json, report_of, result_files
+    from app.report import (
+        MERGED_FILES,
+        TRANSFORM_FILE,
+        report_json,
+        report_of,
+        result_files,
+    )
 
     config = config_from(args)
     began = perf_counter()
     ref, mov, observations = read_inputs(args)
     load_s = perf_counter() - began
     _check_folder(args)
-    result = result_of(methods.run(args.method, ref, mov, observations, config, args.seed))
-    named = {"map1": args.map1, "map2": args.map2, "observation": args.observation}
-    report = report_of(result, config, load_s, {key: str(path) for key, path in named.items()})
+    given = {"map1": args.map1, "map2": args.map2, "observation": args.observation}
+    named = {key: str(path) for key, path in given.items()}
+    try:
+        result = result_of(methods.run(args.method, ref, mov, observations, config, args.seed))
+    except NoAnswerError as refusal:
+        return _without_answer(refusal, args, config, load_s, named)
+    report = report_of(result, config, load_s, named)
     accepted = result.verdict.accepted
     inputs = Inputs(ref, mov, observations, f"{args.map1.stem} and {args.map2.stem}")
     files = result_files(result, inputs, config, report, with_merged=accepted or args.force)
@@ -92,6 +103,35 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     else:
         print("\n".join(_summary(result, config, args.out, files, removed)))
     return 0 if accepted else 1
+
+
+def _without_answer(
+    refusal: NoAnswerError, args: argparse.Namespace, config: Any, load_s: float, named: Mapping[str, str]
+) -> int:
+    """Leave and tell why there is no transform; the exit status."""
+    from app.report import (
+        MERGED_FILES,
+        OVERLAY_FILE,
+        PAGE_FILE,
+        REPORT_FILE,
+        TRANSFORM_FILE,
+        report_json,
+        report_of_no_answer,
+    )
+
+    written = report_json(report_of_no_answer(refusal, args.method, args.seed, config, load_s, named))
+    stale = [*MERGED_FILES, TRANSFORM_FILE, OVERLAY_FILE, PAGE_FILE]
+    removed = _leave(args.out, {REPORT_FILE: written}, stale)
+    if args.json:
+        sys.stdout.write(written.decode())
+        return 1
+    print(refusal)
+    print(f"written to {args.out}: {REPORT_FILE}")
+    if removed:
+        print(f"removed from {args.out}, being of an earlier run: {', '.join(removed)}")
+    if args.force:
+        print("--force: there is no transform to write a merged map with")
+    return 1
 
 
 def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, tuple[Observation, ...]]:

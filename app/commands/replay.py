@@ -26,7 +26,8 @@ Examples:
 The same maps, settings and seed give the same file. In the page: space plays and pauses,
 the arrow keys go from step to step.
 
-Exit status: 0 written, whether the maps were merged or refused, 2 bad input, 130 interrupted."""
+Exit status: 0 written, whether the maps were merged or refused; 1 refused without any transform to
+show, and nothing written; 2 bad input; 130 interrupted."""
 
 HTML_SUFFIXES = (".html", ".htm")
 

@@ -225,7 +225,7 @@ class Lesson:
     def stopped(self, job: Job, story: Story) -> None:
         """The run is no longer wanted."""
 
-    def failed(self, job: Job, error: Exception) -> None:
+    def failed(self, job: Job, story: Story, error: Exception) -> None:
         """The run could not go on."""
         self._done = True
         self._panel.picture(f"These maps cannot be merged: {error}")
