@@ -39,7 +39,9 @@ class Lesson:
 
     def __init__(self, host: Host, gui: viser.GuiApi, tuning: TuningPanel, turn: RLock, folder: Path) -> None:
         self._host, self._tuning, self._turn, self._folder = host, tuning, turn, folder
-        wishes = LessonWishes(go=self.go, move=self.move, leave=self.leave, turn=self._dialled, try_=self._try)
+        wishes = LessonWishes(
+            go=self.go, move=self.move, leave=self.leave, turn=self._dialled, try_=self._try
+        )
         self._panel = LessonPanel(gui, wishes)
         self._session = Session(self, run=self._record, beside=host.session)
         self.open = False
