@@ -44,11 +44,25 @@ def fast_kernel(function: Callable[P, R]) -> Callable[P, R]:
 
 @cache
 def cores() -> int:
-    """How many threads share the work: what this process may use."""
+    """How many cores this process may use."""
     try:
         return len(os.sched_getaffinity(0))
     except AttributeError:  # not on macOS and Windows
         return os.cpu_count() or 1
+
+
+_most_threads: int | None = None
+
+
+def use_threads(most: int) -> None:
+    """Share work among so many threads at most, from now on: for processes that share a machine's cores."""
+    global _most_threads
+    _most_threads = most
+
+
+def threads() -> int:
+    """How many threads share the work: one per core, unless ``use_threads`` was told otherwise."""
+    return cores() if _most_threads is None else min(cores(), _most_threads)
 
 
 @cache
@@ -57,11 +71,11 @@ def _pool() -> ThreadPoolExecutor:
 
 
 def spread(work: Callable[[int, int], None], n: int, at_least: int = 1) -> None:
-    """Call ``work(start, stop)`` so that the calls cover [0, n), on all cores.
+    """Call ``work(start, stop)`` so that the calls cover [0, n), on all threads.
 
     at_least : items below which another thread does not pay
     """
-    parts = max(1, min(cores(), n // max(1, at_least)))
+    parts = max(1, min(threads(), n // max(1, at_least)))
     if parts == 1:
         work(0, n)
         return

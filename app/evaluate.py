@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import signal
-from collections.abc import Generator, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import radians
-from multiprocessing import get_context
 from pathlib import Path
 from statistics import median
 from time import perf_counter
@@ -19,6 +15,7 @@ from algorithms.casefiles import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, Case,
 from algorithms.errors import MapMergeError, NoAnswerError
 from algorithms.pose import pose_error
 from algorithms.steps import MergeResult
+from app.executor import Executor, Here, Lost, Task
 from app.report import report_of
 
 FINE_M = 0.15
@@ -44,33 +41,46 @@ class Order:
     rough: bool = False
 
 
-def evaluate(order: Order, jobs: int = 1, folders: Sequence[Path] | None = None) -> Iterator[Entry]:
+def evaluate(
+    order: Order, executor: Executor | None = None, folders: Sequence[Path] | None = None
+) -> Iterator[Entry]:
     """Yield an entry per case folder, in the order of their completion.
 
     A case that fails has its "error", and the others go on.
 
-    jobs    : processes at work; the answers don't depend on it
-    folders : the cases; all under ``order.root`` unless given
-    raises  : InputFileError where there is no case
+    executor : who does it; the answers don't depend on it
+    folders  : the cases; all under ``order.root`` unless given
+    raises   : InputFileError where there is no case
     """
+    executor = Here() if executor is None else executor
     folders = case_folders(order.root) if folders is None else folders
-    if jobs == 1 or len(folders) == 1:
+    unread: list[Entry] = []
+    taken: list[Path] = []
+
+    def tasks() -> Iterator[Task]:
         for folder in folders:
-            yield run_case(folder, order)
-        return
-    left = yield from _in_processes(folders, order, jobs)
-    for folder in left:  # one of them takes its process down: each alone shows which
-        if (yield from _in_processes([folder], order, 1)):
-            message = "the process that ran it ended; was there too little memory?"
-            yield _entry(folder, order) | {"error": message, "seconds": 0.0, "truth": None}
+            read = folder if not executor.far else _read(folder, order)
+            if isinstance(read, dict):
+                unread.append(read)
+            else:
+                taken.append(folder)
+                yield Task((read, order))
+
+    for number, answer in executor.run(_work, tasks()):
+        if isinstance(answer, Lost):
+            answer = _entry(taken[number], order) | {"error": answer.reason, "seconds": 0.0, "truth": None}
+        yield answer
+        while unread:
+            yield unread.pop(0)
+    yield from unread
 
 
-def evaluate_both(order: Order, jobs: int = 1) -> Iterator[Entry]:
+def evaluate_both(order: Order, executor: Executor | None = None) -> Iterator[Entry]:
     """Yield an entry per case with its observation, then one per case that also has a rough one."""
-    yield from evaluate(replace(order, rough=False), jobs)
+    yield from evaluate(replace(order, rough=False), executor)
     folders = rough_folders(order.root)
     if folders:
-        yield from evaluate(replace(order, rough=True), jobs, folders)
+        yield from evaluate(replace(order, rough=True), executor, folders)
 
 
 def rough_folders(root: Path) -> list[Path]:
@@ -78,52 +88,53 @@ def rough_folders(root: Path) -> list[Path]:
     return [folder for folder in case_folders(root) if (folder / ROUGH_OBSERVATION_FILE).exists()]
 
 
-def _in_processes(folders: Sequence[Path], order: Order, jobs: int) -> Generator[Entry, None, list[Path]]:
-    """Yield entries; return the folders that a broken pool left without one."""
-    left = dict.fromkeys(folders)
-    # "spawn": a copy of a process that already has threads can hang
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_leave_ctrl_c) as pool:
-        running: dict[Future[Entry], Path] = {
-            pool.submit(run_case, folder, order): folder for folder in folders
-        }
-        try:
-            for future in as_completed(running):
-                entry = future.result()
-                del left[running[future]]
-                yield entry
-        except BrokenProcessPool:
-            pass
-        except BaseException:  # Ctrl-C, or the caller has left the loop
-            pool.shutdown(wait=True, cancel_futures=True)
-            raise
-    return list(left)
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """A case that was read for somebody who can't read our files.
+
+    entry   : what its entry begins with
+    seconds : what reading it took
+    """
+
+    entry: Entry
+    case: Case
+    seconds: float
 
 
-def _leave_ctrl_c() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the first process hears it and ends the others
+def _work(_: None, given: tuple[Path | Reading, Order]) -> Entry:
+    return run_case(*given)
 
 
-def run_case(folder: Path, order: Order) -> Entry:
+def run_case(what: Path | Reading, order: Order) -> Entry:
     """Merge one case and judge it. A case that fails says why; it raises nothing but an interrupt."""
-    entry = _entry(folder, order)
-    began = perf_counter()
+    read = what if isinstance(what, Reading) else _read(what, order)
+    if not isinstance(read, Reading):
+        return read
+    case, entry, began = read.case, dict(read.entry), perf_counter()
     try:
-        case = read_case(folder, order.rough)
-        load_s = perf_counter() - began
-        try:
-            result = methods.merge(
-                case.ref, case.mov, case.observations, order.method, order.config, order.seed
-            )
-        except NoAnswerError as refusal:
-            entry |= {"no_answer": str(refusal), "truth": judge_case(case, None)}
-        else:
-            entry |= {"report": report_of(result, order.config, load_s), "truth": judge_case(case, result)}
-    except MapMergeError as error:
-        entry |= {"error": str(error), "truth": None}
-    except Exception as error:  # a bug in one case must not cost the others
-        entry |= {"error": f"bug: {type(error).__name__}: {error}", "truth": None}
-    entry["seconds"] = perf_counter() - began
+        result = methods.merge(case.ref, case.mov, case.observations, order.method, order.config, order.seed)
+        entry |= {"report": report_of(result, order.config, read.seconds), "truth": judge_case(case, result)}
+    except NoAnswerError as refusal:
+        entry |= {"no_answer": str(refusal), "truth": judge_case(case, None)}
+    except Exception as error:
+        entry |= _failed(error)
+    entry["seconds"] = read.seconds + perf_counter() - began
     return entry
+
+
+def _read(folder: Path, order: Order) -> Reading | Entry:
+    """The case in a folder; its entry where it can't be read."""
+    entry, began = _entry(folder, order), perf_counter()
+    try:
+        return Reading(entry, read_case(folder, order.rough), perf_counter() - began)
+    except Exception as error:
+        return entry | _failed(error) | {"seconds": perf_counter() - began}
+
+
+def _failed(error: Exception) -> Entry:
+    """What is told of a case that could not be run: a bug in one case must not cost the others."""
+    known = isinstance(error, MapMergeError)
+    return {"error": str(error) if known else f"bug: {type(error).__name__}: {error}", "truth": None}
 
 
 def _entry(folder: Path, order: Order) -> Entry:

@@ -36,6 +36,28 @@ def add_method(parser: Parser, words: Sequence[str]) -> None:
         parser.hint = f" (it may belong to a method other than {named})"
 
 
+def add_workers(parser: Parser, jobs: int | None) -> None:
+    """Add ``--jobs`` and ``--scheduler``: who does the work.
+
+    jobs : processes unless told otherwise; None: one per core
+    """
+    told = "one per core" if jobs is None else jobs
+    who = parser.add_mutually_exclusive_group()
+    who.add_argument(
+        "--jobs",
+        type=_jobs,
+        default=jobs,
+        metavar="N",
+        help=f"merges at a time, a process each, which share the cores (default: {told})",
+    )
+    who.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="let the workers of a Dask cluster do it, e.g. tcp://192.168.0.7:8786; "
+        "needs pip install 'mapmeld[dask]', here and there",
+    )
+
+
 def config_from(args: argparse.Namespace) -> Any:
     """The config of ``args.method`` with every setting that was given."""
     config = METHODS[args.method].defaults
@@ -62,6 +84,12 @@ def _method(name: str) -> str:
         near = did_you_mean(name, METHODS) or f"; known are {', '.join(METHODS)}"
         raise argparse.ArgumentTypeError(f"there is no method {name}{near}")
     return name
+
+
+def _jobs(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text} is no whole number from 1 up")
+    return int(text)
 
 
 def _seed(text: str) -> int:

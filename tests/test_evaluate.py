@@ -15,6 +15,8 @@ from algorithms.pose import Pose2
 from app import evaluate
 from app.cli import main
 from app.evaluate import Order, judge_case, run_case, totals_of
+from app.executor import Here
+from app.processes import Processes
 
 METHOD = "spectra-swarm"
 DEFAULTS = methods.METHODS[METHOD].defaults
@@ -161,8 +163,8 @@ def without_times(entries):
 
 
 def test_the_answers_do_not_depend_on_how_many_processes_work(cases):
-    one = list(evaluate.evaluate(order(cases), jobs=1))
-    two = list(evaluate.evaluate(order(cases), jobs=2))
+    one = list(evaluate.evaluate(order(cases), Here()))
+    two = list(evaluate.evaluate(order(cases), Processes(2)))
     assert without_times(one) == without_times(two)
 
 
@@ -208,16 +210,17 @@ def test_a_bug_in_one_case_is_told_as_one(cases, monkeypatch):
     assert told["error"] == "bug: ZeroDivisionError: division by zero"
 
 
-def die(folder, order):
-    """Stands for ``run_case``: one of the cases takes its process down."""
+def die(_, given):
+    """Stands for what works on a case: one of them takes its process down."""
+    folder, _order = given
     if folder.name == "neg_1":
         os._exit(1)
     return {"case": folder.name}
 
 
 def test_a_case_that_kills_its_process_costs_no_other(cases, monkeypatch):
-    monkeypatch.setattr(evaluate, "run_case", die)
-    told = list(evaluate.evaluate(order(cases), jobs=2))
+    monkeypatch.setattr(evaluate, "_work", die)
+    told = list(evaluate.evaluate(order(cases), Processes(2)))
     assert {case["case"] for case in told} == {"bad_1", "flat_1", "flat_2", "flat_3", "neg_1"}
     assert [case["case"] for case in told if "error" in case] == ["neg_1"]
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from app.usage import Parser
 
-USAGE = "DIR [--rough | --both] [--json FILE] [--jobs N] [options]"
+USAGE = "DIR [--rough | --both] [--json FILE] [--jobs N | --scheduler ADDRESS] [options]"
 DESCRIPTION = """\
 Run a method on every case folder under DIR and hold it against the truth.
 
@@ -43,7 +43,7 @@ COLUMNS = {
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     """Tell the parser what the command takes; flags of the settings depend on the method in ``words``."""
-    from app.flags import add_method
+    from app.flags import add_method, add_workers
 
     parser.add_argument("folder", type=Path, metavar="DIR", help="folder of cases, or one case")
     which = parser.add_mutually_exclusive_group()
@@ -52,9 +52,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
         "--both", action="store_true", help="run each case with either file, and print a table for each"
     )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write every report and the totals there")
-    parser.add_argument(
-        "--jobs", type=_jobs, default=1, metavar="N", help="cases at a time, a process each (default: 1)"
-    )
+    add_workers(parser, 1)
     add_method(parser, words)
 
 
@@ -63,12 +61,14 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     from algorithms.atomic import write_file
     from algorithms.casefiles import case_folders
     from app.evaluate import OVERALL, Order, evaluate, evaluate_both, rough_folders, totals_of
+    from app.executor import executor_for
     from app.flags import config_from
     from app.progress import bar
 
+    executor = executor_for(args.jobs, args.scheduler)
     order = Order(args.folder, args.method, config_from(args), args.seed, args.rough)
     total = len(case_folders(args.folder)) + (len(rough_folders(args.folder)) if args.both else 0)
-    told = evaluate_both(order, args.jobs) if args.both else evaluate(order, args.jobs)
+    told = evaluate_both(order, executor) if args.both else evaluate(order, executor)
     entries = list(bar(iterable=told, total=total, unit="case"))
     entries.sort(key=lambda entry: (str(entry["observation"]), str(entry["case"])))
     totals = totals_of(entries)
@@ -117,9 +117,3 @@ def remarks(entries: Sequence[Mapping[str, Any]]) -> Iterator[str]:
             if truth["expected"] == "merge":
                 apart = f"{truth['distance']:.2f} m and {degrees(truth['angle']):.1f}° off"
             yield f"wrong merge accepted: {entry['case']}: {apart}"
-
-
-def _jobs(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text} is no whole number from 1 up")
-    return int(text)

@@ -1,0 +1,144 @@
+"""Work done elsewhere: the same answers whoever does it, and none that is lost with a worker."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from algorithms import kernels
+from algorithms.errors import SettingError
+from app.executor import Here, Lost, Shared, Task, executor_for, unpacked
+from app.processes import Processes
+
+ROOT = Path(__file__).parent.parent
+
+
+def add(shared, order):
+    return shared + order
+
+
+def fragile(folder, order):
+    """Dies the first time that it is asked for 3, and each time for 5."""
+    if order == 5:
+        os._exit(1)
+    if order == 3 and not (folder / "died").exists():
+        (folder / "died").touch()
+        os._exit(1)
+    return order * order
+
+
+def fail(_, order):
+    raise SettingError(f"{order} is none of ours")
+
+
+def who(_, order):
+    return os.getpid(), kernels.threads()
+
+
+def linger(folder, order):
+    (folder / f"began_{os.getpid()}").touch()
+    if order != "quick":
+        time.sleep(60)
+
+
+def until(true, seconds=30.0):
+    """Wait for something to become true; whether it did."""
+    end = time.monotonic() + seconds
+    while not true() and time.monotonic() < end:
+        time.sleep(0.02)
+    return true()
+
+
+def pid(began):
+    return int(began.name.removeprefix("began_"))
+
+
+def alive(number):
+    try:
+        return Path(f"/proc/{number}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+@pytest.mark.parametrize("executor", [Here(), Processes(2)])
+def test_every_task_is_answered_with_the_value_that_it_shares(executor):
+    one, two = Shared.of(100), Shared.of(200)
+    told = dict(executor.run(add, [Task(order, one if order < 3 else two) for order in range(6)]))
+    assert told == {0: 100, 1: 101, 2: 102, 3: 203, 4: 204, 5: 205}
+
+
+def test_a_shared_value_comes_back_as_it_was(small_case):
+    value = unpacked(Shared.of(small_case).data)
+    assert (value.ref.cells == small_case.ref.cells).all()
+    assert value.observations == small_case.observations
+    assert len(Shared.of(small_case).data) < small_case.ref.cells.size / 10
+
+
+def test_a_process_that_dies_costs_a_second_try_and_one_that_always_dies_only_its_own_task(tmp_path):
+    shared = Shared.of(tmp_path)
+    told = dict(Processes(2).run(fragile, [Task(order, shared) for order in range(8)]))
+    assert {order: answer for order, answer in told.items() if order != 5} == {
+        order: order * order for order in range(8) if order != 5
+    }
+    assert isinstance(told[5], Lost)
+
+
+@pytest.mark.parametrize("executor", [Here(), Processes(2)])
+def test_what_the_work_raises_is_raised_to_whoever_asked(executor):
+    with pytest.raises(SettingError, match="1 is none of ours"):
+        list(executor.run(fail, [Task(1)]))
+
+
+def test_tasks_are_taken_only_as_workers_become_free():
+    taken = []
+
+    def tasks():
+        for order in range(100):
+            taken.append(order)
+            yield Task(order, Shared.of(order))
+
+    with closing(Here().run(add, tasks())) as answers:
+        assert next(answers) == (0, 0)
+        assert taken == [0]
+
+
+def test_processes_share_the_cores_among_them(monkeypatch):
+    ((_, (number, threads)),) = Processes(max(2, kernels.cores())).run(who, [Task(0)])
+    assert number != os.getpid()
+    assert threads == 1
+
+
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGKILL])
+def test_no_process_outlives_the_one_that_asked(end, tmp_path):
+    script = (
+        "import sys, pathlib; from app.executor import *; from app.processes import Processes\n"
+        "sys.path.insert(0, 'tests'); import test_executor\n"
+        "shared = Shared.of(pathlib.Path(sys.argv[1]))\n"
+        "list(Processes(1).run(test_executor.linger, [Task(0, shared)]))"
+    )
+    command = [sys.executable, "-c", script, str(tmp_path)]
+    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, start_new_session=True) as first:
+        assert until(lambda: list(tmp_path.glob("began_*")))
+        (began,) = tmp_path.glob("began_*")
+        assert alive(pid(began))
+        first.send_signal(end)
+        assert first.wait(timeout=30) != 0
+    assert until(lambda: not alive(pid(began)))
+
+
+def test_who_leaves_the_loop_stops_the_work_at_once(tmp_path):
+    answers = Processes(2).run(linger, [Task("quick", Shared.of(tmp_path)), Task(0, Shared.of(tmp_path))])
+    assert next(answers) == (0, None)
+    answers.close()
+    assert until(lambda: not any(alive(pid(path)) for path in tmp_path.glob("began_*")))
+
+
+def test_one_job_is_done_here_and_more_in_processes():
+    assert isinstance(executor_for(1), Here)
+    assert executor_for(3).jobs == 3
+    assert executor_for().jobs == kernels.cores()
