@@ -138,11 +138,16 @@ def _failed(error: Exception) -> Entry:
 
 
 def _entry(folder: Path, order: Order) -> Entry:
-    inside = folder.relative_to(order.root).as_posix()
     return {
-        "case": folder.resolve().name if inside == "." else inside,
+        "case": name_in(order.root, folder),
         "observation": ROUGH_OBSERVATION_FILE if order.rough else OBSERVATION_FILE,
     }
+
+
+def name_in(root: Path, folder: Path) -> str:
+    """What a case is called: its place under the root; the root's own name where it is the case."""
+    inside = folder.relative_to(root).as_posix()
+    return folder.resolve().name if inside == "." else inside
 
 
 def judge_case(case: Case, result: MergeResult | None) -> dict[str, Any] | None:

@@ -89,7 +89,9 @@ def test_the_page_does_not_know_the_command_line():
     assert [module for module in knowing if not module.startswith(terminal)] == []
 
 
-@pytest.mark.parametrize("module", ["session", "render", "controls", "report", "evaluate"])
+@pytest.mark.parametrize(
+    "module", ["session", "render", "controls", "report", "evaluate", "sweep", "contest"]
+)
 def test_what_is_tested_without_a_browser_loads_no_server(module):
     assert "viser" not in loaded_by(f"app.{module}")
 
