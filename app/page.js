@@ -128,7 +128,7 @@
       S.dirty = true;
     }
     const eye = camera.matrixWorldInverse.elements.join() + camera.projectionMatrix.elements.join();
-    if (S.hand) harden(); // pictures are painted anew in quick succession: never one of them blurred
+    harden(); // before a new picture is seen: never blurred, and neither built nor sent to the card twice
     if (!S.dirty && eye === painted) return;
     painted = eye; S.dirty = false;
     if (S.tween || S.moved) { placeMov(); m.requestRender(); S.moved = !!S.tween; if (S.tween) S.dirty = true; }
@@ -317,9 +317,19 @@
       if (node.isMesh && map && node.material.depthTest) { // flat pictures: the higher one is on top
         const material = node.material;
         material.depthTest = material.depthWrite = false;
-        material.onBeforeCompile = (shader) => { // thin walls stay dark from afar
-          shader.fragmentShader = shader.fragmentShader.replace("#include <map_fragment>",
-            "#include <map_fragment>\ndiffuseColor.a = min(1.0, 2.0 * diffuseColor.a);");
+        // an excerpt in cells of their own takes the place of a part of a pooled picture: see closer.js
+        const excerpt = material.userData.closer = { closerHole: { value: [0, 0, 0, 0] }, closerCells: { value: null } };
+        material.onBeforeCompile = (shader) => {
+          Object.assign(shader.uniforms, { closerHole: excerpt.closerHole, closerCells: excerpt.closerCells });
+          shader.fragmentShader = "uniform vec4 closerHole; uniform sampler2D closerCells;\n" + shader.fragmentShader.replace("#include <map_fragment>", `
+            vec4 cells = texture2D(map, vMapUv);
+            if (closerHole.z > closerHole.x) {
+              vec2 at = (vec2(vMapUv.x, 1.0 - vMapUv.y) - closerHole.xy) / (closerHole.zw - closerHole.xy);
+              vec4 closer = texture2D(closerCells, at);
+              if (all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)))) cells = closer;
+            }
+            diffuseColor *= cells;
+            diffuseColor.a = min(1.0, 2.0 * diffuseColor.a);`); // thin walls stay dark from afar
         };
         material.needsUpdate = true;
         changed = true;
@@ -332,7 +342,7 @@
     });
     if (changed) m.requestRender();
   }
-  setInterval(() => { harden(); press(); }, 100);
+  setInterval(press, 100);
   const loop = (time) => { try { paint(performance.now()); } catch (error) { console.error("mapmeld:", error); } requestAnimationFrame(loop); };
   requestAnimationFrame(loop);
 })();

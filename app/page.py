@@ -36,6 +36,7 @@ from app.stage import Stage, TabStage, mark
 from app.story import Story
 from app.telling import Telling
 from app.timeline import Timeline
+from app.views.closer import Closeness
 from app.views.ground import Mode
 from app.views.heights import HeightsView
 from app.views.maps import MapView
@@ -73,6 +74,7 @@ class Page(Telling, Handling, Learning):
         self._turn = RLock()  # wishes come one after the other; taken before session.drawing
         self.session = Session(self)
         self._channel.on("compare", self._compare, mode=MODES)
+        self._closer = Closeness(self._channel, self._stage, self._maps.ground, self.session.drawing)
         inputs = Inputs.of(initial) if initial else Inputs()
         self._build(inputs.name)
         self._learn_with(client.gui, lesson)
@@ -109,6 +111,7 @@ class Page(Telling, Handling, Learning):
         self._channel.close()
         self._lesson.close()
         self._hand.close()
+        self._closer.close()
         self.session.close()
 
     # --- widgets ----------------------------------------------------------------------------------

@@ -19,9 +19,13 @@ from algorithms.touch import AGREES, CONTRADICTS, Touch, Walls
 from app.palette import Palette, Rgb, viridis
 
 Pixels = NDArray[np.uint8]
+Places = NDArray[np.intp]
 
 FAINT = 70  # opacity of walls that are not the point of a picture; of 255
 MOST_PIXELS = 2048  # a side of a picture that is sent; a finer map is pooled down to it
+
+Part = tuple[slice, slice]  # rows and columns of a grid
+WHOLE: Part = (slice(None), slice(None))
 
 
 @dataclass(frozen=True)
@@ -63,14 +67,23 @@ def _tinted(mask: NDArray[np.bool_], colour: Rgb, alpha: int = 255) -> Pixels:
     return pixels
 
 
-def walls(cells: CellArray, colour: Rgb, alpha: int = 255, most: int = MOST_PIXELS) -> Picture:
-    """The walls in one colour, everything else transparent; ``most`` pixels on a side, here and below."""
+def walls(
+    cells: CellArray, colour: Rgb, alpha: int = 255, most: int = MOST_PIXELS, part: Part = WHOLE
+) -> Picture:
+    """The walls in one colour, everything else transparent.
+
+    Here and below: at the most ``most`` pixels on a side, of the cells of ``part`` alone.
+    """
+    cells = cells[part]
     factor = pooling(cells.shape, most)
     return Picture(_tinted(pool(cells, factor) >= OCCUPIED_FROM, colour, alpha), factor)
 
 
-def floor(cells: CellArray, palette: Palette, alpha: int = 255, most: int = MOST_PIXELS) -> Picture:
+def floor(
+    cells: CellArray, palette: Palette, alpha: int = 255, most: int = MOST_PIXELS, part: Part = WHOLE
+) -> Picture:
     """What is known and no wall, in the colour of free space; unknown is transparent."""
+    cells = cells[part]
     factor = pooling(cells.shape, most)
     return Picture(_tinted(pool(cells, factor) != UNKNOWN, palette.free, alpha), factor)
 
@@ -86,46 +99,48 @@ def sheet(cells: CellArray, colour: Rgb, palette: Palette, most: int = MOST_PIXE
     return Picture(pixels, factor)
 
 
-def touches(walls: Walls, told: Touch, palette: Palette, most: int = MOST_PIXELS) -> Picture:
+def touches(
+    walls: Walls, told: Touch, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE
+) -> Picture:
     """The walls of one map that the other one agrees with or denies; the rest transparent.
 
     told : (N,) for every wall cell, as ``Walls.told`` gives it
     """
-    factor = pooling(walls.grid.cells.shape, most)
-    rows, cols = walls.cells
-    shape = [-(-side // factor) for side in walls.grid.cells.shape]
-    pixels = np.zeros((*shape, 4), dtype=np.uint8)
+    shape = walls.grid.cells[part].shape
+    factor = pooling(shape, most)
+    within, rows, cols = _within(part, walls.grid.cells.shape, *walls.cells)
+    told = told[within]
+    pixels = np.zeros((*(-(-side // factor) for side in shape), 4), dtype=np.uint8)
     for kind, colour in ((AGREES, palette.agreed), (CONTRADICTS, palette.conflict)):
         at = told == kind
         pixels[rows[at] // factor, cols[at] // factor] = (*colour, 255)
     return Picture(pixels, factor)
 
 
-def levels(augmented: AugmentedMap, palette: Palette, most: int = MOST_PIXELS) -> Picture:
+def levels(augmented: AugmentedMap, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE) -> Picture:
     """The walls in the colours of their levels, eq. (4); walls too far to count keep a faint grey."""
-    cells = augmented.grid.cells
+    cells = augmented.grid.cells[part]
     factor = pooling(cells.shape, most)
     pixels = _tinted(pool(cells, factor) >= OCCUPIED_FROM, palette.margin, FAINT)
-    if len(augmented.levels):
+    within, rows, cols = _within(part, augmented.grid.cells.shape, augmented.rows, augmented.cols)
+    if within.any():
         share = np.zeros(pixels.shape[:2])
-        np.maximum.at(
-            share, (augmented.rows // factor, augmented.cols // factor), augmented.levels / augmented.peak
-        )
+        np.maximum.at(share, (rows // factor, cols // factor), augmented.levels[within] / augmented.peak)
         rows, cols = np.nonzero(share > 0.004)  # one step of the colour scale
         pixels[rows, cols, :3] = viridis(share[rows, cols])
         pixels[rows, cols, 3] = 255
     return Picture(pixels, factor)
 
 
-def merged_floor(fusion: Fusion, palette: Palette, most: int = MOST_PIXELS) -> Picture:
+def merged_floor(fusion: Fusion, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE) -> Picture:
     """What either map knows, in the colour of free space."""
-    return floor(fusion.merged.cells, palette, most=most)
+    return floor(fusion.merged.cells, palette, most=most, part=part)
 
 
-def merged_walls(fusion: Fusion, palette: Palette, most: int = MOST_PIXELS) -> Picture:
+def merged_walls(fusion: Fusion, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE) -> Picture:
     """Whose wall it is, where both agree on a wall, and where they contradict; the rest transparent."""
-    factor = pooling(fusion.merged.cells.shape, most)
-    ref, mov = pool(fusion.ref_cells, factor), pool(fusion.mov_cells, factor)
+    factor = pooling(fusion.merged.cells[part].shape, most)
+    ref, mov = pool(fusion.ref_cells[part], factor), pool(fusion.mov_cells[part], factor)
     ref_wall, mov_wall = ref >= OCCUPIED_FROM, mov >= OCCUPIED_FROM
     ref_free = (ref != UNKNOWN) & (ref <= FREE_UP_TO)
     mov_free = (mov != UNKNOWN) & (mov <= FREE_UP_TO)
@@ -140,14 +155,25 @@ def merged_walls(fusion: Fusion, palette: Palette, most: int = MOST_PIXELS) -> P
     return Picture(pixels, factor)
 
 
-def denied_walls(fusion: Fusion, found: Conflicts, palette: Palette, most: int = MOST_PIXELS) -> Picture:
+def denied_walls(
+    fusion: Fusion, found: Conflicts, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE
+) -> Picture:
     """Walls that the other map denies, in the colour of the map they are of; all other walls faint."""
-    factor = pooling(fusion.merged.cells.shape, most)
-    wall = np.maximum(pool(fusion.ref_cells, factor), pool(fusion.mov_cells, factor)) >= OCCUPIED_FROM
-    pixels = _tinted(wall, palette.margin, FAINT)
+    ref, mov = fusion.ref_cells[part], fusion.mov_cells[part]
+    factor = pooling(ref.shape, most)
+    pixels = _tinted(np.maximum(pool(ref, factor), pool(mov, factor)) >= OCCUPIED_FROM, palette.margin, FAINT)
     for mask, colour in ((found.ref_only, palette.ref), (found.mov_only, palette.mov)):
-        pixels[_pool_mask(mask, factor)] = (*colour, 255)
+        pixels[_pool_mask(mask[part], factor)] = (*colour, 255)
     return Picture(pixels, factor)
+
+
+def _within(
+    part: Part, shape: tuple[int, ...], rows: Places, cols: Places
+) -> tuple[BoolArray, Places, Places]:
+    """Which of these cells lie in a part of a grid; rows and columns of those, counted from its corner."""
+    (top, bottom, _), (left, right, _) = (cut.indices(n) for cut, n in zip(part, shape, strict=True))
+    within = (rows >= top) & (rows < bottom) & (cols >= left) & (cols < right)
+    return within, rows[within] - top, cols[within] - left
 
 
 def _pool_mask(mask: BoolArray, factor: int) -> BoolArray:

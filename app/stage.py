@@ -20,7 +20,7 @@ from app.layout import Rect
 from app.palette import Palette, Rgb, css
 
 # ink.js first: page.js draws with it, and so does a saved replay; the others add to the page
-SCRIPTS = ("ink.js", "page.js", "hand.js", "compare.js", "measure.js", "lesson.js", "keys.js")
+SCRIPTS = ("ink.js", "page.js", "hand.js", "closer.js", "compare.js", "measure.js", "lesson.js", "keys.js")
 _SCRIPT = "\n".join((Path(__file__).parent / name).read_text(encoding="utf-8") for name in SCRIPTS)
 
 Item = dict[str, Any]
@@ -94,6 +94,11 @@ class Stage(ABC):
         """How the two maps are compared where they lie: modes, mode, places, colours; see compare.js."""
         with self._lock:
             self._pending.setdefault("compare", {}).update(told)
+
+    def closer(self, name: str, excerpt: dict[str, Any] | None) -> None:
+        """Lay a sharp excerpt over a picture of the scene; None: lay it bare. See closer.js."""
+        with self._lock:
+            self._pending.setdefault("closer", {})[name] = excerpt
 
     def listen(self, uuid: str) -> None:
         """Have the page tell its events to this field; see app/channel.py."""

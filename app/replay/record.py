@@ -26,6 +26,7 @@ from app.replay.curves import curves
 from app.replay.pictures import PictureScene
 from app.stage import Stage
 from app.story import Story
+from app.views.images import Size
 from app.views.maps import MapView
 from app.words import typeset
 
@@ -94,7 +95,7 @@ def record(steps: Iterable[Step], inputs: Inputs, config: Any) -> Recording:
     """
     scene = PictureScene()
     stage = Recorder(scene)
-    maps = MapView(SimpleNamespace(scene=scene), stage, PICTURE)  # type: ignore[arg-type]
+    maps = MapView(SimpleNamespace(scene=scene), stage, Size(PICTURE, PICTURE))  # type: ignore[arg-type]
     maps.load(inputs, lay_out(inputs.ref, inputs.mov, inputs.at, ASPECT), LIGHT)
     story, marks, result = Story(config), [{"t": 0.0, "name": "Maps"}], None
     stage.hud(state=words.SIDE_BY_SIDE, mood="running", legend=legend(LIGHT, MAP, story))

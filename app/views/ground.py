@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from math import cos, sin
-from typing import Literal
+from typing import Any, Literal
 
 import viser
 
@@ -16,7 +18,9 @@ from algorithms.touch import Touch, Walls
 from app import render
 from app.layout import Layout
 from app.palette import Palette
-from app.views.images import GridImage
+from app.stage import Stage
+from app.views.excerpts import View
+from app.views.images import Closer, GridImage, Size
 
 Which = Literal["sources", "levels", "merged", "touching"]
 Mode = Literal["overlay", "blink", "curtain", "difference"]  # how two maps are compared where they lie
@@ -24,42 +28,48 @@ Mode = Literal["overlay", "blink", "curtain", "difference"]  # how two maps are 
 # Heights in the order they lie on each other; all floors are below all walls, so that a map that
 # slides over the other hides none of its walls.
 FREE_1, FREE_2, WALLS_1, WALLS_2, MERGED_FREE, MERGED_WALLS, GHOST = 0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6
+# of a large map only what is looked at closely is sent in cells of its own: see app/views/closer.py
+LAID_OVER = Size(whole=render.MOST_PIXELS, pooled=1024)
 GHOSTLY = 60  # of 255; twice as much on the page, which makes thin walls darker
 
 
 class Ground:
     """Map 1 lies still; map 2 hangs on the frame /world/mov, which the page turns and slides."""
 
-    def __init__(self, scene: viser.SceneApi, most: int = render.MOST_PIXELS) -> None:
-        """most : pixels on a side of a picture."""
-        self._most = most
+    def __init__(self, scene: viser.SceneApi, size: Size = LAID_OVER, stage: Stage | None = None) -> None:
+        """stage : where excerpts of the pictures are seen."""
+        self.changed: Callable[[], Any] = lambda: None  # is told of every change of what is shown
+
+        def image(name: str, height: float) -> GridImage:
+            return GridImage(scene, f"/world/{name}", height, size, stage)
+
         # viser turns a y-up scene half round its y axis; undone here, scene and page agree
         scene.add_frame("/world", show_axes=False, wxyz=(0.0, 0.0, 1.0, 0.0))
         scene.add_frame("/world/ref", show_axes=False)
         scene.add_frame("/world/mov", show_axes=False)
         self._free = (
-            GridImage(scene, "/world/ref/free", FREE_1),
-            GridImage(scene, "/world/mov/free", FREE_2),
+            image("ref/free", FREE_1),
+            image("mov/free", FREE_2),
         )
         self._walls = (
-            GridImage(scene, "/world/ref/walls", WALLS_1),
-            GridImage(scene, "/world/mov/walls", WALLS_2),
+            image("ref/walls", WALLS_1),
+            image("mov/walls", WALLS_2),
         )
         self._levels = (
-            GridImage(scene, "/world/ref/levels", WALLS_1),
-            GridImage(scene, "/world/mov/levels", WALLS_2),
+            image("ref/levels", WALLS_1),
+            image("mov/levels", WALLS_2),
         )
         self._merged = (
-            GridImage(scene, "/world/ref/merged_free", MERGED_FREE),
-            GridImage(scene, "/world/ref/merged_walls", MERGED_WALLS),
+            image("ref/merged_free", MERGED_FREE),
+            image("ref/merged_walls", MERGED_WALLS),
         )
-        self._denied = GridImage(scene, "/world/ref/denied", MERGED_WALLS)
+        self._denied = image("ref/denied", MERGED_WALLS)
         self._touches = (
-            GridImage(scene, "/world/ref/touches", MERGED_FREE),
-            GridImage(scene, "/world/mov/touches", MERGED_WALLS),
+            image("ref/touches", MERGED_FREE),
+            image("mov/touches", MERGED_WALLS),
         )
         self._ghost_frame = scene.add_frame("/world/ghost", show_axes=False)
-        self._ghost = GridImage(scene, "/world/ghost/walls", GHOST)
+        self._ghost = image("ghost/walls", GHOST)
         self._haunted: GridMap | None = None  # whose walls the ghost is made of
         self._ghost_at: Pose2 | None = None
         pairs = (*self._free, *self._walls, *self._levels, *self._merged, *self._touches)
@@ -90,14 +100,13 @@ class Ground:
         self._haunted = self._contrasted = None
         self._mov = mov
         colours, anchors = (palette.ref, palette.mov), (layout.anchor_ref, layout.anchor_mov)
-        most = self._most
         for k, grid in enumerate(grids):
             if same[k]:
                 self._free[k].move(anchors[k])
                 self._walls[k].move(anchors[k])
             elif grid is not None:
-                self._free[k].show(render.floor(grid.cells, palette, most=most), grid, anchors[k])
-                self._walls[k].show(render.walls(grid.cells, colours[k], most=most), grid, anchors[k])
+                self._free[k].show(partial(render.floor, grid.cells, palette), grid, anchors[k])
+                self._walls[k].show(partial(render.walls, grid.cells, colours[k]), grid, anchors[k])
         self.show("sources")
 
     def lift(self, detail: AugmentDetail | None) -> None:
@@ -107,7 +116,7 @@ class Ground:
         self._lifted = detail
         anchors = (self._layout.anchor_ref, self._layout.anchor_mov)
         for image, augmented, anchor in zip(self._levels, (detail.ref, detail.mov), anchors, strict=True):
-            image.show(render.levels(augmented, self._palette, self._most), augmented.grid, anchor)
+            image.show(partial(render.levels, augmented, self._palette), augmented.grid, anchor)
         self.show(self.which)
 
     def merge(self, fusion: Fusion) -> None:
@@ -118,7 +127,7 @@ class Ground:
             self._fused = fusion
             floor, walls = self._merged
             for image, draw in ((floor, render.merged_floor), (walls, render.merged_walls)):
-                image.show(draw(fusion, self._palette, self._most), fusion.merged, self._layout.anchor_ref)
+                image.show(partial(draw, fusion, self._palette), fusion.merged, self._layout.anchor_ref)
         self.show("merged")
 
     def compare(self, mode: Mode, conflicts: Conflicts | None) -> None:
@@ -137,8 +146,8 @@ class Ground:
             return False
         if found is not self._contrasted:
             self._contrasted = found
-            picture = render.denied_walls(fusion, found, self._palette, self._most)
-            self._denied.show(picture, fusion.merged, self._layout.anchor_ref)
+            draw = partial(render.denied_walls, fusion, found, self._palette)
+            self._denied.show(draw, fusion.merged, self._layout.anchor_ref)
         return True
 
     def touch(self, walls: tuple[Walls, Walls], told: tuple[Touch, Touch]) -> None:
@@ -147,16 +156,17 @@ class Ground:
             return
         anchors = (self._layout.anchor_ref, self._layout.anchor_mov)
         for image, one, touch, anchor in zip(self._touches, walls, told, anchors, strict=True):
-            image.repaint(render.touches(one, touch, self._palette, self._most), one.grid, anchor)
+            image.repaint(partial(render.touches, one, touch, self._palette), one.grid, anchor)
         if self.which != "touching":
             self.show("touching")
+        self.changed()
 
     def ghost(self, at: Pose2 | None) -> None:
         """Show map 2's walls faintly with its anchor at another place of the scene; None: nowhere."""
         if at is not None and self._mov is not None and self._layout is not None and self._palette:
             if self._haunted is not self._mov:
                 self._haunted = self._mov
-                faint = render.walls(self._mov.cells, self._palette.rival, GHOSTLY, self._most)
+                faint = partial(render.walls, self._mov.cells, self._palette.rival, GHOSTLY)
                 self._ghost.show(faint, self._mov, self._layout.anchor_mov)
             self._ghost_frame.position = (at.x, at.y, 0.0)
             self._ghost_frame.wxyz = (cos(at.theta / 2), 0.0, 0.0, sin(at.theta / 2))
@@ -187,6 +197,13 @@ class Ground:
 
     def _show_ghost(self) -> None:
         self._ghost.visible(self._ghost_at is not None and self._mode == "overlay")
+        self.changed()
+
+    def closer(self, view: View) -> list[Closer]:
+        """The excerpts that this view lacks, or has no use for any more."""
+        at = {"ref": Pose2(), "mov": view.mov, "ghost": self._ghost_at or Pose2()}
+        found = (image.closer(view, at[image.name.split("/")[2]]) for image in self._all)
+        return [closer for closer in found if closer is not None]
 
     def hide(self) -> None:
         """Hide everything; ``show(self.which)`` brings it back."""

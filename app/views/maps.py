@@ -29,11 +29,11 @@ from app import words
 from app.inputs import Inputs
 from app.layout import Layout, Rect, known_hull, union
 from app.palette import LIGHT, Palette, css
-from app.render import MOST_PIXELS
 from app.stage import Stage, cloud, mark
 from app.story import Story
 from app.views import signs
-from app.views.ground import Ground, Mode
+from app.views.ground import LAID_OVER, Ground, Mode
+from app.views.images import Size
 
 TURN_MS, SLIDE_MS, FOLLOW_MS = 900.0, 330.0, 70.0
 MOST_PARTICLES = 600  # drawn; more would be a blot
@@ -43,10 +43,9 @@ OF_A_RUN = ("aug", "window", "box", "swarm", "rival", "best")
 class MapView:
     """Draws a story over the ground, and says where the camera goes."""
 
-    def __init__(self, client: viser.ClientHandle, stage: Stage, most: int = MOST_PIXELS) -> None:
-        """most : pixels on a side of a picture."""
+    def __init__(self, client: viser.ClientHandle, stage: Stage, size: Size = LAID_OVER) -> None:
         self._stage = stage
-        self._ground = Ground(client.scene, most)
+        self.ground = Ground(client.scene, size, stage)
         self._inputs = Inputs()
         self._palette = LIGHT
         self._mov_at = Pose2()
@@ -59,12 +58,12 @@ class MapView:
     def load(self, inputs: Inputs, layout: Layout, palette: Palette) -> None:
         """Show maps side by side, before any merge."""
         self._inputs, self.layout, self._palette = inputs, layout, palette
-        self._ground.load(inputs.ref, inputs.mov, layout, palette)
+        self.ground.load(inputs.ref, inputs.mov, layout, palette)
         self.apart()
 
     def apart(self) -> None:
         """Put map 2 beside map 1, with nothing of a search over them, and look at both."""
-        self._ground.show("sources")
+        self.ground.show("sources")
         self._place(self.layout.apart, 0)
         self._clear(*OF_A_RUN)
         self._robots(together=False)
@@ -76,18 +75,18 @@ class MapView:
 
     def recolour(self, palette: Palette, story: Story) -> None:
         """Draw everything again in other colours."""
-        which, self._palette = self._ground.which, palette
-        self._ground.load(self._inputs.ref, self._inputs.mov, self.layout, palette)
-        self._ground.lift(story.get(AugmentDetail))
-        self._ground.show(which)
+        which, self._palette = self.ground.which, palette
+        self.ground.load(self._inputs.ref, self._inputs.mov, self.layout, palette)
+        self.ground.lift(story.get(AugmentDetail))
+        self.ground.show(which)
 
     def visible(self, yes: bool) -> None:
         """Show or hide everything of this view; ink comes back with the next ``show``."""
         if yes:
-            self._ground.show(self._ground.which)
+            self.ground.show(self.ground.which)
             self._robots(together=self._mov_at != self.layout.apart)
         else:
-            self._ground.hide()
+            self.ground.hide()
             self._clear(*OF_A_RUN, "robots", "sight", "grip")
 
     # --- map 2 in a person's hand -----------------------------------------------------------------
@@ -102,7 +101,7 @@ class MapView:
         mov = self._inputs.mov
         if mov is None:
             return
-        self._ground.show("sources")
+        self.ground.show("sources")
         self._clear(*OF_A_RUN)
         self._place(at, 0)
         self._robots(together=True)
@@ -116,24 +115,24 @@ class MapView:
 
     def touch(self, walls: tuple[Walls, Walls], told: tuple[Touch, Touch]) -> None:
         """Show which walls coincide and which are denied; see ``Ground.touch``."""
-        self._ground.touch(walls, told)
+        self.ground.touch(walls, told)
 
     def let_go(self) -> None:
         """Nothing is in a person's hand."""
         self._stage.hand(None)
         self._clear("grip")
-        if self._ground.which == "touching":
-            self._ground.show("sources")
+        if self.ground.which == "touching":
+            self.ground.show("sources")
 
     @property
     def together(self) -> bool:
         """Whether map 2 lies over map 1, as it is."""
-        return self._inputs.complete and self._ground.which != "levels" and self._mov_at != self.layout.apart
+        return self._inputs.complete and self.ground.which != "levels" and self._mov_at != self.layout.apart
 
     def compare(self, mode: Mode, conflicts: Conflicts | None) -> None:
         """Show both maps in this way where they lie over each other; a rival would be one map too many."""
         self._mode = mode
-        self._ground.compare(mode, conflicts)
+        self.ground.compare(mode, conflicts)
 
     def extent(self) -> Rect:
         """Rectangle around both maps as they lie now."""
@@ -149,7 +148,7 @@ class MapView:
         live   : the run is told at a pace: map 2 glides from place to place
         """
         detail = story.last.detail if story.last else None
-        self._ground.lift(story.get(AugmentDetail))
+        self.ground.lift(story.get(AugmentDetail))
         glide = 1.0 if live else 0.0
         look: Rect | None = None
         if isinstance(detail, (AugmentDetail, HoughDetail)):
@@ -168,10 +167,10 @@ class MapView:
 
     def preview(self, story: Story, config: Any) -> None:
         """Draw what a moved slider does before there is a merge: levels, Σ_aug, windows, the box's size."""
-        self._ground.lift(story.get(AugmentDetail))
+        self.ground.lift(story.get(AugmentDetail))
         self._lifted(0.0, 0.0)
         if not story.reached(AugmentDetail):  # a method without levels
-            self._ground.show("sources")
+            self.ground.show("sources")
         self._rings(config)
         box = getattr(config, "box", None)
         if box is not None:
@@ -189,7 +188,7 @@ class MapView:
 
     def _lifted(self, turn: float, glide: float) -> Rect:
         turned = Pose2(self.layout.apart.x, self.layout.apart.y, turn)
-        self._ground.show("levels")
+        self.ground.show("levels")
         self._place(turned, glide * TURN_MS)
         self._clear(*OF_A_RUN)
         self._robots(together=False)
@@ -202,7 +201,7 @@ class MapView:
 
     def _candidates(self, story: Story, glide: float) -> Rect:
         colours, found = self._palette, story.get(CandidatesDetail)
-        self._ground.show("sources")
+        self.ground.show("sources")
         self._clear("aug", "swarm", "rival", "best")
         self._windows(story, self.layout.swept())
         tried = found.candidates if found else [shift.candidate for shift in story.shifts]
@@ -218,7 +217,7 @@ class MapView:
 
     def _refine(self, story: Story, detail: RefineDetail, glide: float) -> Rect | None:
         layout, colours, state = self.layout, self._palette, detail.state
-        self._ground.show("sources")
+        self.ground.show("sources")
         self._clear("aug", "rival")
         window = story.get(WindowDetail)
         coupled = window is not None and isinstance(window.window, CoupledWindow)
@@ -239,7 +238,7 @@ class MapView:
         return signs.footprint(detail.box, layout)
 
     def _prove(self, story: Story, detail: ProofDetail, glide: float) -> Rect | None:
-        self._ground.show("sources")
+        self.ground.show("sources")
         self._clear("aug", "swarm", "box", "rival")
         if story.answer is None:
             return None
@@ -261,12 +260,12 @@ class MapView:
         star = mark("star", at.xy, self._palette.answer, r=9, rim=css(self._palette.rim))
         self._stage.layer("best", [star])
         if fusion is not None:
-            self._ground.merge(fusion)
+            self.ground.merge(fusion)
         mov = self._inputs.mov
         if result is None or result.verdict.rival is None or mov is None or self._mode != "overlay":
             return self.layout.view(at)
         rival = self.layout.placed(result.verdict.rival)
-        self._ground.ghost(rival)
+        self.ground.ghost(rival)
         heading = self._inputs.observations[0].observed_heading
         hull = known_hull(mov) - self.layout.anchor_mov
         doubt = signs.rival(rival, hull, heading, words.rival(result), self._palette)
@@ -315,6 +314,6 @@ class MapView:
         for name in names:
             self._stage.layer(name, None)
         if "rival" in names:
-            self._ground.ghost(None)
+            self.ground.ghost(None)
         if "box" in names:
             self._boxed = None
