@@ -17,6 +17,7 @@ from typing import Any
 
 import viser
 
+from app.gate import listen_unseen
 from app.stage import Stage
 
 log = logging.getLogger(__name__)
@@ -77,7 +78,6 @@ class Channel:
         self._waiting: deque[tuple[_Event, dict[str, Any]]] = deque()
         self._wake = Condition()
         self._closed = False
-        # the guard lets nobody write to a hidden field; one in a hidden folder is on no panel either
         with gui.add_folder("", visible=False):
             self._text = gui.add_text("", "")
 
@@ -85,6 +85,7 @@ class Channel:
         async def _(_: viser.GuiEvent[Any]) -> None:  # in viser's own loop: messages stay in order
             self.take(self._text.value)
 
+        listen_unseen(self._text._impl.uuid)
         stage.listen(self._text._impl.uuid)
         Thread(target=self._work, name="mapmeld-channel", daemon=True).start()
 
@@ -119,6 +120,7 @@ class Channel:
 
     def close(self) -> None:
         """End the thread; the tab is gone."""
+        listen_unseen(self._text._impl.uuid, False)
         with self._wake:
             self._closed = True
             self._wake.notify()

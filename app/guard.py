@@ -1,8 +1,8 @@
-"""Who may talk to the page: viser itself asks nobody who they are.
+"""Hangs the rules of access.py and gate.py into viser, which itself asks nobody who they are.
 
 Measured on viser 1.1.1: any web page that is open in the same browser could drive a server on this
 machine, any client could have a public tunnel opened, write any property of a widget, and fill the
-memory with uploads. The patches below close that; a test checks that their hooks are still there.
+memory with uploads. What this leans on of viser's insides, tests/test_canaries.py holds it to.
 """
 
 from __future__ import annotations
@@ -10,9 +10,6 @@ from __future__ import annotations
 import contextlib
 import http
 import io
-import ipaddress
-import math
-import urllib.parse
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
@@ -26,34 +23,44 @@ from viser import _messages as messages
 from viser._gui_api import GuiApi
 from websockets.http11 import Response
 
+from app.access import HEADERS, PAGE_POLICY, Access, Answer, Asked
 from app.entrance import served
+from app.gate import MAX_FRAME, MAX_UPLOADS_OF_ALL, Gate
 
-MAX_UPLOAD = 200 * 2**20  # bytes of one file: a map of the largest size there may be
-MAX_OPEN_UPLOADS = 4
-MAX_TEXT = 10_000
-CHUNK = 512 * 1024  # bytes of one part of an upload
-LOOPBACK = ("127.0.0.1", "localhost", "::1")
+TOO_MANY = Answer(503, "too many tabs are open here; close one, and reload")
 
 
-def guarded_server(host: str, port: int) -> viser.ViserServer:
-    """A ViserServer that answers only pages it has served itself.
+def guarded_server(host: str, port: int, access: Access, most: int) -> viser.ViserServer:
+    """A ViserServer that answers whom ``access`` lets in; its ``gate`` counts what it let nobody do.
 
-    Bound to this machine it answers to this machine's names alone, so that no foreign name can be
-    pointed at it (DNS rebinding).
+    most : connections at a time
     """
     _harden_widgets()
-    local = host == "localhost" or _is_loopback(host)
+    gate = Gate()
     real_serve = websockets.asyncio.server.serve
+    live: set[Any] = set()
 
     def serve(handler: Any, at: str, on: int, *, process_request: Callable[..., Any], **options: Any) -> Any:
         async def ask(connection: Any, request: Any) -> Any:
-            refusal = refuse(request.headers.get("Host", ""), request.headers.get("Origin"), local,
-                             request.headers.get("Upgrade", "").lower() == "websocket")  # fmt: skip
-            if refusal is not None:
-                return _answer(*refusal)
+            asked = Asked(request.path, {key.lower(): value for key, value in request.headers.raw_items()})
+            answer = access.answer(asked)
+            if answer is None and asked.upgrade and len(live) >= most:
+                answer = TOO_MANY
+            if answer is not None:
+                gate.drop(f"request, {answer.status}")
+                return _response(answer)
             return _with_words(process_request(connection, request))
 
-        return real_serve(handler, at, on, process_request=ask, **options)
+        async def handle(connection: Any) -> None:
+            gate.guard(connection)
+            live.add(connection)
+            try:
+                await handler(connection)
+            finally:
+                live.discard(connection)
+
+        options["max_size"] = MAX_FRAME
+        return real_serve(handle, at, on, process_request=ask, ssl=access.tls, **options)
 
     shim = SimpleNamespace(
         asyncio=SimpleNamespace(
@@ -71,70 +78,35 @@ def guarded_server(host: str, port: int) -> viser.ViserServer:
         infra.websockets = real
     for kind in (messages.ShareUrlRequest, messages.ShareUrlDisconnect):
         server._websock_server.unregister_handler(kind)
+    server.gate = gate  # type: ignore[attr-defined]
     return server
 
 
-def refuse(host: str, origin: str | None, local: bool, upgrade: bool) -> tuple[int, str] | None:
-    """Status and reason for which a request is refused; None where it is let in.
-
-    host, origin : headers of the request
-    local        : whether the server is for this machine alone
-    upgrade      : whether it asks for a websocket, the only way to do anything
-    """
-    if local and urllib.parse.urlsplit(f"//{host}").hostname not in LOOPBACK:
-        return 421, "this page is for this machine alone"
-    if upgrade and (origin is None or urllib.parse.urlsplit(origin).netloc != host):
-        return 403, "only the page itself may connect"
-    return None
-
-
-def _answer(status: int, reason: str) -> Response:
-    body = reason.encode()
-    headers = websockets.datastructures.Headers(
-        [("Content-Type", "text/plain; charset=utf-8"), ("Content-Length", str(len(body)))]
-    )
-    return Response(status, http.HTTPStatus(status).phrase, headers, body)
+def _response(answer: Answer) -> Response:
+    body = answer.body.encode()
+    kind = "text/html" if answer.body.startswith("<") else "text/plain"
+    told = {"Content-Type": f"{kind}; charset=utf-8", "Content-Length": str(len(body))}
+    headers = websockets.datastructures.Headers({**told, **HEADERS, **answer.headers})
+    return Response(answer.status, http.HTTPStatus(answer.status).phrase, headers, body)
 
 
 def _with_words(answer: Response | None) -> Response | None:
     """The page with what it says where it cannot be drawn; anything else as it is."""
-    if answer is None or not answer.headers.get("Content-Type", "").startswith("text/html"):
-        return answer
-    body = served(answer.body, answer.headers.get("Content-Encoding") == "gzip")
-    del answer.headers["Content-Length"]
-    answer.headers["Content-Length"] = str(len(body))
-    answer.body = body
+    if answer is None:
+        return None
+    for name, value in HEADERS.items():
+        answer.headers[name] = value
+    if answer.headers.get("Content-Type", "").startswith("text/html"):
+        answer.headers["Content-Security-Policy"] = PAGE_POLICY
+        body = served(answer.body, answer.headers.get("Content-Encoding") == "gzip")
+        del answer.headers["Content-Length"]
+        answer.headers["Content-Length"] = str(len(body))
+        answer.body = body
     return answer
 
 
-def _is_loopback(host: str) -> bool:
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
-
-
-def acceptable(value: Any, props: Any) -> bool:
-    """Whether a widget may take a value that a browser sent."""
-    parts = value if isinstance(value, (list, tuple)) else [value]
-    if len(parts) > 64 or getattr(props, "disabled", False) or not getattr(props, "visible", True):
-        return False
-    low, high = getattr(props, "min", None), getattr(props, "max", None)
-    for k, part in enumerate(parts):
-        if isinstance(part, str) and len(part) > MAX_TEXT:
-            return False
-        if isinstance(part, (int, float)) and not isinstance(part, bool):
-            bottom, top = (edge[k] if isinstance(edge, (list, tuple)) else edge for edge in (low, high))
-            if not math.isfinite(part):
-                return False
-            if (bottom is not None and part < bottom) or (top is not None and part > top):
-                return False
-    options = getattr(props, "options", None)
-    return options is None or value in options
-
-
 def _harden_widgets() -> None:
-    """Let a browser write values alone, and only such as the widget could have sent."""
+    """Ask the gate before viser acts on what a browser sent."""
     if getattr(GuiApi, "_mapmeld_hardened", False):
         return
     GuiApi._mapmeld_hardened = True  # type: ignore[attr-defined]
@@ -144,30 +116,36 @@ def _harden_widgets() -> None:
         GuiApi._handle_file_transfer_part,
     )
 
+    def gate_of(gui: Any) -> Gate | None:  # None: a server that is not ours, as tests start one
+        return getattr(gui._root_server(), "gate", None)
+
     async def safe_update(self: Any, client_id: Any, message: Any) -> None:
-        handle = self._gui_input_handle_from_uuid.get(message.uuid)
-        if handle is None or set(message.updates) != {"value"}:
-            return
-        if not acceptable(message.updates["value"], handle._impl.props):
-            return
-        try:
+        gate = gate_of(self)
+        if gate is None or gate.takes(self, message):
             await update(self, client_id, message)
-        except (TypeError, ValueError, AssertionError):
-            return  # a value of the wrong kind
 
     def safe_start(self: Any, client_id: Any, message: Any) -> None:
-        mine = [s for s in self._current_file_upload_states.values() if s["client_id"] == client_id]
-        parts = -(-message.size_bytes // CHUNK)
-        if message.size_bytes > MAX_UPLOAD or message.part_count != parts or len(mine) >= MAX_OPEN_UPLOADS:
-            return
-        start(self, client_id, message)
+        gate = gate_of(self)
+        if gate is not None and _coming(self) + message.size_bytes > MAX_UPLOADS_OF_ALL:
+            gate.drop("uploads of all")
+        elif gate is None or gate.takes_upload(self, message):
+            start(self, client_id, message)
 
     def safe_part(self: Any, client_id: Any, message: Any) -> None:
-        state = self._current_file_upload_states.get(message.transfer_uuid)
-        if state is None or state["client_id"] != client_id or len(message.content) > CHUNK:
-            return
-        part(self, client_id, message)
+        gate = gate_of(self)
+        if gate is None or gate.takes_part(self, client_id, message):
+            part(self, client_id, message)
 
     GuiApi._handle_gui_updates = safe_update  # type: ignore[method-assign]
     GuiApi._handle_file_transfer_start = safe_start  # type: ignore[method-assign]
     GuiApi._handle_file_transfer_part = safe_part  # type: ignore[method-assign]
+
+
+def _coming(gui: Any) -> int:
+    """Bytes of all uploads that are on their way, of every tab."""
+    tabs = gui._root_server()._connected_clients.values()
+    return sum(
+        state["total_bytes"]
+        for api in (gui, *(tab.gui for tab in tabs if tab.gui is not gui))
+        for state in api._current_file_upload_states.values()
+    )

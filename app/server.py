@@ -13,6 +13,7 @@ import viser
 
 from algorithms.casefiles import Case
 from algorithms.errors import MapMergeError
+from app.access import Access
 from app.guard import guarded_server
 from app.keep import Keep
 from app.page import Page
@@ -21,6 +22,7 @@ log = logging.getLogger(__name__)
 
 
 MOST_TABS = 16  # each holds its own maps and results
+SPARE = 8  # connections more, so that a tab too many is told so
 
 
 class PortError(MapMergeError):
@@ -28,16 +30,21 @@ class PortError(MapMergeError):
 
 
 def make_server(
-    host: str = "127.0.0.1", port: int = 8080, initial: Case | None = None, lesson: Path | None = None
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    initial: Case | None = None,
+    lesson: Path | None = None,
+    access: Access | None = None,
 ) -> viser.ViserServer:
     """Start to serve; every tab opens with ``initial``.
 
     port   : 0 for any free one (``server.get_port()`` tells which)
     lesson : folder of the lesson's texts; None for those that come along
+    access : who may talk to it; None: this machine alone
     raises : PortError where the port is taken or the address is not this machine's
     """
     _probe(host, port)
-    server = guarded_server(host, port)
+    server = guarded_server(host, port, access or Access(), MOST_TABS + SPARE)
     if port and server.get_port() != port:  # taken between the probe and now: viser went one further
         server.stop()
         raise PortError(_taken(port))

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.channel import LONGEST, MOST_WAITING, Channel, Numbers, checked
-from app.guard import acceptable
+from app.gate import acceptable, usable
 
 PATIENCE = 20
 
@@ -37,7 +37,9 @@ def message(number: int, name: str = "drag", **fields: object) -> str:
 
 
 def test_the_guard_lets_the_browser_write_to_the_channel(channel):
-    assert acceptable("x" * LONGEST, channel._text._impl.props)
+    field = channel._text
+    assert usable(channel._text._impl.gui_api, field)
+    assert acceptable("x" * LONGEST, "", field._impl.props)
 
 
 def test_events_are_told_in_their_order_with_their_fields(channel):

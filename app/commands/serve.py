@@ -12,18 +12,17 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.access import TOKEN_VARIABLE, Access, access_for, is_local
 from app.usage import Parser
 
 if TYPE_CHECKING:
-    from viser import ViserServer
-
     from algorithms.casefiles import Case
 
 LOCAL = "127.0.0.1"
 PORT = 8080
 FIRST_SAMPLE = "office_r2_r1"
 
-USAGE = "[MAP1 MAP2 --observation FILE] [--host HOST] [--port PORT] [--no-browser] [--lesson DIR]"
+USAGE = "[MAP1 MAP2 --observation FILE] [--host HOST] [--port PORT] [--token-file FILE] [--certfile FILE] ..."
 DESCRIPTION = f"""\
 Open the page: two maps, the sighting, every step of the merge.
 
@@ -33,8 +32,12 @@ Examples:
   mapmeld serve --port 9000 --no-browser
   mapmeld serve --lesson my_lesson   the lesson with texts of your own, a Markdown file a step
 
-The page is for this machine alone ({LOCAL}). --host 0.0.0.0 lets everyone on the network
-load files into it. Ctrl-C ends it."""
+  mapmeld serve --host 0.0.0.0 --certfile cert.pem --keyfile key.pem
+
+The page is for this machine alone ({LOCAL}). At any other --host it is for those who have the
+token, which is part of the address that is printed: a new one at each start, or the one in
+--token-file or ${TOKEN_VARIABLE}, which holds on this machine, too. Without --certfile what is
+sent can be read on the network, the token with it. SECURITY.md tells more. Ctrl-C ends it."""
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
@@ -46,8 +49,12 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("--observation", type=Path, metavar="FILE", help="what robot 1 saw")
     add_resolution(parser)
     parser.add_argument("--host", default=LOCAL, help=f"address to listen at (default: {LOCAL})")
+    parser.add_argument("--port", type=_port, default=PORT, help=f"0 for any free one (default: {PORT})")
+    parser.add_argument("--token-file", type=Path, metavar="FILE", help="holds the token to enter with")
+    parser.add_argument("--certfile", type=Path, metavar="FILE", help="PEM certificate: the page is https")
+    parser.add_argument("--keyfile", type=Path, metavar="FILE", help="its PEM key, if not in the same file")
     parser.add_argument(
-        "--port", type=_port, help=f"0 for any free one (default: {PORT}, or any free one if that is taken)"
+        "--behind", action="append", default=[], metavar="NAME", help="host name of a proxy in front of it"
     )
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
     parser.add_argument(
@@ -60,17 +67,18 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Serve until Ctrl-C."""
+    from app.server import make_server
+
     if (args.map1 is None) != (args.map2 is None) or (args.map1 is None) != (args.observation is None):
         parser.error("give MAP1, MAP2 and --observation FILE together, or none of them for a sample")
     if args.lesson is not None:
         _check_lesson(args.lesson)
-    case = _case(args)
-    server = _listen(args.host, args.port, case, args.lesson)
-    shown = LOCAL if args.host in ("0.0.0.0", "::", "") else args.host
-    url = f"http://{f'[{shown}]' if ':' in shown else shown}:{server.get_port()}"
+    access = access_for(args.host, args.token_file, tuple(args.behind), args.certfile, args.keyfile)
+    server = make_server(args.host, args.port, _case(args), args.lesson, access)
+    url = address(args.host, server.get_port(), access)
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # whoever asks it to end, it ends whole
     try:
-        print(f"mapmeld is at {url}   (Ctrl-C ends it)", flush=True)
+        print(f"mapmeld is at {url}   ({reach(args.host, access)}; Ctrl-C ends it)", flush=True)
         if not args.no_browser and _has_display():
             webbrowser.open(url)
         threading.Event().wait()
@@ -80,15 +88,20 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     return 0
 
 
-def _listen(host: str, port: int | None, case: Case | None, lesson: Path | None) -> ViserServer:
-    from app.server import PortError, make_server
+def address(host: str, port: int, access: Access) -> str:
+    """Where a browser on this machine finds the page, with the token that lets it in."""
+    shown = LOCAL if host in ("0.0.0.0", "::", "") else host
+    at = f"{'https' if access.tls else 'http'}://{f'[{shown}]' if ':' in shown else shown}:{port}/"
+    return f"{at}?token={access.token}" if access.token else at
 
-    if port is not None:
-        return make_server(host, port, case, lesson)
-    try:
-        return make_server(host, PORT, case, lesson)
-    except PortError:
-        return make_server(host, 0, case, lesson)
+
+def reach(host: str, access: Access) -> str:
+    """Who may open the page, in words."""
+    if not access.token:
+        return "for this machine alone"
+    who = "this machine" if is_local(host) else "everyone on the network"
+    open_ = "" if access.tls or is_local(host) else ", unencrypted"
+    return f"for {who} with the token{open_}"
 
 
 def _check_lesson(folder: Path) -> None:

@@ -39,10 +39,15 @@ def sample() -> Case:
 
 @pytest.fixture(scope="session")
 def server(sample: Case) -> Iterator[viser.ViserServer]:
-    """One server for all tests: tabs are told not to disturb each other."""
+    """One server for all tests: tabs are told not to disturb each other.
+
+    What an honest browser says is never dropped; but a control may be gone before a press arrives.
+    """
     server = make_server(port=0, initial=sample)
     yield server
     server.stop()
+    assert not set(server.gate.dropped) & {"garbage", "unasked", "malformed", "property", "slowed"}
+    assert not [why for why in server.gate.dropped if why.startswith("upload")]
 
 
 @pytest.fixture

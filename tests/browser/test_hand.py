@@ -265,9 +265,13 @@ def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab
         settle(lambda: tab.state.startswith("Drag a sign"), "all three")
         settle(lambda: field(tab, "robot 2: heading (°)") == pytest.approx(90, abs=3), "the number")
 
-        before = field(tab, "range r (m)")
-        drag(tab, where(at.x_ref), tuple(0.5 * value for value in ahead))  # along the sight, so farther away
-        settle(lambda: field(tab, "range r (m)") > before + 0.5, "the range to follow")
+        drag(tab, where(at.x_ref), tuple(0.5 * value for value in ahead))  # farther away
+        (x0, y0), (x1, y1) = where(at.x_ref), where(at.x_ref + np.array([1.0, 0.0]))
+        way = 20 / np.hypot(x1 - x0, y1 - y0)  # all of it: a number typed before is dragged on
+        moved = at.x_ref + way * np.array([cos(o.observer.theta), sin(o.observer.theta)])
+        far = np.hypot(*(moved - o.observer.xy))
+        assert far > o.range + 0.3
+        settle(lambda: field(tab, "range r (m)") == pytest.approx(far, abs=0.2), "the range to follow")
         box = tab.page.get_by_label("range r (m)", exact=True)
         box.fill(f"{o.range:.2f}")
         box.press("Enter")

@@ -1,0 +1,242 @@
+"""Who gets in: which names the page answers to, which pages may connect, and the token.
+
+Pure rules on what a request says; guard.py hangs them into the server.
+"""
+
+from __future__ import annotations
+
+import hmac
+import os
+import secrets
+import ssl
+import urllib.parse
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from hashlib import sha256
+from html import escape
+from ipaddress import ip_address
+from pathlib import Path
+
+from algorithms.errors import InputFileError, SettingError
+
+LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
+TOKEN_VARIABLE = "MAPMELD_TOKEN"
+LEAST_TOKEN = 16  # characters; a generated one has 32
+PORTS = {"http": 80, "https": 443}
+
+# The page is one file with its scripts inside, and viser compiles some of them ("unsafe-eval"). What
+# this keeps out: any request to elsewhere, whatever an address or a message asks for; being framed.
+PAGE_POLICY = (
+    "default-src 'none'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; worker-src blob:; "
+    "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src data:; "
+    "connect-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+ASKING_POLICY = "default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; frame-ancestors 'none'"
+HEADERS = {
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a request says. headers: names in lower case."""
+
+    path: str
+    headers: Mapping[str, str]
+
+    @property
+    def upgrade(self) -> bool:
+        """Whether it asks for a websocket, the only way to do anything."""
+        return self.headers.get("upgrade", "").lower() == "websocket"
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What is answered in place of the page.
+
+    body : HTML where it begins with "<", else a line of text
+    """
+
+    status: int
+    body: str = ""
+    headers: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Access:
+    """Who may talk to the page.
+
+    names : host names it answers to; None: any, and the token alone decides
+    token : what a browser must bring; "": nothing
+    tls   : the certificate's context, None without
+    """
+
+    names: frozenset[str] | None = LOOPBACK
+    token: str = ""
+    tls: ssl.SSLContext | None = None
+
+    @property
+    def cookie(self) -> str:
+        """Name of the cookie: browsers send those of one port to the other ones of a host, too."""
+        return f"mapmeld_{sha256(self.token.encode()).hexdigest()[:8]}"
+
+    def answer(self, asked: Asked) -> Answer | None:
+        """What is said instead of what was asked for; None: come in."""
+        host = asked.headers.get("host", "")
+        if self.names is not None and _name(host) not in self.names:
+            return Answer(421, "this page does not answer to that name")
+        if asked.upgrade and not _same(asked.headers.get("origin"), host):
+            return Answer(403, "only the page itself may connect")
+        path, _, query = asked.path.partition("?")
+        if self.token and not self._known(asked.headers.get("cookie", "")):
+            given = urllib.parse.parse_qs(query).get("token", [""])[0]
+            if asked.upgrade or path != "/" or not same(given, self.token):
+                return _asking(wrong=bool(given))
+            secure = self.tls is not None or asked.headers.get("x-forwarded-proto") == "https"
+            # No path: it is then that of the page, which behind a proxy may lie in a folder.
+            kept = f"{self.cookie}={self.token}; HttpOnly; SameSite=Strict{'; Secure' if secure else ''}"
+            return Answer(303, headers={"Location": "./", "Set-Cookie": kept, "Cache-Control": "no-store"})
+        if query and not asked.upgrade:
+            # viser's page would connect to, or play, whatever another address in the query names
+            return Answer(303, headers={"Location": "./"})
+        return None
+
+    def _known(self, cookies: str) -> bool:
+        found = False
+        for cookie in cookies.split(";"):
+            name, _, value = cookie.strip().partition("=")
+            found |= name == self.cookie and same(value, self.token)
+        return found
+
+
+def same(given: str, wanted: str) -> bool:
+    """Whether two words are the same, in a time that does not tell where they differ."""
+    return hmac.compare_digest(given.encode(), wanted.encode())
+
+
+def is_local(host: str) -> bool:
+    """Whether an address to listen at is this machine's alone."""
+    try:
+        return host == "localhost" or ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def access_for(
+    host: str,
+    token_file: Path | None = None,
+    names: tuple[str, ...] = (),
+    certfile: Path | None = None,
+    keyfile: Path | None = None,
+) -> Access:
+    """Who may talk to a page at ``host``: this machine without more, everyone else with a token.
+
+    token_file : holds the token; else $MAPMELD_TOKEN does; else one is made where one is needed
+    names      : further host names, those of a proxy in front
+    raises     : InputFileError, SettingError
+    """
+    token = _given_token(token_file)
+    local = is_local(host)
+    if not token and (names or not local):
+        token = secrets.token_urlsafe(24)
+    allowed = LOOPBACK | {host} | {_name(name) for name in names} if local else None
+    return Access(allowed, token, _tls(certfile, keyfile))
+
+
+def _given_token(token_file: Path | None) -> str:
+    if token_file is None:
+        token, source = os.environ.get(TOKEN_VARIABLE, "").strip(), f"${TOKEN_VARIABLE}"
+        if not token:
+            return ""
+    else:
+        source = str(token_file)
+        try:
+            with token_file.open(encoding="utf-8") as stream:
+                token = stream.read(1000).strip()
+        except (OSError, ValueError) as error:
+            cause = getattr(error, "strerror", None) or "not a text"
+            raise InputFileError(
+                token_file, f"cannot be read ({cause})", "give a file that holds the token alone"
+            ) from error
+    if len(token) < LEAST_TOKEN or not set(token) <= _TOKEN_LETTERS:
+        raise SettingError(
+            f"{source}: this is no token; give at least {LEAST_TOKEN} letters, digits, - or _, "
+            f"such as {secrets.token_urlsafe(24)}"
+        )
+    return token
+
+
+_TOKEN_LETTERS = set("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_")
+
+
+def _tls(certfile: Path | None, keyfile: Path | None) -> ssl.SSLContext | None:
+    if certfile is None and keyfile is None:
+        return None
+    if certfile is None:
+        raise SettingError("--keyfile needs --certfile: give the certificate that belongs to the key")
+    for path in filter(None, (certfile, keyfile)):
+        try:
+            path.open("rb").close()
+        except OSError as error:
+            raise InputFileError(path, f"cannot be read ({error.strerror})", "check the path") from error
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.minimum_version = ssl.TLSVersion.TLSv1_2
+
+    def no_password() -> str:
+        raise SettingError(f"{keyfile or certfile}: the key has a password; give one without")
+
+    try:
+        context.load_cert_chain(certfile, keyfile, no_password)
+    except ssl.SSLError as error:
+        if error.reason == "KEY_VALUES_MISMATCH":
+            raise InputFileError(
+                keyfile, "is not the key of the certificate", "give those of a pair"
+            ) from error
+        raise InputFileError(
+            certfile,
+            "is no certificate with its key, or the key file is none",
+            "give PEM files: --certfile the certificate (and its chain), --keyfile its key",
+        ) from error
+    return context
+
+
+def _name(host: str) -> str:
+    """The name in "name:port", "[::1]:port" or "name"; "" where it is none."""
+    try:
+        return urllib.parse.urlsplit(f"//{host}").hostname or ""
+    except ValueError:
+        return ""
+
+
+def _same(origin: str | None, host: str) -> bool:
+    """Whether a page's origin is the host that it asks; without an origin it is no page's."""
+    try:
+        page = urllib.parse.urlsplit(origin or "")
+        usual = PORTS[page.scheme]
+        asked = urllib.parse.urlsplit(f"//{host}")
+        return bool(page.hostname) and (page.hostname, page.port or usual) == (
+            asked.hostname,
+            asked.port or usual,
+        )
+    except (KeyError, ValueError):
+        return False
+
+
+def _asking(wrong: bool) -> Answer:
+    """The page of those who have no token yet."""
+    says = "That is not the token." if wrong else "This page is not open to everyone."
+    body = f"""<!doctype html><html lang="en"><meta charset="utf-8"><title>mapmeld</title>
+<meta name="viewport" content="width=device-width">
+<style>:root{{color-scheme:light dark}}
+body{{font:16px/1.5 system-ui,sans-serif;max-width:30em;margin:14vh auto;padding:0 1em}}
+input,button{{font:inherit;padding:.4em .6em}}input{{width:16em}}</style>
+<h1>mapmeld</h1><p>{escape(says)} Open the whole address that mapmeld printed when it was started,
+or give the token from it.</p>
+<form action="./">
+<input name="token" type="password" autocomplete="off" required aria-label="Token" autofocus>
+<button>Open</button></form></html>"""
+    headers = {"Content-Security-Policy": ASKING_POLICY, "Cache-Control": "no-store"}
+    return Answer(401, body, headers)

@@ -1,0 +1,280 @@
+"""What a browser may say, once it is in: the frames, the values of controls, and the files it sends.
+
+viser believes all of it. What is not let through here is dropped and counted by its reason; only a
+frame that is no message at all ends the connection it came by, and that connection alone.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+from collections import Counter
+from collections.abc import Callable, Mapping
+from time import monotonic
+from typing import Any
+
+import msgspec
+from viser import _messages as messages
+from viser._gui_handles import GuiTabHandle, GuiUploadButtonHandle
+
+log = logging.getLogger(__name__)
+
+MAX_FRAME = 2 * 2**20  # bytes: four parts of an upload
+MAX_UPLOAD = 200 * 2**20  # bytes of one file: a map of the largest size there may be
+MAX_UPLOADS = 2 * MAX_UPLOAD  # bytes on their way from one tab: two maps
+MAX_UPLOADS_OF_ALL = 5 * MAX_UPLOAD  # bytes on their way from all tabs
+MAX_OPEN_UPLOADS = 8
+MAX_NAME = 255  # letters of a file's name
+MAX_TEXT = 10_000  # letters in a control
+MAX_PARTS = 64  # numbers in a control
+MAX_NUMBER = 1e12
+CHUNK = 512 * 1024  # bytes of one part of an upload
+RATE, BURST = 200.0, 400.0  # messages a second, and at once; a tab that is dragged over sends about 60
+
+# All that the page's own script ever sends. An answer of the browser to a download is let through unread.
+HEARD: dict[str, type[messages.Message]] = {
+    kind.__name__: kind
+    for kind in (
+        messages.GuiUpdateMessage,
+        messages.ViewerCameraMessage,
+        messages.ScenePointerMessage,
+        messages.FileTransferStartUpload,
+        messages.FileTransferPart,
+        messages.FileTransferPartAck,
+    )
+}
+
+_unseen: set[str] = set()  # fields that are listened to though they lie on no panel
+
+
+def listen_unseen(uuid: str, yes: bool = True) -> None:
+    """Let a field that no panel shows take values, or no longer."""
+    (_unseen.add if yes else _unseen.discard)(uuid)
+
+
+class Gate:
+    """Lets through what a browser of ours could have sent.
+
+    dropped : how often each kind of thing was not
+    """
+
+    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
+        self.dropped: Counter[str] = Counter()
+        self._clock = clock
+
+    def drop(self, why: str) -> None:
+        """Count something that was not let through."""
+        self.dropped[why] += 1
+        log.debug("dropped: %s", why)
+
+    def guard(self, connection: Any) -> None:
+        """Stand before a connection: its ``recv`` gives only what may pass, at a bearable rate."""
+        hear = connection.recv
+        bucket = Bucket(self._clock)
+
+        async def recv(*how: Any, **more: Any) -> Any:
+            while True:
+                raw = await hear(*how, **more)
+                wait = bucket.take()
+                if wait > 0:  # nothing is lost: whoever sends too fast waits for us
+                    self.dropped["slowed"] += 1
+                    await asyncio.sleep(wait)
+                message = readable(raw)
+                if message is None:
+                    self.drop("garbage")
+                    await connection.close(1007, "this is no message of the page")
+                elif message["type"] not in HEARD:
+                    self.drop("unasked")
+                elif not sound(message):
+                    self.drop("malformed")
+                else:
+                    return raw
+
+        connection.recv = recv
+
+    def takes(self, gui: Any, message: messages.GuiUpdateMessage) -> bool:
+        """Whether a control may take what a browser says it holds now."""
+        handle = gui._gui_input_handle_from_uuid.get(message.uuid)
+        if handle is None:  # another tab's, or gone while this was on its way
+            return False
+        if set(message.updates) != {"value"}:
+            self.drop("property")
+        elif not usable(gui, handle):
+            self.drop("not enabled")
+        elif not acceptable(message.updates["value"], handle._impl.value, handle._impl.props):
+            self.drop("value")
+        else:
+            return True
+        return False
+
+    def takes_upload(self, gui: Any, message: messages.FileTransferStartUpload) -> bool:
+        """Whether a browser may send this file."""
+        handle = gui._gui_input_handle_from_uuid.get(message.source_component_uuid)
+        coming = gui._current_file_upload_states.values()
+        size = message.size_bytes
+        if handle is None:
+            return False
+        if not isinstance(handle, GuiUploadButtonHandle) or not usable(gui, handle):
+            self.drop("upload unasked")
+        elif message.transfer_uuid in gui._current_file_upload_states or len(coming) >= MAX_OPEN_UPLOADS:
+            self.drop("upload again")
+        elif not 0 <= size <= MAX_UPLOAD or message.part_count != -(-size // CHUNK):
+            self.drop("upload size")
+        elif len(message.filename) > MAX_NAME or len(message.mime_type) > MAX_NAME:
+            self.drop("upload name")
+        elif size + sum(state["total_bytes"] for state in coming) > MAX_UPLOADS:
+            self.drop("upload size")
+        else:
+            return True
+        return False
+
+    def takes_part(self, gui: Any, client: int, message: messages.FileTransferPart) -> bool:
+        """Whether this is a part of a file that this browser is sending."""
+        state = gui._current_file_upload_states.get(message.transfer_uuid)
+        if state is None or state["client_id"] != client:
+            return False
+        if len(message.content) != min(CHUNK, state["total_bytes"] - CHUNK * message.part_index):
+            self.drop("upload size")
+            return False
+        return True
+
+
+class Bucket:
+    """Counts messages against a rate."""
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._clock, self._left, self._at = clock, BURST, clock()
+
+    def take(self) -> float:
+        """One more; the seconds it has to wait."""
+        now = self._clock()
+        self._left = min(BURST, self._left + (now - self._at) * RATE) - 1
+        self._at = now
+        return max(0.0, -self._left / RATE)
+
+
+def readable(raw: Any) -> dict[str, Any] | None:
+    """A frame as a mapping with a "type"; None where it is none."""
+    if not isinstance(raw, bytes):
+        return None
+    try:
+        message = msgspec.msgpack.decode(raw)
+    except (msgspec.DecodeError, RecursionError, ValueError):  # ValueError: a text that is no UTF-8
+        return None
+    if not isinstance(message, dict) or not isinstance(message.get("type"), str):
+        return None
+    return message
+
+
+def sound(message: Mapping[str, Any]) -> bool:
+    """Whether a message has the fields of its kind, all of them and no others, of their types."""
+    kind = HEARD[message["type"]]
+    fields = _FIELDS[kind.__name__]
+    return set(message) == {"type", *fields} and all(check(message[field]) for field, check in fields.items())
+
+
+def _number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= MAX_NUMBER
+
+
+def _count(value: Any) -> bool:
+    return _number(value) and value >= 0 and value == int(value)
+
+
+def _id(value: Any) -> bool:
+    return isinstance(value, str) and 0 < len(value) <= 64
+
+
+def _word(value: Any) -> bool:
+    return isinstance(value, str) and len(value) <= MAX_TEXT
+
+
+def _vector(length: int) -> Callable[[Any], bool]:
+    return lambda value: isinstance(value, list) and len(value) == length and all(map(_number, value))
+
+
+def _maybe(check: Callable[[Any], bool]) -> Callable[[Any], bool]:
+    return lambda value: value is None or check(value)
+
+
+_FIELDS: dict[str, dict[str, Callable[[Any], bool]]] = {
+    "GuiUpdateMessage": {
+        "uuid": _id,
+        "updates": lambda value: isinstance(value, dict) and all(isinstance(key, str) for key in value),
+    },
+    "ViewerCameraMessage": {
+        "wxyz": _vector(4),
+        **dict.fromkeys(("position", "look_at", "up_direction"), _vector(3)),
+        **dict.fromkeys(("fov", "near", "far"), _number),
+        **dict.fromkeys(("image_height", "image_width"), _count),
+    },
+    "ScenePointerMessage": {
+        "event_type": lambda value: value == "click",
+        **dict.fromkeys(("ray_origin", "ray_direction"), _vector(3)),
+        "screen_pos": lambda value: isinstance(value, list) and len(value) == 1 and _vector(2)(value[0]),
+        "modifier": _maybe(_word),
+    },
+    "FileTransferStartUpload": {
+        **dict.fromkeys(("source_component_uuid", "transfer_uuid"), _id),
+        **dict.fromkeys(("filename", "mime_type"), _word),
+        **dict.fromkeys(("part_count", "size_bytes"), _count),
+    },
+    "FileTransferPart": {
+        "source_component_uuid": _maybe(_id),
+        "transfer_uuid": _id,
+        "part_index": _count,
+        "content": lambda value: isinstance(value, bytes) and len(value) <= CHUNK,
+    },
+    "FileTransferPartAck": {
+        "source_component_uuid": _maybe(_id),
+        "transfer_uuid": _id,
+        **dict.fromkeys(("transferred_bytes", "total_bytes"), _count),
+    },
+}
+
+
+def usable(gui: Any, handle: Any) -> bool:
+    """Whether a person could use a control now: neither it nor what it lies in is hidden or disabled."""
+    if handle._impl.uuid in _unseen:
+        return True
+    while True:
+        props = handle._impl.props
+        if getattr(props, "disabled", False) or not getattr(props, "visible", True):
+            return False
+        inside = gui._container_handle_from_uuid.get(handle._impl.parent_container_id)
+        if isinstance(inside, GuiTabHandle):
+            inside = inside._parent
+        if not hasattr(inside, "_impl"):
+            return True
+        handle = inside
+
+
+def acceptable(value: Any, now: Any, props: Any) -> bool:
+    """Whether a control that holds ``now`` may hold ``value``: of its type, in its range, of its choices."""
+    options = getattr(props, "options", None)
+    if options is not None:
+        return isinstance(value, str) and value in options
+    if not _fits(value, now):
+        return False
+    low, high = getattr(props, "min", None), getattr(props, "max", None)
+    for k, part in enumerate(value if isinstance(value, list | tuple) else [value]):
+        if isinstance(part, int | float) and not isinstance(part, bool):
+            bottom, top = (edge[k] if isinstance(edge, list | tuple) else edge for edge in (low, high))
+            if (bottom is not None and part < bottom) or (top is not None and part > top):
+                return False
+    return True
+
+
+def _fits(value: Any, now: Any) -> bool:
+    if isinstance(now, bool):
+        return isinstance(value, bool)
+    if isinstance(now, int | float):
+        return _number(value) and math.isfinite(value)
+    if isinstance(now, str):
+        return _word(value)
+    if isinstance(now, tuple):
+        if not isinstance(value, list | tuple) or len(value) > MAX_PARTS:
+            return False
+        return len(value) == len(now) and all(map(_fits, value, now))
+    return False

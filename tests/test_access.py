@@ -1,0 +1,164 @@
+"""Who is let in, and what is wrong with what an operator gives for it."""
+
+from __future__ import annotations
+
+import socket
+
+import pytest
+import trustme
+from hypothesis import given
+from hypothesis import strategies as st
+
+from algorithms.errors import InputFileError, MapMergeError, SettingError
+from app.access import LEAST_TOKEN, Access, Asked, access_for, is_local, same
+from app.commands.serve import address, reach
+from app.server import PortError, make_server
+
+TOKEN = "a-token-that-nobody-guesses"
+
+
+def ask(access: Access, path: str = "/", **headers: str) -> int | None:
+    answer = access.answer(Asked(path, {key.replace("_", "-"): value for key, value in headers.items()}))
+    return answer and answer.status
+
+
+@pytest.mark.parametrize(
+    ("host", "origin", "local", "upgrade", "status"),
+    [
+        ("127.0.0.1:8080", None, True, False, None),
+        ("localhost:8080", "http://localhost:8080", True, True, None),
+        ("[::1]:8080", "http://[::1]:8080", True, True, None),
+        ("localhost", "http://localhost:80", True, True, None),
+        ("LocalHost:8080", "http://localhost:8080", True, True, None),
+        ("evil.example:8080", None, True, False, 421),  # a foreign name that points here
+        ("127.0.0.1.evil.example:8080", None, True, False, 421),
+        ("", None, True, False, 421),
+        ("[::1", None, True, False, 421),
+        ("127.0.0.1:8080", "http://evil.example", True, True, 403),  # a foreign page
+        ("127.0.0.1:8080", "http://127.0.0.1:8081", True, True, 403),  # a page of another program
+        ("127.0.0.1:8080", None, True, True, 403),
+        ("127.0.0.1:8080", "null", True, True, 403),
+        ("127.0.0.1:8080", "file://127.0.0.1:8080", True, True, 403),
+        ("127.0.0.1:x", "http://127.0.0.1:x", True, True, 403),
+        ("robot.lan:8080", "http://robot.lan:8080", False, True, None),
+        ("robot.lan", "https://robot.lan", False, True, None),
+        ("robot.lan:8080", "http://evil.example", False, True, 403),
+    ],
+)
+def test_only_the_page_itself_may_connect(host, origin, local, upgrade, status):
+    headers = {"host": host, **({"origin": origin} if origin is not None else {})}
+    if upgrade:
+        headers["upgrade"] = "WebSocket"
+    access = Access() if local else Access(None)
+    assert ask(access, **headers) == status
+
+
+@given(st.text(max_size=40), st.text(max_size=40))
+def test_words_are_the_same_only_if_they_are(one, other):
+    assert same(one, one)
+    assert same(one, other) is (one == other)
+
+
+@given(st.text(max_size=200), st.text(max_size=200))
+def test_whatever_a_stranger_sends_is_answered_and_never_with_the_page(query, cookie):
+    access = Access(None, TOKEN)
+    assert ask(access, f"/?{query}", host="x", cookie=cookie) == 401
+
+
+def test_a_server_for_this_machine_needs_no_token_and_any_other_has_one_of_its_own():
+    assert access_for("127.0.0.1").token == ""
+    assert access_for("::1").token == ""
+    one, other = access_for("0.0.0.0"), access_for("0.0.0.0")
+    assert one.names is None
+    assert len(one.token) >= LEAST_TOKEN
+    assert one.token != other.token
+    assert access_for("127.0.0.1", names=("robots.example",)).token != ""
+
+
+def test_a_name_in_front_is_answered_to_besides_those_of_this_machine(monkeypatch):
+    access = access_for("127.0.0.1", names=("robots.example",))
+    cookie = f"{access.cookie}={access.token}"
+    assert ask(access, host="robots.example", cookie=cookie) is None
+    assert ask(access, host="robots.example:8443", cookie=cookie) is None
+    assert ask(access, host="127.0.0.1:8080", cookie=cookie) is None
+    assert ask(access, host="evil.example", cookie=cookie) == 421
+
+
+def test_a_token_comes_from_a_file_before_the_environment(tmp_path, monkeypatch):
+    monkeypatch.setenv("MAPMELD_TOKEN", TOKEN)
+    assert access_for("0.0.0.0").token == TOKEN
+    assert access_for("127.0.0.1").token == TOKEN  # on a machine of many people it keeps the others out
+    path = tmp_path / "token"
+    path.write_text("  another-token-of-ours\n")
+    assert access_for("0.0.0.0", path).token == "another-token-of-ours"
+
+
+@pytest.mark.parametrize("word", ["short", "x" * 15, "with a space in it, and long", "ä" * 20, "a;b" * 10])
+def test_a_token_that_could_be_guessed_or_not_be_kept_is_refused(word, monkeypatch):
+    monkeypatch.setenv("MAPMELD_TOKEN", word)
+    with pytest.raises(
+        SettingError, match=r"\$MAPMELD_TOKEN: this is no token; give at least 16 letters"
+    ) as said:
+        access_for("0.0.0.0")
+    assert word not in str(said.value)
+
+
+def test_every_file_that_cannot_be_used_is_named_with_a_remedy(tmp_path):
+    missing, text = tmp_path / "missing", tmp_path / "text"
+    text.write_text("no certificate")
+    binary = tmp_path / "binary"
+    binary.write_bytes(b"\xff\xfe\x00")
+    one, other = trustme.CA().issue_cert("a.example"), trustme.CA().issue_cert("b.example")
+    cert, key = tmp_path / "cert.pem", tmp_path / "key.pem"
+    cert.write_bytes(one.cert_chain_pems[0].bytes())
+    key.write_bytes(other.private_key_pem.bytes())
+    for how, named in (
+        ({"token_file": missing}, missing),
+        ({"token_file": binary}, binary),
+        ({"certfile": missing}, missing),
+        ({"certfile": text}, text),
+        ({"certfile": cert}, cert),
+        ({"certfile": cert, "keyfile": text}, cert),
+        ({"certfile": cert, "keyfile": key}, key),
+    ):
+        with pytest.raises(InputFileError) as said:
+            access_for("127.0.0.1", **how)
+        assert said.value.source == str(named)
+    with pytest.raises(MapMergeError, match="--keyfile needs --certfile"):
+        access_for("127.0.0.1", keyfile=key)
+
+
+def test_a_certificate_and_its_key_may_lie_in_one_file_and_old_protocols_are_not_spoken(tmp_path):
+    issued = trustme.CA().issue_cert("127.0.0.1")
+    both = tmp_path / "both.pem"
+    both.write_bytes(issued.private_key_and_cert_chain_pem.bytes())
+    context = access_for("127.0.0.1", certfile=both).tls
+    assert context is not None
+    assert context.minimum_version.name == "TLSv1_2"
+
+
+def test_the_start_line_says_where_and_for_whom():
+    assert address("127.0.0.1", 8080, Access()) == "http://127.0.0.1:8080/"
+    assert reach("127.0.0.1", Access()) == "for this machine alone"
+    locked = Access(None, TOKEN)
+    assert address("0.0.0.0", 80, locked) == f"http://127.0.0.1:80/?token={TOKEN}"
+    assert address("::1", 80, Access()) == "http://[::1]:80/"
+    assert reach("0.0.0.0", locked) == "for everyone on the network with the token, unencrypted"
+    assert reach("127.0.0.1", locked) == "for this machine with the token"
+
+
+@pytest.mark.parametrize(
+    ("host", "local"), [("127.0.0.1", True), ("127.9.9.9", True), ("::1", True), ("localhost", True),
+                        ("0.0.0.0", False), ("192.168.1.4", False), ("robot.lan", False), ("::", False)]
+)  # fmt: skip
+def test_only_addresses_that_never_leave_this_machine_are_its_own(host, local):
+    assert is_local(host) is local
+
+
+def test_a_taken_port_is_an_error_that_says_what_to_do():
+    with socket.socket() as holder:
+        holder.bind(("127.0.0.1", 0))
+        holder.listen()
+        port = holder.getsockname()[1]
+        with pytest.raises(PortError, match=f"port {port} is taken by another program; give another one"):
+            make_server(port=port)

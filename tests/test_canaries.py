@@ -1,0 +1,92 @@
+"""What the page leans on of viser's insides, each by name: an upgrade says which of it broke."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+import viser
+import viser.infra._infra as infra
+import websockets.asyncio.server
+from viser import _gui_handles, _messages
+from viser._gui_api import GuiApi
+
+from app.access import Access
+from app.gate import _FIELDS, CHUNK, HEARD
+from app.guard import guarded_server
+
+CLIENT = Path(viser.__file__).parent / "client" / "src"
+
+
+def source(thing: Callable[..., object]) -> str:
+    return inspect.getsource(thing)
+
+
+def typescript(name: str) -> str:
+    return (CLIENT / name).read_text(encoding="utf-8")
+
+
+ASSUMPTIONS: dict[str, Callable[[], bool]] = {
+    "viser is the version that was measured": lambda: viser.__version__ == "1.1.1",
+    "the server is started through the module's name websockets, so that ours stands in between": lambda: (
+        (infra.websockets is websockets or hasattr(infra.websockets, "asyncio"))
+        and "websockets.asyncio.server.serve(" in source(infra.WebsockServer._background_worker)
+    ),
+    "requests are answered by process_request": lambda: (
+        "process_request=(" in source(infra.WebsockServer._background_worker)
+    ),
+    "the handler of a connection is the first argument of serve": lambda: (
+        next(iter(inspect.signature(websockets.asyncio.server.serve).parameters)) == "handler"
+    ),
+    "frames come by recv, one at a time, and as bytes": lambda: (
+        "raw = await websocket.recv()" in source(infra._message_consumer)
+    ),
+    "a tab's controls are found by their id": lambda: (
+        "self._gui_input_handle_from_uuid.get(message.uuid, None)" in source(GuiApi._handle_gui_updates)
+    ),
+    "what a control lies in is found by its id": lambda: (
+        "_container_handle_from_uuid" in source(GuiApi._resolve_container_handle)
+    ),
+    "a tab of a panel knows its panel": lambda: (
+        "_parent" in {field.name for field in fields(_gui_handles.GuiTabHandle)}
+    ),
+    "uploads on their way are kept by their id, with whose they are and how long": lambda: all(
+        f'"{word}"' in source(GuiApi._handle_file_transfer_start)
+        for word in ("client_id", "total_bytes", "part_count")
+    ),
+    "a tab finds its server": lambda: callable(getattr(GuiApi, "_root_server", None)),
+    "the share tunnel hangs on two messages": lambda: all(
+        hasattr(_messages, name) for name in ("ShareUrlRequest", "ShareUrlDisconnect")
+    ),
+    "the page's scripts travel as a message": lambda: hasattr(_messages, "RunJavascriptMessage"),
+    "the browser cuts uploads into parts of this length": lambda: (
+        f"const chunkSize = {CHUNK // 1024} * 1024;" in typescript("components/UploadButton.tsx")
+    ),
+    "an address can make the page obey another server, which is why queries are taken off": lambda: (
+        "URLSearchParams(window.location.search).getAll(" in typescript("App.tsx")
+    ),
+}
+
+
+@pytest.mark.parametrize("assumption", ASSUMPTIONS)
+def test_viser_still_is_as_the_page_takes_it_to_be(assumption):
+    assert ASSUMPTIONS[assumption](), f"viser {viser.__version__} broke: {assumption}"
+
+
+@pytest.mark.parametrize("kind", HEARD)
+def test_a_message_has_the_fields_that_the_gate_asks_for(kind):
+    assert set(_FIELDS[kind]) == {field.name for field in fields(HEARD[kind]) if field.init}
+
+
+def test_every_message_that_is_heard_is_one_that_a_server_hears_or_ignores():
+    """And what else the server would hear, the gate keeps out."""
+    server = guarded_server("127.0.0.1", 0, Access(), 4)
+    try:
+        heard = {kind.__name__ for kind in server._websock_server._incoming_handlers}
+        assert not heard & {"ShareUrlRequest", "ShareUrlDisconnect"}
+        assert {"GuiUpdateMessage", "FileTransferStartUpload", "FileTransferPart"} <= heard
+    finally:
+        server.stop()
