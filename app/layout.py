@@ -18,8 +18,7 @@ GAP = 0.10  # between two maps side by side, as a share of their size
 
 def known_corners(grid: GridMap) -> FloatArray:
     """(4, 2) corners of the smallest rectangle of cells that holds all known ones; metres, map frame."""
-    known = grid.cells != UNKNOWN
-    rows, cols = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
+    rows, cols = (np.flatnonzero(grid.cells.max(axis=axis) > UNKNOWN) for axis in (1, 0))
     if len(rows) == 0:
         return grid.corners()
     low, high = np.array([cols[0], rows[0]]), np.array([cols[-1] + 1, rows[-1] + 1])

@@ -18,6 +18,7 @@ from app import words
 from app.channel import Channel
 from app.comparison import MODES, Comparison
 from app.desk import Desk
+from app.errand import Errand
 from app.handling import Handling
 from app.inputs import Inputs
 from app.keep import Keep, Kept
@@ -75,6 +76,9 @@ class Page(Telling, Handling, Learning):
         self.session = Session(self)
         self._channel.on("compare", self._compare, mode=MODES)
         self._closer = Closeness(self._channel, self._stage, self._maps.ground, self.session.drawing)
+        self._errand = Errand(
+            self._stage, self.session.drawing, lambda yes: self._run.stoppable("errand", yes)
+        )
         inputs = Inputs.of(initial) if initial else Inputs()
         self._build(inputs.name)
         self._learn_with(client.gui, lesson)
@@ -96,6 +100,7 @@ class Page(Telling, Handling, Learning):
 
     def close(self) -> None:
         """The tab is gone; what it leaves behind is kept for a while."""
+        self._errand.stop()
         with self._turn:
             self._gone = True
             if self._key:
@@ -125,7 +130,7 @@ class Page(Telling, Handling, Learning):
             gui,
             Wishes(
                 merge=self._merge,
-                stop=self.session.stop,
+                stop=self._stop,
                 speed=self._set_speed,
                 view=self._turn_view,
                 method=lambda name: self._tuning.choose(name),
@@ -135,7 +140,7 @@ class Page(Telling, Handling, Learning):
                 learn=self._learn,
             ),
         )
-        self._files = FilesPanel(gui, self._load, self._report, chosen, self._save, self._turn, self._busy)
+        self._files = FilesPanel(gui, self._load, self._report, chosen, self._save, self._turn, self._errand)
         self._observation = ObservationPanel(gui)
         self._tuning = TuningPanel(gui, self._changed, self._report, self._turn)
         self._export = ExportPanel(client)
@@ -174,11 +179,10 @@ class Page(Telling, Handling, Learning):
         inputs, files, hand = self._inputs, self._files.files, self._hand.pose
         return Desk(inputs, files, tuning.method, tuning.config, self._run.seed, goal, hand)
 
-    def _busy(self, doing: str, share: float = 0.3) -> None:
-        """Say what is being done before there is anything new to be seen; share: of the work, done."""
-        with self.session.drawing:
-            self._stage.hud(state=doing, mood="running", progress=share)
-            self._stage.flush()
+    def _stop(self) -> None:
+        """Leave what is read, or else what is run."""
+        if not self._errand.stop():
+            self.session.stop()
 
     def _save(self, name: str, content: bytes) -> None:
         self._client.send_file_download(name, content, save_immediately=True)
@@ -228,7 +232,8 @@ class Page(Telling, Handling, Learning):
         self._heights.hide()
         self._comparison.clear()
         if any(grid is not None and grid.cells.size >= LARGE for grid in (inputs.ref, inputs.mov)):
-            self._busy("Drawing the maps.", 0.6)
+            self._stage.hud(state="Drawing the maps.", mood="running", progress=0.6)
+            self._stage.flush()
         self._maps.load(inputs, layout, self._palette)
         self._run.view = MAP
         self._turn_view()

@@ -50,12 +50,14 @@ def pool(cells: CellArray, factor: int) -> CellArray:
     if factor == 1:
         return cells
     rows, cols = -(-cells.shape[0] // factor), -(-cells.shape[1] // factor)
+    low = np.full((rows, cells.shape[1]), UNKNOWN, dtype=np.int8)
+    for part in (cells[row::factor] for row in range(factor)):  # whole rows first: they lie in memory so
+        seen = low[: len(part)]
+        np.maximum(seen, part, out=seen)
     pooled = np.full((rows, cols), UNKNOWN, dtype=np.int8)
-    for row in range(factor):  # a look at every cell's place in its group: no group is copied
-        for col in range(factor):
-            part = cells[row::factor, col::factor]
-            seen = pooled[: part.shape[0], : part.shape[1]]
-            np.maximum(seen, part, out=seen)
+    for part in (low[:, col::factor] for col in range(factor)):
+        seen = pooled[:, : part.shape[1]]
+        np.maximum(seen, part, out=seen)
     return pooled
 
 

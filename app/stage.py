@@ -54,6 +54,11 @@ class Stage(ABC):
             if changed:
                 self._pending.setdefault("hud", {}).update(changed)
 
+    def said(self, *names: str) -> dict[str, Any]:
+        """What these words above the map are; None for those that were never said."""
+        with self._lock:
+            return {name: self._hud.get(name) for name in names}
+
     @property
     def mood(self) -> str:
         """What the words above the map are coloured by."""

@@ -76,7 +76,7 @@ class Telling(ABC):
 
     def begun(self, job: Job) -> None:
         """A run starts."""
-        self._run.stop.disabled = False
+        self._run.stoppable("run", True)
         if job.pace > 0:  # told step by step; a run at once leaves what is seen until it has ended
             self._comparison.clear()
         self._stage.layer("readout", None)  # of a place that will look otherwise
@@ -98,7 +98,7 @@ class Telling(ABC):
 
     def ended(self, job: Job, story: Story) -> None:
         """The run came to its goal."""
-        self._run.stop.disabled = True
+        self._run.stoppable("run", False)
         result = story.get(MergeResult)
         with self._client.atomic():
             if result is not None and job.steps is not None:
@@ -137,7 +137,7 @@ class Telling(ABC):
 
     def stopped(self, job: Job, story: Story) -> None:
         """Someone pressed Stop."""
-        self._run.stop.disabled = True
+        self._run.stoppable("run", False)
         if self._maps.together:
             self._comparison.offer(None, self._palette)
         if job.steps is not None and self._refining is not None:
@@ -148,7 +148,7 @@ class Telling(ABC):
 
     def failed(self, job: Job, story: Story, error: Exception) -> None:
         """The run could not go on."""
-        self._run.stop.disabled = True
+        self._run.stoppable("run", False)
         if isinstance(error, NoAnswerError):
             self._unanswered(story, error)
             return

@@ -103,13 +103,14 @@ def read_image(path: Path, resolution: float, origin: Pose2 = AT_ZERO, shading: 
     return _read_image(path, MapMeta(path.name, resolution, origin, shading), path.stem)
 
 
-def map_from_bytes(yaml_name: str, yaml_bytes: bytes, image_name: str, image_bytes: bytes) -> GridMap:
+def map_from_bytes(yaml_name: str, yaml_bytes: bytes, image_name: str, image: bytes | BinaryIO) -> GridMap:
     """A map from two uploads. The image is the one given: the key ``image`` never touches the disk.
 
+    image  : its content, or that as an open file, which is read part by part
     raises : InputFileError, TooLargeError
     """
     meta = parse_meta(yaml_name, yaml_bytes)
-    return _to_map(image_name, io.BytesIO(image_bytes), meta, PurePath(yaml_name).stem)
+    return _to_map(image_name, _opened(image), meta, PurePath(yaml_name).stem)
 
 
 def image_map_from_bytes(
@@ -124,12 +125,12 @@ def image_map_from_bytes(
     return _to_map(name, io.BytesIO(data), meta, PurePath(name).stem)
 
 
-def grey_image(name: str, data: bytes) -> GreyImage:
-    """An upload decoded once, to try several shadings on it.
+def grey_image(name: str, data: bytes | BinaryIO) -> GreyImage:
+    """An upload decoded once, to try several shadings on it; ``data`` as of ``map_from_bytes``.
 
     raises : InputFileError, TooLargeError
     """
-    return GreyImage(*read_pixels(name, io.BytesIO(data)))
+    return GreyImage(*read_pixels(name, _opened(data)))
 
 
 def write_map(yaml_path: Path, grid: GridMap) -> None:
@@ -239,6 +240,10 @@ def _to_map(source: str, stream: BinaryIO, meta: MapMeta, name: str) -> GridMap:
     grey, alpha = read_pixels(source, stream)
     cells = cells_of(grey, alpha, meta.shading)
     return GridMap(cells, meta.resolution, meta.origin, name or "map")
+
+
+def _opened(data: bytes | BinaryIO) -> BinaryIO:
+    return io.BytesIO(data) if isinstance(data, bytes) else data
 
 
 def _unreadable(path: Path, error: Exception, remedy: str) -> InputFileError:

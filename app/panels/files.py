@@ -15,6 +15,7 @@ from algorithms.errors import MapMergeError
 from algorithms.gridmap import GridMap
 from algorithms.mapio import map_from_bytes, parse_meta
 from app import paths
+from app.errand import Check, Errand, Left, Watched, unwatched
 from app.inputs import Files, Inputs, Upload
 from app.palette import QUIET
 from app.panels.imageform import ImageForm
@@ -44,10 +45,22 @@ def _short(name: str) -> str:
     return PurePath(name.replace("\\", "/")).name[:80]
 
 
-def inputs_from(uploads: dict[str, Upload], known: Known | None = None) -> Inputs:
+def _large(upload: Upload) -> bool:
+    """Whether it takes a while to read. A PNG may be much larger than its file; a map's YAML file is read
+    with its image.
+    """
+    wide, high = upload.content[16:20], upload.content[20:24]
+    pixels = 0
+    if upload.content.startswith(b"\x89PNG"):
+        pixels = int.from_bytes(wide, "big") * int.from_bytes(high, "big")
+    return max(len(upload.content), pixels) >= LARGE
+
+
+def inputs_from(uploads: dict[str, Upload], known: Known | None = None, check: Check = unwatched) -> Inputs:
     """What the files so far make up: a map where both its files are there, observations.
 
     known  : maps that were read before, by their two files; holds these in the end
+    check  : is called now and then, and may leave the work by raising
     raises : MapMergeError that names the file, the finding and the remedy
     """
     known = {} if known is None else known
@@ -62,7 +75,7 @@ def inputs_from(uploads: dict[str, Upload], known: Known | None = None) -> Input
             return None
         found = known.get((text, image))
         if found is None:
-            found = map_from_bytes(text.name, text.content, image.name, image.content)
+            found = map_from_bytes(text.name, text.content, image.name, Watched(image.content, check))
         now[text, image] = found
         return found
 
@@ -92,12 +105,12 @@ class FilesPanel:
         chosen: str,
         save: Callable[[str, bytes], None],
         turn: RLock | None = None,
-        tell: Callable[[str], None] | None = None,
+        errand: Errand | None = None,
     ) -> None:
         """save : sends a file to the person
-        tell : says what is being done, where it takes a while
+        errand : says what is being done, where it takes a while, and lets it be left
         """
-        self._load, self._report, self._tell = load, report, tell
+        self._load, self._report, self._errand = load, report, errand
         self._uploads: dict[str, Upload] = {}
         self._known: Known = {}
         # viser calls back from a thread of its own for each file: two that were dropped together must
@@ -165,14 +178,15 @@ class FilesPanel:
         with self._turn:
             before = dict(self._uploads)
             self._uploads[key] = upload
-            if self._tell is not None and len(upload.content) >= LARGE:
-                self._tell(f"Reading {upload.name}, {len(upload.content) / 1e6:.0f} MB.")
             text = self._uploads.get(key.replace("image", "yaml"))
             if key.startswith("image") and text is not None and text.by_form:
                 del self._uploads[key.replace("image", "yaml")]  # it was filled in for another image
             try:
+                inputs = self._read(upload)
+            except Left:  # nothing has come of it yet
+                self._uploads = before
                 self._offer_forms()
-                inputs = inputs_from(self._uploads, self._known)
+                return
             except MapMergeError as error:
                 self._uploads = before
                 self._offer_forms()
@@ -181,10 +195,19 @@ class FilesPanel:
                 return
             self._show(inputs)
 
-    def _offer_forms(self) -> None:
+    def _read(self, upload: Upload) -> Inputs:
+        """What the files make up now that this one has come; raises Left where Stop was pressed."""
+        if self._errand is None or not _large(upload):
+            self._offer_forms()
+            return inputs_from(self._uploads, self._known)
+        with self._errand(f"Reading {upload.name}, {len(upload.content) / 1e6:.3g} MB.") as check:
+            self._offer_forms(check)
+            return inputs_from(self._uploads, self._known, check)
+
+    def _offer_forms(self, check: Check = unwatched) -> None:
         """A form for every image that came without a YAML file; raises MapMergeError as ``inputs_from``."""
         for number, form in self._forms.items():
-            form.show(self._uploads.get(f"image{number}"), self._uploads.get(f"yaml{number}"))
+            form.show(self._uploads.get(f"image{number}"), self._uploads.get(f"yaml{number}"), check)
 
     def _forget(self) -> None:
         with self._turn:

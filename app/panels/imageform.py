@@ -21,6 +21,7 @@ from algorithms.mapio import GreyImage, MapMeta, Shading, grey_image, meta_to_by
 from algorithms.mapio.shading import MODES
 from algorithms.pose import Pose2
 from app import render
+from app.errand import Check, Watched, unwatched
 from app.inputs import Upload
 from app.palette import LIGHT, QUIET, Rgb, css
 from app.panels.tables import box
@@ -120,9 +121,10 @@ class ImageForm:
 
     # --- what it is asked ---------------------------------------------------------------------------
 
-    def show(self, image: Upload | None, text: Upload | None) -> None:
+    def show(self, image: Upload | None, text: Upload | None, check: Check = unwatched) -> None:
         """Offer the form for an image whose YAML file is missing or was made here; else put it away.
 
+        check  : is called now and then while the image is read, and may leave that by raising
         raises : MapMergeError where the image cannot be read; nothing has changed then
         """
         wanted = image is not None and (text is None or text.by_form)
@@ -130,7 +132,9 @@ class ImageForm:
             self._image = self._grey = self._used = None
             self._folder.visible = False
             return
-        grey = self._grey if image == self._image and self._grey else grey_image(image.name, image.content)
+        grey = self._grey
+        if grey is None or image != self._image:
+            grey = grey_image(image.name, Watched(image.content, check))
         self._image, self._grey = image, grey
         self._used = text.content if text is not None else None
         if text is not None:

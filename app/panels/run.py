@@ -36,6 +36,7 @@ class RunPanel:
     def __init__(self, gui: viser.GuiApi, wishes: Wishes) -> None:
         self.merge = gui.add_button("Merge", color=LIGHT.ref, icon=viser.Icon.ARROWS_JOIN, order=1)
         self.merge.on_click(lambda _: wishes.merge())
+        self._at_work: set[str] = set()  # who can be stopped
         self.stop = gui.add_button(
             "Stop", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, disabled=True, order=2
         )
@@ -105,6 +106,12 @@ class RunPanel:
             self._method.value = title
         if self._seed.value != seed:
             self._seed.value = seed
+
+    def stoppable(self, who: str, yes: bool) -> None:
+        """Whether a run, or the reading of a file, can be stopped now."""
+        (self._at_work.add if yes else self._at_work.discard)(who)
+        if self.stop.disabled == bool(self._at_work):
+            self.stop.disabled = not self._at_work
 
     @property
     def follow(self) -> bool:

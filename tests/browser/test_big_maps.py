@@ -1,24 +1,33 @@
-"""A pair of maps of 4000 x 4000 cells: it is told what takes a while, and the tab lives on."""
+"""A pair of maps of 3000 x 3000 cells: it is told what takes a while, reading can be stopped, the tab lives
+on, and whoever looks closely sees every cell.
+"""
 
 from __future__ import annotations
 
+from time import sleep
+
 import numpy as np
 import pytest
-from driver import settle
+from driver import Tab, settle
 
 from algorithms.casefiles import observations_to_bytes
 from algorithms.gridmap import FREE, OCCUPIED, GridMap
-from algorithms.mapio import map_to_bytes
+from algorithms.mapio import map_from_bytes, map_to_bytes
 from algorithms.observation import Observation
 from algorithms.pose import Pose2
+from app.palette import LIGHT
+from app.panels import files
 
 pytestmark = pytest.mark.browser
 
-SIDE = 4000  # cells
+SIDE, CELL = 3000, 0.05
+PILLAR = (1431, 1472)  # row and column of a wall of one cell in the middle of a room
+SEEN_AT = np.array([73.0, 70.0])  # robot 2, in both maps
+SLOTS = {"map1.yaml": 0, "map1.pgm": 1, "map2.yaml": 2, "map2.pgm": 3, "observation.yaml": 4}
 
 
 def many_rooms() -> GridMap:
-    """Rooms of many sizes over 200 m x 200 m."""
+    """Rooms of many sizes over 150 m x 150 m."""
     cells = np.full((SIDE, SIDE), FREE, dtype=np.int8)
     at, wide = 0, 120
     while at < SIDE:
@@ -26,10 +35,39 @@ def many_rooms() -> GridMap:
         cells[:, at : at + 3] = OCCUPIED
         at, wide = at + wide, wide + 17
     cells[SIDE // 2 - 20 : SIDE // 2 + 20, ::7] = FREE  # doors, of a kind
-    return GridMap(cells, 0.05)
+    cells[PILLAR] = OCCUPIED
+    return GridMap(cells, CELL)
 
 
-def test_large_maps_are_loaded_shown_and_dragged_while_the_tab_says_what_it_does(tab, tmp_path):
+def centre(row: int, col: int) -> np.ndarray:
+    """Where a cell of either map is, from the place where robot 2 was seen; metres."""
+    return (np.array([col, row]) + 0.5) * CELL - SEEN_AT
+
+
+def around_the_pillar(tab: Tab, frame: str) -> list[tuple[int, ...]]:
+    """Colours of the pillar and of the cells beside it, as the window shows them."""
+    row, col = PILLAR
+    cells = [(row, col), (row, col - 1), (row, col + 1), (row - 1, col), (row + 1, col)]
+    where = [
+        tab.page.evaluate("([p, f]) => window.mapmeld.pixel(p, f)", [centre(*c).tolist(), frame])
+        for c in cells
+    ]
+    shown = tab.pixels()
+    return [tuple(shown[round(y), round(x)]) for x, y in where]
+
+
+def look_at_the_pillar(tab: Tab, frame: str) -> None:
+    """A cell is some 10 px wide."""
+    move = """([x, y, f]) => {
+        const m = f === "mov" ? window.mapmeld.mov : { x: 0, y: 0 }, [u, v] = [x + m.x, y + m.y];
+        window.mapmeld.follow = false;
+        window.mapmeld.kit.aim(true, { view: "map", box: [u - 1.3, v - 1.3, u + 1.3, v + 1.3] });
+    }"""
+    tab.page.evaluate(move, [*centre(*PILLAR).tolist(), frame])
+    tab.at_rest()
+
+
+def test_large_maps_are_loaded_stopped_looked_at_and_dragged(tab, tmp_path, monkeypatch):
     tab.page.evaluate(
         """() => {
             const line = document.querySelector(".mm-state span");
@@ -38,31 +76,55 @@ def test_large_maps_are_loaded_shown_and_dragged_while_the_tab_says_what_it_does
         }"""
     )
     grid = many_rooms()
-    files = [*map_to_bytes(grid, "map1").items(), *map_to_bytes(grid, "map2").items()]
-    seen = Observation(Pose2(100.0, 100.0, 0.0), 103.0, 100.0, 3.0, 0.0)
-    files.append(("observation.yaml", observations_to_bytes([seen])))
-    order = {"map1.yaml": 0, "map1.pgm": 1, "map2.yaml": 2, "map2.pgm": 3, "observation.yaml": 4}
+    content = {**map_to_bytes(grid, "map1"), **map_to_bytes(grid, "map2")}
+    seen = Observation(Pose2(70.0, 70.0, 0.0), *SEEN_AT.tolist(), 3.0, 0.0)
+    content["observation.yaml"] = observations_to_bytes([seen])
     tab.unfold("Upload your own")
-    for name, content in sorted(files, key=lambda file: order[file[0]]):
-        (tmp_path / name).write_bytes(content)
-        tab.upload(order[name], tmp_path / name)
-        settle(lambda name=name: name in tab.page.locator("table").first.inner_text(), name)
+    table = tab.page.locator("table").first
+    for name, slot in SLOTS.items():
+        (tmp_path / name).write_bytes(content[name])
+        tab.upload(slot, tmp_path / name)
+        settle(lambda name=name: name in table.inner_text(), name)
     settle(lambda: tab.state == "Ready. Press Merge.", "both maps and the observation")
     said = tab.page.evaluate("() => window.said")
     # two words that come within one frame are seen as the later one
-    assert {"Reading map1.pgm, 16 MB.", "Reading map2.pgm, 16 MB.", "Drawing the maps."} & set(said)
+    assert {"Reading map1.pgm, 9 MB.", "Reading map2.pgm, 9 MB.", "Drawing the maps."} & set(said)
     drawn = "(name) => !!window.__viserMutable.nodeRefFromName[`/world/${name}/walls`]"
     settle(lambda: all(tab.page.evaluate(drawn, name) for name in ("ref", "mov")), "the pictures")
 
-    eye = "() => window.__viserMutable.cameraControl.camera.position.x"
-    before = tab.page.evaluate(eye)
-    box = tab.page.locator("#mapmeld-ink").bounding_box()
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    tab.page.mouse.move(x, y)
+    def slowly(yaml_name, yaml, name, image):
+        while name == "slow.pgm":
+            image.read(1)
+            sleep(0.01)
+        return map_from_bytes(yaml_name, yaml, name, image)
+
+    monkeypatch.setattr(files, "map_from_bytes", slowly)
+    (tmp_path / "slow.pgm").write_bytes(content["map1.pgm"])
+    tab.upload(SLOTS["map1.pgm"], tmp_path / "slow.pgm")
+    settle(lambda: tab.state == "Reading slow.pgm, 9 MB.", "the reading")
+    stop = tab.page.get_by_role("button", name="Stop", exact=True)
+    settle(stop.is_enabled, "Stop")
+    tab.press("Stop")
+    settle(lambda: tab.state == "Ready. Press Merge.", "everything as it was")
+    settle(stop.is_disabled, "nothing to stop")
+    assert "map1.pgm" in table.inner_text()
+    assert "slow.pgm" not in table.inner_text()
+
+    look_at_the_pillar(tab, "scene")
+    settle(lambda: around_the_pillar(tab, "scene") == [LIGHT.ref, *[LIGHT.free] * 4], "every cell of map 1")
+    look_at_the_pillar(tab, "mov")
+    settle(lambda: around_the_pillar(tab, "mov") == [LIGHT.mov, *[LIGHT.free] * 4], "every cell of map 2")
+
+    tab.press("Move map 2 by hand")
+    settle(lambda: tab.page.evaluate("() => !!window.mapmeld.hand?.mov"), "map 2 in the hand")
+    before = tab.page.evaluate("() => window.mapmeld.mov.x")
+    x, y = tab.page.evaluate("(p) => window.mapmeld.pixel(p, 'mov')", centre(*PILLAR).tolist())
+    tab.page.mouse.move(x + 40, y + 40)
     tab.page.mouse.down()
-    tab.page.mouse.move(x + 60, y, steps=6)
+    tab.page.mouse.move(x + 140, y + 60, steps=8)
     tab.page.mouse.up()
-    settle(lambda: tab.page.evaluate(eye) != before, "the map to follow the hand")
+    assert tab.page.evaluate("() => window.mapmeld.mov.x") > before
+    settle(lambda: around_the_pillar(tab, "mov") == [LIGHT.mov, *[LIGHT.free] * 4], "the cells to come along")
 
     tab.press("Merge")
     settle(lambda: tab.mood == "running", "the run")

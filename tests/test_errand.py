@@ -1,0 +1,156 @@
+"""Reading can be left: soon, whatever the file is, and with nothing half-loaded."""
+
+from __future__ import annotations
+
+import io
+from threading import RLock
+
+import numpy as np
+import pytest
+import viser
+from PIL import Image
+
+from algorithms.errors import InputFileError
+from algorithms.mapio import map_from_bytes
+from app.errand import Errand, Left, Watched
+from app.panels.files import FilesPanel, Upload
+from app.stage import Stage
+
+YAML = b"image: a\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
+BEFORE = {"state": "Ready. Press Merge.", "mood": "idle", "progress": None}
+
+
+def image(kind: str, side: int = 1100) -> bytes:
+    packed = io.BytesIO()
+    grey = np.random.default_rng(0).integers(0, 255, (side, side), dtype=np.uint8)
+    pixels = Image.fromarray(grey)
+    if kind == "ppm":
+        pixels = pixels.convert("RGB")
+    pixels.save(packed, {"pgm": "ppm"}.get(kind, kind))
+    return packed.getvalue()
+
+
+class Silent(Stage):
+    """Keeps what it is told to say."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.sent = []
+
+    def send(self, message):
+        self.sent.append(message.get("hud", {}).get("state"))
+
+
+class Person:
+    """Presses Stop as soon as it can be pressed, where it is impatient."""
+
+    def __init__(self) -> None:
+        self.stage = Silent()
+        self.stage.hud(**BEFORE)
+        self.errand = Errand(self.stage, RLock(), self._stoppable)
+        self.impatient, self.could_stop = False, []
+
+    def _stoppable(self, yes: bool) -> None:
+        self.could_stop.append(yes)
+        if yes and self.impatient:
+            self.errand.stop()
+
+    @property
+    def said(self):
+        return self.stage.said(*BEFORE)
+
+
+@pytest.fixture
+def person():
+    return Person()
+
+
+@pytest.fixture(scope="module")
+def server():
+    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    yield server
+    server.stop()
+
+
+@pytest.mark.parametrize("kind", ["pgm", "ppm", "png", "bmp"])
+def test_no_reader_takes_stop_for_a_damaged_file(kind):
+    looks = 0
+
+    def check():
+        nonlocal looks
+        looks += 1
+        if looks == 2:
+            raise Left
+
+    content = image(kind)
+    with pytest.raises(Left):
+        map_from_bytes("m.yaml", YAML, "m", Watched(content, check))
+    assert looks == 2
+    whole = map_from_bytes("m.yaml", YAML, "m", Watched(content, lambda: None))
+    assert (whole.cells == map_from_bytes("m.yaml", YAML, "m", content).cells).all()
+
+
+@pytest.mark.parametrize("kind", ["pgm", "png"])
+@pytest.mark.parametrize("with_yaml", [True, False], ids=["map", "image alone"])
+def test_a_file_whose_reading_is_stopped_leaves_everything_as_it_was(server, person, kind, with_yaml):
+    loaded, reports = [], []
+
+    def load(inputs):
+        loaded.append(inputs)
+        person.stage.hud(**BEFORE)
+
+    panel = FilesPanel(server.gui, load, reports.append, "", lambda *_: None, errand=person.errand)
+    if with_yaml:
+        panel._take("yaml1", Upload("m.yaml", YAML))
+    panel._take("image1", Upload("first", image(kind)))
+    before, so_far = dict(panel.files.uploads), len(loaded)
+    person.impatient = True
+    panel._take("image1", Upload("second", image(kind, 1200)))
+    assert panel.files.uploads == before
+    assert len(loaded) == so_far
+    assert reports == []
+    assert person.said == BEFORE
+    assert "Reading second" in " ".join(filter(None, person.stage.sent))
+    person.impatient = False
+    panel._take("image1", Upload("second", image(kind, 1200)))  # and it can be loaded after all
+    assert panel.files.uploads["image1"].name == "second"
+    assert person.could_stop == [True, False] * 3
+    assert len(loaded) == so_far + 1
+
+
+def test_a_small_file_is_read_without_a_word_and_a_small_png_of_many_pixels_is_not(server, person):
+    panel = FilesPanel(server.gui, lambda _: None, lambda _: None, "", lambda *_: None, errand=person.errand)
+    panel._take("image1", Upload("small.png", image("png", 100)))
+    assert person.could_stop == []
+    packed = io.BytesIO()
+    Image.new("L", (3000, 3000), 254).save(packed, "PNG")
+    assert len(packed.getvalue()) < 100_000
+    panel._take("image1", Upload("blank.png", packed.getvalue()))
+    assert person.could_stop == [True, False]
+
+
+def test_stop_has_nothing_to_stop_before_and_after(person):
+    assert not person.errand.stop()
+    with person.errand("Reading."):
+        assert person.said["state"] == "Reading."
+    assert not person.errand.stop()
+    with pytest.raises(InputFileError), person.errand("Reading."):
+        raise InputFileError("m.pgm", "is cut off", "copy it anew")
+    assert not person.errand.stop()
+
+
+def test_a_press_at_the_last_moment_still_counts(person):
+    with pytest.raises(Left), person.errand("Reading."):
+        person.errand.stop()
+    assert person.said == BEFORE
+
+
+def test_what_a_run_has_said_meanwhile_stays_said(person):
+    def overtaken():
+        with person.errand("Reading."):
+            person.stage.hud(state="Merged.", mood="accepted", progress=None)
+            person.errand.stop()
+
+    with pytest.raises(Left):
+        overtaken()
+    assert person.said["state"] == "Merged."
