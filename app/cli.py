@@ -24,6 +24,8 @@ COMMANDS = {
     "merge": "merge two maps into a folder of files",
     "replay": "merge two maps and save the run as one HTML page that plays offline",
     "evaluate": "run a method on every case in a folder and count what came out right",
+    "compare": "run several methods on the same cases: a table, and the merged maps side by side",
+    "sweep": "run a method again and again while a setting changes: curves, heat maps, tables",
     "samples": "simulate pairs of maps with known truth",
 }
 """Every command, a module of ``app.commands`` each."""
@@ -41,7 +43,11 @@ Examples:
   mapmeld replay office_r2_r1 --out merge.html
                                      the same as a recording for a talk or a lesson
   mapmeld evaluate cases --jobs 4 --json results.json
-                                     every case folder under cases/, and how many came out right"""
+                                     every case folder under cases/, and how many came out right
+  mapmeld compare cases --out compared
+                                     the same for every method, with pictures
+  mapmeld sweep office_r2_r1 --x augment.spread=1:8:8
+                                     what a setting does: tables and a figure"""
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -8,21 +8,21 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 from algorithms.methods import DEFAULT_METHOD, METHODS
 from app.controls import Setting, settings_of, value_at, with_value
+from app.paths import samples
 from app.usage import Parser, did_you_mean
 
 
-def add_method(parser: Parser, words: Sequence[str]) -> None:
+def add_method(parser: Parser, words: Sequence[str], default: str = DEFAULT_METHOD) -> None:
     """Add ``--method``, ``--seed`` and the settings of the method that ``words`` ask for."""
-    _method_flag(parser)
-    parser.add_argument(
-        "--seed", type=_seed, default=0, help="the same seed gives the same answer (default: 0)"
-    )
+    _method_flag(parser, default)
+    add_seed(parser)
     ahead = Parser(prog=parser.prog, add_help=False, strict=False)
-    _method_flag(ahead)
+    _method_flag(ahead, default)
     named = ahead.parse_known_args(words)[0].method
     defaults = METHODS[named].defaults
     groups: dict[str, Any] = {}
@@ -32,8 +32,15 @@ def add_method(parser: Parser, words: Sequence[str]) -> None:
             about = type(value_at(defaults, setting.path[:-1])).__doc__ or ""
             groups[stage] = parser.add_argument_group(stage, about.strip().split("\n")[0])
         _add(groups.get(stage, parser), setting)
-    if named != DEFAULT_METHOD:
+    if named != default:
         parser.hint = f" (it may belong to a method other than {named})"
+
+
+def add_seed(parser: Parser) -> None:
+    """Add ``--seed``."""
+    parser.add_argument(
+        "--seed", type=_seed, default=0, help="the same seed gives the same answer (default: 0)"
+    )
 
 
 def add_workers(parser: Parser, jobs: int | None) -> None:
@@ -58,6 +65,16 @@ def add_workers(parser: Parser, jobs: int | None) -> None:
     )
 
 
+def case_folder(name: str, parser: Parser) -> Path:
+    """The folder of a case, or of the sample of that name; a usage error where there is neither."""
+    known, folder = samples(), Path(name)
+    if folder.is_dir():
+        return folder
+    if name not in known:
+        parser.error(f"{name} is neither a folder nor a sample{did_you_mean(name, known)}")
+    return known[name]
+
+
 def config_from(args: argparse.Namespace) -> Any:
     """The config of ``args.method`` with every setting that was given."""
     config = METHODS[args.method].defaults
@@ -68,14 +85,14 @@ def config_from(args: argparse.Namespace) -> Any:
     return config
 
 
-def _method_flag(parser: argparse.ArgumentParser) -> None:
+def _method_flag(parser: argparse.ArgumentParser, default: str) -> None:
     titles = "\n".join(f"{name}: {method.title}" for name, method in METHODS.items())
     parser.add_argument(
         "--method",
         type=_method,
-        default=DEFAULT_METHOD,
+        default=default,
         metavar="NAME",
-        help=f"one of\n{titles}\n(default: {DEFAULT_METHOD})".replace("%", "%%"),
+        help=f"one of\n{titles}\n(default: {default})".replace("%", "%%"),
     )
 
 

@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 
 from algorithms.errors import NoAnswerError
+from algorithms.fuse import Fusion
 from algorithms.mapio import map_to_bytes
 from algorithms.merit import performance_index
 from algorithms.steps import MergeResult
@@ -117,18 +118,23 @@ def report_json(report: Mapping[str, Any]) -> bytes:
     return ("{\n" + ",\n".join(lines) + "\n}\n").encode()
 
 
-def overlay_png(result: MergeResult) -> bytes:
-    """A picture of both maps under T: whose wall it is, where they agree and where they contradict.
+def overlay(fusion: Fusion, most: int = render.MOST_PIXELS) -> render.Pixels:
+    """(H, W, 3) of both maps under T: whose wall it is, where they agree and where they contradict.
 
-    Its first row is the top, as on a screen; what no map knows is grey.
+    Its first row is the top, as on a screen; what no map knows is grey; ``most`` pixels on a side.
     """
-    floor = render.merged_floor(result.fusion, LIGHT).pixels
+    floor = render.merged_floor(fusion, LIGHT, most).pixels
     picture = np.empty((*floor.shape[:2], 3), dtype=np.uint8)
     picture[:] = LIGHT.unknown
-    for layer in (floor, render.merged_walls(result.fusion, LIGHT).pixels):
+    for layer in (floor, render.merged_walls(fusion, LIGHT, most).pixels):
         seen = layer[..., 3] > 0
         picture[seen] = layer[seen, :3]
-    done, png = cv2.imencode(".png", render.upright(picture)[..., ::-1])  # OpenCV keeps blue first
+    return render.upright(picture)
+
+
+def overlay_png(result: MergeResult) -> bytes:
+    """That picture as a file."""
+    done, png = cv2.imencode(".png", overlay(result.fusion)[..., ::-1])  # OpenCV keeps blue first
     assert done
     return png.tobytes()
 

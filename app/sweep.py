@@ -148,6 +148,11 @@ def sweep(case: Case, plan: Plan, executor: Executor, journal: Journal | None = 
         yield point
 
 
+def done_before(case: Case, plan: Plan, journal: Journal) -> int:
+    """How many points of a sweep the journal knows."""
+    return sum(journal.get(key) is not None for key in point_keys(case, plan).values())
+
+
 def in_order(plan: Plan, points: Sequence[Point]) -> list[Point]:
     """The points as they stand in a table, however they came."""
     at = {(point.x, point.y): point for point in points}

@@ -92,16 +92,15 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
 
 def table(totals: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
     """Lines of a table for people, a row per group."""
+    from app.tables import aligned
+
     rows = [[name.replace("_", " ") for name in COLUMNS]]
     for group, counts in totals.items():
         values = {"group": group, **counts}
         rows.append(
             ["–" if values[name] is None else form.format(values[name]) for name, form in COLUMNS.items()]
         )
-    widths = [max(len(row[column]) for row in rows) for column in range(len(COLUMNS))]
-    for row in rows:
-        first, *rest = (cell.rjust(width) for cell, width in zip(row, widths, strict=True))
-        yield "  ".join([row[0].ljust(len(first)), *rest])
+    yield from aligned(rows)
 
 
 def remarks(entries: Sequence[Mapping[str, Any]]) -> Iterator[str]:
