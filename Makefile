@@ -8,12 +8,13 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help run test bench samples screenshots equations clean
+.PHONY: help run test bench fuzz samples screenshots equations clean
 
 help:
 	@echo "make run          open the tool on a sample, in the browser (ARGS=--no-browser: only serve it)"
 	@echo "make test         check style and types, run every test, browser tests included"
 	@echo "make bench        time the stages of a merge"
+	@echo "make fuzz         feed every reader of files with damaged ones (ARGS='--seconds 300')"
 	@echo "make samples      simulate the maps in sample_maps again"
 	@echo "make screenshots  take the pictures of the README and the guides again"
 	@echo "make equations    typeset the equations in static/equations again"
@@ -33,6 +34,10 @@ test: $(VENV)/ready-to-test
 bench: $(VENV)/ready-to-test
 	$(BIN)/python -m pytest -o addopts="" -o python_files="bench_*.py" -o python_functions="bench_*" \
 	  --benchmark-only --benchmark-columns=min,median,max,rounds tests/bench $(ARGS)
+
+fuzz: $(VENV)/ready-to-test
+	@$(PIP) install -e '.[fuzz]'
+	@$(BIN)/python tests/fuzz.py $(ARGS)
 
 samples: $(VENV)/ready
 	$(BIN)/mapmeld samples sample_maps

@@ -292,6 +292,17 @@ def test_a_pgm_whose_white_is_not_255_is_stretched():
     assert cells(pgm([[0, 1, 99, 100]], b"P2", maxval=100)) == [[100, 100, 0, 0]]
 
 
+@pytest.mark.parametrize("maxval", [255, 100, 1])
+def test_an_image_written_as_text_is_the_one_written_as_bytes(maxval):
+    samples = (np.arange(24) % (maxval + 1)).astype(np.uint8)
+    words = b" ".join(b"%d" % value for value in samples)
+    for plain, binary, size in ((2, 5, b"6 4"), (3, 6, b"4 2")):
+        text = load(b"P%d\n%s # a comment\n%d\n" % (plain, size, maxval) + words.replace(b" 5 ", b"#x\n5\t"))
+        assert np.array_equal(
+            text.cells, load(b"P%d\n%s\n%d\n" % (binary, size, maxval) + bytes(samples)).cells
+        )
+
+
 def test_comments_in_a_pgm_are_passed_over():
     data = b"P5\n# CREATOR: an editor 1 2 3\n2 # wide\n1\n#\n255\n" + bytes([0, 254])
     assert cells(data) == [[100, 0]]
@@ -454,9 +465,13 @@ BAD_IMAGE = {
     "PGM 12 bit": (b"P5\n1 1\n4095\n\0\0", "16 bits"),
     "PPM 16 bit": (b"P6\n1 1\n65535\n" + bytes(6), "16 bits"),
     "ASCII PGM 16 bit": (b"P2\n1 1\n1000\n7\n", "16 bits"),
-    "ASCII PGM cut": (b"P2\n3 1\n255\n7 7", "decoded"),
-    "ASCII PGM of words": (b"P2\n3 1\n255\n7 seven 7", "decoded"),
-    "PPM cut": (b"P6\n9 9\n255\n" + bytes(9), "decoded"),
+    "ASCII PGM cut": (b"P2\n3 1\n255\n7 7", "cut off: 3 x 1"),
+    "ASCII PGM of words": (b"P2\n3 1\n255\n7 seven 7", "something else than numbers"),
+    "ASCII PGM of signs": (b"P2\n3 1\n255\n7 -7 7", "something else than numbers"),
+    "ASCII PGM above its white": (b"P2\n2 1\n100\n7 101", "a pixel of 101"),
+    "ASCII PGM too long": (b"P2\n4000 4000\n255\n" + b"0 " * 8_000_001, "16 MB of pixels written as text"),
+    "ASCII PPM cut": (b"P3\n2 1\n255\n1 2 3 4 5", "cut off: 2 x 1"),
+    "PPM cut": (b"P6\n9 9\n255\n" + bytes(9), "cut off: 9 x 9"),
     "PFM": (b"Pf\n1 1\n-1.0\n" + bytes(4), "not a PGM"),
     "PNG 16 bit": (encoded(Image.new("I;16", (2, 2)), "PNG"), "16 bits"),
     "PNG 16 bit colour": (SIXTEEN_BIT_RGB, "16 bits"),

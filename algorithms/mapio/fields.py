@@ -19,13 +19,39 @@ import yaml
 
 from algorithms.errors import InputFileError
 
-MAX_YAML_BYTES = 64 * 1024  # ours have 400 bytes; the parser takes about 1 s for this much
+MAX_YAML_BYTES = 32 * 1024  # ours have 400 bytes, and 64 sightings less than 30,000
+MAX_DEPTH = 20  # of lists and mappings in each other; ours are 3 deep
+MAX_ALIASES = 64
+MAX_VALUES = 5000  # keys count, too; 64 sightings have 2,000
 TRUE = ("true", "yes", "on", "y")
 FALSE = ("false", "no", "off", "n")
 
 
 class _TextLoader(yaml.BaseLoader):
-    """Mappings, lists and texts only; a key given twice is an error, not a silent choice."""
+    """Mappings, lists and texts only; a key given twice is an error, not a silent choice.
+
+    The scanner takes a time that grows with the square of the depth: there is an end to that.
+    """
+
+    _aliases = _values = 0
+
+    def fetch_flow_collection_start(self, token: type[yaml.Token]) -> None:
+        if self.flow_level >= MAX_DEPTH:
+            raise RecursionError
+        super().fetch_flow_collection_start(token)
+
+    def add_indent(self, column: int) -> bool:
+        if len(self.indents) > MAX_DEPTH:
+            raise RecursionError
+        return bool(super().add_indent(column))
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        self._values += 1
+        self._aliases += self.check_event(yaml.AliasEvent)
+        if self._values > MAX_VALUES or self._aliases > MAX_ALIASES:
+            raise yaml.composer.ComposerError(None, None, "it holds too many values", None)
+        node: yaml.Node | None = super().compose_node(parent, index)
+        return node
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
         seen: set[str] = set()

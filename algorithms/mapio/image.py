@@ -14,6 +14,7 @@ from algorithms.mapio.shading import GreyArray
 
 # An uncompressed image with alpha at the largest size, and 1 MB for what stands before the pixels.
 MAX_IMAGE_BYTES = 4 * MAX_CELLS + 1_000_000
+MAX_TEXT_BYTES = 16_000_000  # of a netpbm image written as text: 2000 x 2000 pixels
 MODES_READ = ("1", "L", "LA", "P", "PA", "RGB", "RGBA")
 CONVERT = "save it as an 8-bit PGM or PNG"
 
@@ -26,7 +27,8 @@ _NETPBM = re.compile(
 def read_pixels(source: str, stream: BinaryIO) -> tuple[GreyArray, GreyArray | None]:
     """Decode a PGM, PPM, PBM, PNG or BMP image.
 
-    At the most 9 bytes per pixel are held (PNG with colour and alpha), 1 for a binary PGM.
+    At the most 9 bytes per pixel are held (PNG with colour and alpha), 1 for a binary PGM; for one that
+    is written as text 60, and 4 million pixels are then the most.
 
     source  : name of the file as the user knows it
     stream  : the file, at its start; seekable
@@ -49,9 +51,8 @@ def read_pixels(source: str, stream: BinaryIO) -> tuple[GreyArray, GreyArray | N
         if netpbm:
             kind, width, height, maxval = (int(group) for group in netpbm.groups())
             _check_header(source, width, height, bits=8 if maxval <= 255 else 16)
-            if kind == 5:
-                stream.seek(netpbm.end())
-                return _read_pgm(source, stream, width, height, maxval), None
+            stream.seek(netpbm.end())
+            return _read_netpbm(source, stream, kind, width, height, maxval), None
         stream.seek(0)
         return _decode(source, stream, head)
     except MapMergeError:
@@ -63,23 +64,46 @@ def read_pixels(source: str, stream: BinaryIO) -> tuple[GreyArray, GreyArray | N
         ) from error
 
 
-def _read_pgm(source: str, stream: BinaryIO, width: int, height: int, maxval: int) -> GreyArray:
-    """The pixels of a binary PGM, which is what nearly every map is. Pillow would take a minute for
-    a large one whose maxval is not 255.
+def _read_netpbm(source: str, stream: BinaryIO, kind: int, width: int, height: int, maxval: int) -> GreyArray:
+    """The pixels of a PGM or PPM, which is what nearly every map is. Pillow would take a minute for a
+    large one whose maxval is not 255, or that is written as text.
     """
     if maxval == 0:
         raise InputFileError(source, "says that its white is 0", CONVERT)
-    body = stream.read(width * height)
-    if len(body) < width * height:
+    colours = 3 if kind in (3, 6) else 1
+    count = width * height * colours
+    body = _text_samples(source, stream, maxval, count) if kind in (2, 3) else stream.read(count)
+    if len(body) < count:
         raise InputFileError(
             source,
-            f"is cut off: {width} x {height} pixels are announced, {len(body)} are there",
+            f"is cut off: {width} x {height} pixels are announced, {len(body) // colours} are there",
             "copy it anew",
         )
     if maxval != 255:
         stretched = np.minimum(np.floor(np.arange(256) * (255 / maxval) + 0.5), 255)
         body = body.translate(stretched.astype(np.uint8).tobytes())
-    return np.frombuffer(body, dtype=np.uint8).reshape(height, width)
+    samples = np.frombuffer(body, dtype=np.uint8)
+    if colours == 1:
+        return samples.reshape(height, width)
+    return np.asarray(Image.fromarray(samples.reshape(height, width, 3)).convert("L"))
+
+
+def _text_samples(source: str, stream: BinaryIO, maxval: int, count: int) -> bytes:
+    """The first ``count`` samples of a netpbm file that is written as text, or as many as there are."""
+    text = stream.read(MAX_TEXT_BYTES + 1)
+    if len(text) > MAX_TEXT_BYTES:
+        raise InputFileError(
+            source, f"has more than {MAX_TEXT_BYTES / 1e6:,.0f} MB of pixels written as text", CONVERT
+        )
+    words = re.sub(rb"#[^\n\r]*", b" ", text).split(maxsplit=count)[:count]
+    if any(len(word) > 3 or not word.isdigit() for word in set(words)):
+        raise InputFileError(source, "holds something else than numbers among its pixels", CONVERT)
+    samples = np.array(words, dtype="S3").astype(np.int16)
+    if samples.size and samples.max() > maxval:
+        raise InputFileError(
+            source, f"has a pixel of {samples.max()}, and says that its white is {maxval}", CONVERT
+        )
+    return samples.astype(np.uint8).tobytes()
 
 
 def _decode(source: str, stream: BinaryIO, head: bytes) -> tuple[GreyArray, GreyArray | None]:

@@ -1,0 +1,125 @@
+"""Every reader of files that strangers send, and files to begin with: what test_fuzz.py and fuzz.py feed.
+
+A reader takes any bytes at all, and answers or raises a MapMergeError; nothing else.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from PIL import Image
+
+from algorithms.casefiles import observations_from_bytes, read_truth
+from algorithms.errors import MapMergeError
+from algorithms.mapio import grey_image, map_from_bytes, parse_meta
+from app.lesson.numbers import NUMBERS
+from app.lesson.texts import read_exhibit, read_step
+from app.pictures.book import PICTURES
+
+MOST_MEMORY = 2_000  # MB that a process may take to read any file of at most 1 MB
+MOST_SECONDS = 1.0
+
+META = (
+    b"image: m.pgm\nresolution: 0.05\norigin: [-1.5, 2.0, 0.1]\n"
+    b"negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
+)
+SEEN = (
+    b"observer: {pose: [31.248, 2.711, 2.96434]}\nobserved: {pose: [24.8295, 34.5772, -0.62006]}\n"
+    b"measurement: {range: 2.97, bearing: 0.406, sigma_range: 0.05, sigma_bearing: 0.035}\n"
+)
+TRUTH = (
+    b"T_ref_mov: {x: 1.0, y: -2, theta: 0.5}\n"
+    b"tolerance: {distance: 0.5, angle: 0.05}\nexpected: merge\noverlap: 0.4\n"
+)
+ROOT = Path(__file__).parent.parent / "static"
+
+
+def encoded(image: Image.Image, name: str, **how: object) -> bytes:
+    data = io.BytesIO()
+    image.save(data, name, **how)  # type: ignore[arg-type]
+    return data.getvalue()
+
+
+def _images() -> list[bytes]:
+    grey = Image.fromarray((np.indices((7, 9)).sum(0) * 16).astype(np.uint8))
+    palette = grey.convert("P")
+    images = [encoded(grey.convert(mode), "PNG") for mode in ("1", "L", "LA", "RGB", "RGBA")]
+    images += [encoded(palette, "PNG", transparency=3), encoded(grey, "PNG", optimize=True)]
+    images += [encoded(grey.convert(mode), "BMP") for mode in ("1", "L", "RGB")]
+    images += [encoded(grey.convert(mode), "PPM") for mode in ("1", "L", "RGB")]
+    images += [b"P2\n2 2\n255\n0 205 254 # x\n9\n", b"P1\n2 2\n0 1\n1 0\n", b"P3\n1 1\n9\n1 2 3\n"]
+    images += [encoded(grey, "JPEG"), encoded(grey, "GIF"), encoded(grey.convert("CMYK"), "TIFF")]
+    images += [encoded(Image.new("I;16", (3, 2)), "PNG")]
+    return images
+
+
+def _from_disk(read: Callable[[Path], object]) -> Callable[[bytes], object]:
+    def reader(data: bytes) -> object:
+        with TemporaryDirectory() as folder:
+            path = Path(folder, "file")
+            path.write_bytes(data)
+            return read(path)
+
+    return reader
+
+
+# name -> what reads it, and files that it is meant for
+READERS: dict[str, tuple[Callable[[bytes], object], list[bytes]]] = {
+    "meta": (lambda data: parse_meta("m.yaml", data), [META, META.replace(b"[", b"\n- ")]),
+    "image": (lambda data: grey_image("m.png", data), _images()),
+    "map": (
+        lambda data: map_from_bytes("m.yaml", META, "m.pgm", data),
+        [image for image in _images() if image[:1] == b"P"],
+    ),
+    "observations": (
+        lambda data: observations_from_bytes("o.yaml", data),
+        [SEEN, b"- " + SEEN.replace(b"\n", b"\n  ", 2)],
+    ),
+    "truth": (_from_disk(read_truth), [TRUTH, b"expected: refuse\n"]),
+    "step": (
+        _from_disk(lambda path: read_step(path, PICTURES, NUMBERS)),
+        [path.read_bytes() for path in sorted((ROOT / "lesson" / "en").glob("*.md"))[:4]],
+    ),
+    "exhibit": (
+        _from_disk(read_exhibit),
+        [path.read_bytes() for path in sorted((ROOT / "museum" / "en").glob("*.md"))[:3]],
+    ),
+}
+
+# What takes a parser's time or memory by its shape; N bytes or less of each
+N = 32 * 1024
+SHAPES: dict[str, bytes] = {
+    "lists in lists": b"[" * N,
+    "mappings in mappings": b"{" * N,
+    "mappings in mappings with keys": b"{a: " * (N // 4),
+    "lists in lists by indentation": b"- " * (N // 2),
+    "questions": b"? " * (N // 2),
+    "keys": b"".join(b"k%d: 1\n" % k for k in range(N // 9)),
+    "a long list": b"[" + b"1," * (N // 2 - 2) + b"]",
+    "anchors": b"".join(b"- &a%d x\n" % k for k in range(N // 12)),
+    "aliases": b"- &a x\n" + b"- *a\n" * (N // 6),
+    "laughs": b"a0: &a0 [x,x,x,x,x,x,x,x,x]\n"
+    + b"".join(b"a%d: &a%d [%s]\n" % (k, k, b",".join([b"*a%d" % (k - 1)] * 9)) for k in range(1, 300)),
+    "itself": b"a: &a [*a]",
+    "comments": b"#\n" * (N // 2),
+    "blanks": b" " * N,
+    "lines": b"\n" * N,
+    "a text without an end": b'"' + b"\\x41" * (N // 4),
+    "folded lines": b"a: >\n" + b" x\n" * (N // 3),
+    "indents": b"".join(b" " * k + b"a:\n" for k in range(240)),
+    "directives": b"%a\n" * (N // 3),
+    "wide characters": b"\xff\xfe" + b"a\0" * (N // 2 - 1),
+    "pixels after many comments": b"P2\n200 200\n255\n" + b"#\n" * (N // 2),
+    "a pixel of many digits": b"P2\n200 200\n255\n" + b"1" * N,
+}
+
+
+def reads(reader: Callable[[bytes], object], data: bytes) -> None:
+    """Read, or refuse in words."""
+    with contextlib.suppress(MapMergeError):
+        reader(data)
