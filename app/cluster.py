@@ -8,6 +8,7 @@ import logging
 from collections import OrderedDict
 from collections.abc import Iterable, Iterator
 from concurrent.futures import CancelledError
+from threading import Event
 from typing import TYPE_CHECKING, Any
 
 from algorithms.errors import SettingError
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from distributed import Client
 
 PATIENCE_S = 10.0  # until whoever should answer is said not to
+LOOK_S = 0.1  # how often it is looked whether an answer is there, by whoever may be stopped
 AHEAD = 2  # tasks per thread of a worker: one at hand, one that waits for it
 KEPT = 2  # shared values that are kept on the cluster while no task at hand needs them
 
@@ -44,7 +46,7 @@ class Cluster(Executor):
         """Threads of all workers, when they were greeted."""
         return self._jobs
 
-    def run(self, work: Work, tasks: Iterable[Task]) -> Iterator[tuple[int, Any]]:
+    def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
         """As in Executor; raises SettingError where the scheduler goes away."""
         from distributed import as_completed
         from distributed.scheduler import KilledWorker
@@ -71,6 +73,9 @@ class Cluster(Executor):
                             values.popitem(last=False)
                     if not running:
                         return
+                    while stop is not None and not finished.has_ready():
+                        if stop.wait(LOOK_S):
+                            return
                     future = next(finished)
                     try:
                         answer = future.result()

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean, median
+from threading import Event
 from typing import Any
 
 from algorithms.casefiles import Case, case_folders, read_case
@@ -45,8 +46,11 @@ def defaults_of(names: Iterable[str]) -> dict[str, Any]:
     return {name: method.defaults for name, method in METHODS.items() if name in wanted}
 
 
-def contest(pairs: Pairs, configs: Configs, executor: Executor, seed: int = 0) -> Iterator[Score]:
-    """Yield a score per pair and method, as they are done. Close the generator to stop.
+def contest(
+    pairs: Pairs, configs: Configs, executor: Executor, seed: int = 0, stop: Event | None = None
+) -> Iterator[Score]:
+    """Yield a score per pair and method, as they are done. Close the generator to stop, or set ``stop``
+    in another thread.
 
     A method that can't be run on a pair, and a pair that can't be read, cost no other.
     """
@@ -63,7 +67,7 @@ def contest(pairs: Pairs, configs: Configs, executor: Executor, seed: int = 0) -
                 asked.append((name, method))
                 yield Task((method, config, seed), shared)
 
-    for number, answer in executor.run(_work, tasks()):
+    for number, answer in executor.run(_work, tasks(), stop):
         yield Score(*asked[number], _not_run(answer.reason) if isinstance(answer, Lost) else answer)
         while unread:
             yield unread.pop(0)

@@ -12,6 +12,7 @@ import zlib
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from threading import Event
 from typing import Any
 
 Work = Callable[[Any, Any], Any]
@@ -66,11 +67,14 @@ class Executor(ABC):
         """How many tasks are worked on at a time."""
 
     @abstractmethod
-    def run(self, work: Work, tasks: Iterable[Task]) -> Iterator[tuple[int, Any]]:
+    def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
         """Yield (number of the task, answer or Lost) in the order of completion.
 
         Tasks are taken from the iterable only as workers become free. Whoever leaves the loop, or
         closes the generator, stops the work. What ``work`` raises is raised here.
+
+        stop : set by another thread, which can't close a generator at work, it ends the loop: at once,
+               or after the task at hand where this process does it
         """
 
 
@@ -82,10 +86,12 @@ class Here(Executor):
         """One."""
         return 1
 
-    def run(self, work: Work, tasks: Iterable[Task]) -> Iterator[tuple[int, Any]]:
+    def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
         """As in Executor; a task that kills its process kills this one."""
         known: tuple[str, Any] = ("", None)
         for number, task in enumerate(tasks):
+            if stop is not None and stop.is_set():
+                return
             if task.shared is not None and task.shared.key != known[0]:
                 known = (task.shared.key, unpacked(task.shared.data))
             yield number, work(None if task.shared is None else known[1], task.order)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import threading
 from collections import OrderedDict
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -15,11 +14,13 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import Event, Thread
 from typing import Any
 
 from algorithms import kernels
 from app.executor import Executor, Lost, Shared, Task, Work, unpacked
 
+LOOK_S = 0.1  # how often it is looked whether all is to stop
 KEPT = 2  # shared values that a process holds on to; tasks that share one come one after the other
 SPAWN = get_context("spawn")  # a copy of a process that already has threads can hang
 
@@ -54,23 +55,23 @@ class Processes(Executor):
         """How many processes."""
         return self._jobs
 
-    def run(self, work: Work, tasks: Iterable[Task]) -> Iterator[tuple[int, Any]]:
+    def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
         """As in Executor."""
         left = iter(enumerate(tasks))
         with TemporaryDirectory(prefix="mapmeld-") as folder:
             while True:
-                stopped = yield from self._some(work, left, self._jobs, Path(folder))
+                stopped = yield from self._some(work, left, self._jobs, Path(folder), stop)
                 if stopped is None:
                     return
                 left = chain(stopped.untouched, left)
                 again = iter(stopped.suspects)  # who of them took its process down? Each alone shows it
-                while stopped := (yield from self._some(work, again, 1, Path(folder))):
+                while stopped := (yield from self._some(work, again, 1, Path(folder), stop)):
                     again = chain(stopped.untouched, again)
                     for number, _ in stopped.suspects:
                         yield number, Lost()
 
     def _some(
-        self, work: Work, left: Iterator[Numbered], jobs: int, folder: Path
+        self, work: Work, left: Iterator[Numbered], jobs: int, folder: Path, stop: Event | None
     ) -> Generator[tuple[int, Any], None, _Stopped | None]:
         """Yield answers until no task is left; return what a process that died has left behind."""
         # a process ends when nobody holds the other end any more: it is told to, or this one is dead
@@ -80,7 +81,7 @@ class Processes(Executor):
             jobs, mp_context=SPAWN, initializer=_begin, initargs=(listening, self._jobs)
         )
         try:
-            while True:
+            while stop is None or not stop.is_set():
                 while len(running) < jobs and (found := next(left, None)) is not None:
                     number, task = found
                     path = None if task.shared is None else _laid_down(task.shared, folder)
@@ -90,11 +91,12 @@ class Processes(Executor):
                         return _Stopped((yield from _rescued(running)), [found])
                 if not running:
                     return None
-                for future in wait(running, return_when=FIRST_COMPLETED).done:
+                for future in wait(running, None if stop is None else LOOK_S, FIRST_COMPLETED).done:
                     if isinstance(future.exception(), BrokenProcessPool):
                         return _Stopped((yield from _rescued(running)), [])
                     number, _ = running.pop(future)
                     yield number, future.result()
+            return None
         finally:
             if running:  # Ctrl-C, or a caller that has left the loop: nobody waits for the rest
                 line.close()
@@ -130,7 +132,7 @@ _known: OrderedDict[str, Any] = OrderedDict()
 def _begin(line: Connection, jobs: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the first process hears it and ends the others
     kernels.use_threads(max(1, cores() // jobs))
-    threading.Thread(target=_end_with, args=(line,), daemon=True).start()
+    Thread(target=_end_with, args=(line,), daemon=True).start()
 
 
 def _end_with(line: Connection) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from statistics import fmean, median, pstdev
+from threading import Event
 from typing import Any
 
 from algorithms.casefiles import Case, observations_to_bytes, truth_to_bytes
@@ -119,11 +120,14 @@ class Point:
         return next((trial.reason for trial in self.trials if trial.failed), "")
 
 
-def sweep(case: Case, plan: Plan, executor: Executor, journal: Journal | None = None) -> Iterator[Point]:
+def sweep(
+    case: Case, plan: Plan, executor: Executor, journal: Journal | None = None, stop: Event | None = None
+) -> Iterator[Point]:
     """Yield every point as it is done; those that the journal knows first.
 
     Points come coarse to fine, so that a curve shows its shape early and what is left can be estimated.
-    Each is in the journal before it is told. Close the generator to stop.
+    Each is in the journal before it is told. Close the generator to stop, or set ``stop`` in another
+    thread.
     """
     journal = Journal() if journal is None else journal
     keys, todo = point_keys(case, plan), []
@@ -137,7 +141,7 @@ def sweep(case: Case, plan: Plan, executor: Executor, journal: Journal | None = 
         return
     shared = Shared.of(case)
     tasks = (Task((plan.method, plan.config_at(*place), plan.seeds), shared) for place in todo)
-    for number, answer in executor.run(_work, tasks):
+    for number, answer in executor.run(_work, tasks, stop):
         place = todo[number]
         if isinstance(answer, Lost):
             yield Point(*place, (Trial(None, False, answer.reason, *[None] * 5, 0.0, failed=True),))

@@ -5,7 +5,7 @@ import os
 import signal
 import socket
 import sys
-from threading import Thread
+from threading import Event, Thread, Timer
 
 import pytest
 from test_executor import fail, until
@@ -94,6 +94,13 @@ def test_cases_judged_on_a_cluster_are_those_judged_here_bit_for_bit(
 def test_what_the_work_raises_is_raised_to_whoever_asked(address):
     with pytest.raises(SettingError, match="1 is none of ours"):
         list(Cluster(address).run(fail, [Task(1)]))
+
+
+def test_another_thread_can_stop_the_work(address, tmp_path):
+    stop = Event()
+    Timer(0.5, stop.set).start()
+    assert list(Cluster(address).run(stay, [Task(0, Shared.of(tmp_path))], stop)) == []
+    (tmp_path / "go").touch()  # the worker, which can't be interrupted, is free again
 
 
 def test_a_worker_with_other_code_is_named_and_refused(address, monkeypatch):

@@ -88,7 +88,7 @@ def test_a_method_whose_process_dies_is_told_as_failed(small_case):
     class Deadly(Executor):
         jobs = 1
 
-        def run(self, work, tasks):
+        def run(self, work, tasks, stop=None):
             yield from ((number, Lost()) for number, _ in enumerate(tasks))
 
     (score,) = contest([("flat", small_case)], defaults_of([QUICK]), Deadly())

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from contextlib import closing
 from pathlib import Path
@@ -136,6 +137,21 @@ def test_who_leaves_the_loop_stops_the_work_at_once(tmp_path):
     assert next(answers) == (0, None)
     answers.close()
     assert until(lambda: not any(alive(pid(path)) for path in tmp_path.glob("began_*")))
+
+
+@pytest.mark.parametrize("executor", [Here(), Processes(1)])
+def test_another_thread_can_stop_the_work(executor, tmp_path):
+    stop = threading.Event()
+    shared = Shared.of(tmp_path)
+    answers = executor.run(linger, [Task("quick", shared), Task(0, shared)], stop)
+    assert next(answers) == (0, None)
+    if isinstance(executor, Here):
+        stop.set()
+    else:
+        threading.Timer(0.3, stop.set).start()
+    assert list(answers) == []
+    if isinstance(executor, Processes):
+        assert until(lambda: not any(alive(pid(path)) for path in tmp_path.glob("began_*")))
 
 
 def test_one_job_is_done_here_and_more_in_processes():

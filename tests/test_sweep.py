@@ -41,7 +41,7 @@ class Nobody(Executor):
 
     jobs = 1
 
-    def run(self, work, tasks):
+    def run(self, work, tasks, stop=None):
         raise AssertionError("there was work left")
 
 

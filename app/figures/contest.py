@@ -23,7 +23,7 @@ from app.report import overlay
 from app.trial import Trial
 
 COLUMNS = 4
-MOST_PIXELS = 500  # a side of a panel
+MOST_PIXELS = 320  # a side of a panel: walls of one pixel are then seen
 MARGIN = 10  # pixels around it
 MOST_CASES = 8  # with bars of their own
 

@@ -157,8 +157,9 @@ def _name_x(axes: Axes, plan: Plan, axis: Axis, cell: float) -> None:
     if not _is_number(axis):
         _ticks(axes.xaxis, axis.values)
     elif len(axis.values) > 1 and looks_even_by_factor(axis.values):
+        wide = max(axis.values) > 50 * min(axis.values)  # room for two numbers a decade, or three
         axes.set_xscale("log")
-        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 3) if wide else (1, 2, 5)))
         axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
         axes.xaxis.set_minor_locator(NullLocator())
 
