@@ -19,7 +19,7 @@ import numpy as np
 
 from algorithms.augment import AugmentConfig
 from algorithms.bounds import Bounds, check_bounds
-from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, BoolArray, CellArray, GridMap
+from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, BoolArray, CellArray, GridMap, where
 from algorithms.objective import PAD, Float32Array, Lookup, Objective, Side
 from algorithms.observation import Encounter
 from algorithms.pose import FloatArray
@@ -143,7 +143,7 @@ def _weighted_surface(
     grid: GridMap, part: _Surroundings, centres: FloatArray, precision: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """(N, 2) surface cells in the map's frame, metres, and (N,) how near they are to an encounter."""
-    rows, cols = np.nonzero(surface(part.walls, part.free))
+    rows, cols = where(surface(part.walls, part.free))
     points = grid.centres(rows + int(part.corner[1]), cols + int(part.corner[0]))
     nearness = np.zeros(len(points))
     for centre in centres:

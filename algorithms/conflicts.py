@@ -7,18 +7,20 @@ so that a person can go and look.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
-from algorithms.agreement import surface
 from algorithms.discs import distances, near
 from algorithms.evidence import SAME_WALL
 from algorithms.fuse import Fusion
-from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, BoolArray, CellArray
+from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, BoolArray, CellArray, where
+
+IntArray = NDArray[np.intp]
 
 GAP = 0.4  # metres; contradictions nearer to each other than this are one place
 LEAST = 0.25  # metres of wall; what is shorter is a speck, not a place
@@ -69,80 +71,93 @@ class Conflicts:
 def find_conflicts(fusion: Fusion, gap: float = GAP) -> Conflicts:
     """Gather the contradictions of a merge into places.
 
+    Only around the walls is anything looked up: a large map is mostly none.
+
     gap : metres between two contradictions from which on they are two places
     """
-    ref_only = np.zeros(fusion.merged.cells.shape, dtype=np.bool_)
-    mov_only = np.zeros_like(ref_only)
-    both = (fusion.ref_cells >= FREE) & (fusion.mov_cells >= FREE)
-    part = _part_around(both, ceil(SAME_WALL / fusion.merged.resolution) + 2)
-    if part is None:
-        return Conflicts(ref_only, mov_only, (), 0.0)
-    ref, mov = _Side(fusion.ref_cells[part]), _Side(fusion.mov_cells[part])
+    ref, mov = _Side(fusion.ref_cells), _Side(fusion.mov_cells)
     same = SAME_WALL / fusion.merged.resolution
-    ref_only[part], mov_only[part] = ref.denied_by(mov, same), mov.denied_by(ref, same)
-    places, specks = _places(fusion, ref_only, mov_only, ref.surface, mov.surface, part, gap)
+    ref_only, mov_only = ref.denied_by(mov, same), mov.denied_by(ref, same)
+    places, specks = _places(fusion, ref.seen(ref_only), mov.seen(mov_only), ref_only, mov_only, gap)
     return Conflicts(ref_only, mov_only, places, specks)
 
 
 class _Side:
-    """What one map says on the part of the merged grid that both know."""
+    """What one map says on the merged grid."""
 
     def __init__(self, cells: CellArray) -> None:
+        self.cells = cells
         self.walls: BoolArray = cells >= OCCUPIED_FROM
-        self.free: BoolArray = (cells >= FREE) & (cells <= FREE_UP_TO)
-        self.surface = surface(self.walls, self.free)
+
+    def free_at(self, rows: IntArray, cols: IntArray) -> BoolArray:
+        """(N,) whether it is known to be free there."""
+        cells = self.cells[rows, cols]
+        return np.asarray((cells >= FREE) & (cells <= FREE_UP_TO))
 
     def denied_by(self, other: _Side, same: float) -> BoolArray:
-        """Walls where the other saw free floor and has no wall within so many cells."""
-        drawn = near(other.walls, distances(ceil(same)) <= same)
-        return np.asarray(self.walls & other.free & ~drawn)
+        """(H, W) walls where the other saw free floor and has no wall within so many cells."""
+        rows, cols = where(self.walls)
+        denied = other.free_at(rows, cols)
+        rows, cols = rows[denied], cols[denied]
+        disc = np.argwhere(distances(ceil(same)) <= same) - ceil(same)
+        drawn = _any_beside(rows, cols, disc, self.walls.shape, lambda row, col: other.walls[row, col])
+        only = np.zeros(self.walls.shape, dtype=np.bool_)
+        only[rows[~drawn], cols[~drawn]] = True
+        return only
+
+    def seen(self, walls: BoolArray) -> BoolArray:
+        """(N,) which of these walls have a free cell beside them, as ``agreement.surface`` defines it."""
+        rows, cols = where(walls)
+        return _any_beside(rows, cols, np.argwhere(np.ones((3, 3))) - 1, walls.shape, self.free_at)
 
 
-def _part_around(mask: BoolArray, margin: int) -> tuple[slice, slice] | None:
-    """The rows and columns that hold a mask, and some more to each side; None for an empty one."""
-    rows, cols = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    if len(rows) == 0:
-        return None
-    return (
-        slice(max(0, int(rows[0]) - margin), int(rows[-1]) + margin + 1),
-        slice(max(0, int(cols[0]) - margin), int(cols[-1]) + margin + 1),
-    )
+def _any_beside(
+    rows: IntArray,
+    cols: IntArray,
+    steps: IntArray,
+    shape: tuple[int, ...],
+    holds: Callable[[IntArray, IntArray], BoolArray],
+) -> BoolArray:
+    """(N,) whether something holds at any of the (K, 2) steps from these cells, on the grid."""
+    found = np.zeros(len(rows), dtype=np.bool_)
+    for down, right in steps.tolist():
+        row, col = rows + down, cols + right
+        inside = (row >= 0) & (row < shape[0]) & (col >= 0) & (col < shape[1])
+        found[inside] |= holds(row[inside], col[inside])
+    return found
 
 
 def _places(
     fusion: Fusion,
+    ref_seen: BoolArray,
+    mov_seen: BoolArray,
     ref_only: BoolArray,
     mov_only: BoolArray,
-    ref_surface: BoolArray,
-    mov_surface: BoolArray,
-    part: tuple[slice, slice],
     gap: float,
 ) -> tuple[tuple[Place, ...], float]:
+    """Places, most wall first, and the metres of wall that are in none; *_seen: of the walls of *_only."""
     cell = fusion.merged.resolution
-    denied = ref_only[part] | mov_only[part]
-    reach = near(denied, distances(ceil(gap / 2 / cell)) * cell <= gap / 2)
-    labels, count = ndimage.label(reach, structure=np.ones((3, 3), dtype=int))
-    if count == 0 or not denied.any():
+    denied = ref_only | mov_only
+    rows, cols = where(denied)
+    if len(rows) == 0:
         return (), 0.0
-    labels = np.where(denied, labels, 0)
-    ref_wall = _metres(labels, ref_only[part] & ref_surface, count, cell)
-    mov_wall = _metres(labels, mov_only[part] & mov_surface, count, cell)
+    reach = near(denied, distances(ceil(gap / 2 / cell)) * cell <= gap / 2)
+    count, labels = cv2.connectedComponents(reach.view(np.uint8), connectivity=8)
+    ref_wall, mov_wall = (
+        np.bincount(labels[only][seen], minlength=count) * cell
+        for only, seen in ((ref_only, ref_seen), (mov_only, mov_seen))
+    )
     wall = ref_wall + mov_wall
-    row, col = part[0].start, part[1].start
+    label = labels[rows, cols].astype(np.intp)
+    low, high = np.full((count, 2), np.iinfo(np.intp).max), np.zeros((count, 2), dtype=np.intp)
+    corners = np.stack([cols, rows], axis=1)
+    np.minimum.at(low, label, corners)
+    np.maximum.at(high, label, corners + 1)
     places = []
-    for k, box in enumerate(ndimage.find_objects(labels), 1):
-        if wall[k] < LEAST or box is None:
-            continue
-        rows, cols = np.nonzero(labels[box] == k)
-        corners = np.array([[cols.min(), rows.min()], [cols.max() + 1, rows.max() + 1]])
-        corners += (box[1].start + col, box[0].start + row)
-        x, y = fusion.merged.origin.apply(corners.mean(axis=0, keepdims=True) * cell)[0].tolist()
-        radius = float(np.hypot(*(corners[1] - corners[0]))) / 2 * cell
+    for k in np.flatnonzero(wall >= LEAST).tolist():
+        middle = (low[k] + high[k]) / 2
+        x, y = fusion.merged.origin.apply(middle[None] * cell)[0].tolist()
+        radius = float(np.hypot(*(high[k] - low[k]))) / 2 * cell
         places.append(Place(x, y, radius, float(ref_wall[k]), float(mov_wall[k])))
     places.sort(key=lambda place: (-place.wall, place.x, place.y))
     return tuple(places), max(0.0, float(wall.sum()) - sum(place.wall for place in places))
-
-
-def _metres(labels: NDArray[np.int32], mask: BoolArray, count: int, cell: float) -> NDArray[np.float64]:
-    """(count + 1,) metres of seen wall per label."""
-    return np.asarray(np.bincount(labels[mask], minlength=count + 1) * cell, dtype=np.float64)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.gridmap import BoolArray
+from algorithms.gridmap import BoolArray, where
 from algorithms.kernels import kernel
 from algorithms.objective import Float32Array
 
@@ -28,7 +28,7 @@ def stamp(walls: BoolArray, disc: KindArray, ground: KindArray) -> None:
     """
     reach = len(disc) // 2
     down, right = np.nonzero(disc)
-    rows, cols = np.nonzero(walls)
+    rows, cols = where(walls)
     _stamp(walls, rows, cols, down - reach, right - reach, disc[down, right], disc[reach, reach], ground)
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.discs import distances, stamp
-from algorithms.gridmap import BoolArray, GridMap
+from algorithms.gridmap import BoolArray, GridMap, where
 from algorithms.kernels import kernel, spread
 from algorithms.pose import FloatArray, Pose2
 
@@ -140,7 +140,7 @@ def _patch_by_patch(places: FloatArray, offset: float, ground: GroundArray, cell
 
 def _surface_cells(grid: GridMap) -> tuple[IntArray, IntArray]:
     """Rows and columns of the walls that were seen, as ``agreement.surface`` defines them."""
-    rows, cols = np.nonzero(grid.occupied)
+    rows, cols = where(grid.occupied)
     seen = np.zeros(len(rows), dtype=bool)
     for down in (-1, 0, 1):
         for right in (-1, 0, 1):

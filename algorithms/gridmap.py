@@ -35,6 +35,14 @@ def check_size(width: int, height: int, what: str) -> None:
         )
 
 
+def where(mask: BoolArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """(N,) rows and (N,) columns of the cells of a mask, row by row: np.nonzero, but several times faster on
+    a large one.
+    """
+    rows, cols = np.unravel_index(np.flatnonzero(mask), mask.shape)
+    return rows, cols
+
+
 @dataclass(frozen=True, eq=False)
 class GridMap:
     """An occupancy grid in the frame of the robot that made it.
@@ -84,7 +92,7 @@ class GridMap:
     @cached_property
     def points(self) -> FloatArray:
         """The dual map M^d (section II-A): (N, 2) centres of occupied cells; metres, map frame."""
-        rows, cols = np.nonzero(self.occupied)
+        rows, cols = where(self.occupied)
         return self.centres(rows, cols)
 
     def centres(self, rows: NDArray[np.integer], cols: NDArray[np.integer]) -> FloatArray:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from algorithms.agreement import distance_to_walls
 from algorithms.evidence import SAME_WALL
-from algorithms.gridmap import BoolArray, GridMap
+from algorithms.gridmap import BoolArray, GridMap, where
 from algorithms.objective import Float32Array
 from algorithms.pose import FloatArray, Pose2
 
@@ -31,7 +31,7 @@ class Walls:
     @cached_property
     def cells(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """(N,) rows and (N,) columns of the walls."""
-        rows, cols = np.nonzero(self.grid.occupied)
+        rows, cols = where(self.grid.occupied)
         return rows, cols
 
     @cached_property

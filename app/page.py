@@ -226,6 +226,7 @@ class Page(Telling, Handling, Learning):
         self._placing.end()
         self._hand.panel.offer(inputs.complete)
         self._inputs, self._result, self._story, self._method = inputs, None, Story(), None
+        self._weighed = None
         self._merged = self._asked = False
         self._observation.show(inputs)
         self._plots.clear()

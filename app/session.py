@@ -50,13 +50,16 @@ class Job:
 
 
 class Listener(Protocol):
-    """Who draws. All calls come one at a time."""
+    """Who draws. All calls come one at a time; all but ``ending`` while nobody else draws."""
 
     def begun(self, job: Job) -> None:
         """A run starts; what is on the screen is out of date from the first changed stage on."""
 
     def show(self, job: Job, story: Story) -> None:
         """Draw the newest state."""
+
+    def ending(self, job: Job, story: Story) -> None:
+        """The run is at its goal: work out what takes long to tell of it. It can still be stopped."""
 
     def ended(self, job: Job, story: Story) -> None:
         """The run came to its goal."""
@@ -90,6 +93,7 @@ class Session:
         self._wake = Condition()
         self._wanted: Job | None = None
         self._running: Job | None = None
+        self._ended: Job | None = None  # the last that came to its end
         self._story = Story()
         self._pace = 0.0
         self._closed = False
@@ -125,7 +129,7 @@ class Session:
             job, self._running = self._running, None
         self._waiting.cut()
         with self.drawing:
-            if job is not None:
+            if job is not None and job is not self._ended:  # it may have come to its end just now
                 self._listener.stopped(job, self._story)
 
     def told_again(self, job: Job) -> Iterator[Step]:
@@ -188,7 +192,12 @@ class Session:
                 break
             if isinstance(step.detail, MergeResult):
                 break
-        self._deliver(job, lambda: self._listener.ended(job, story))
+        self._listener.ending(job, story)
+        self._deliver(job, lambda: self._end(job, story))
+
+    def _end(self, job: Job, story: Story) -> None:
+        self._ended = job
+        self._listener.ended(job, story)
 
     def _wants(self, job: Job) -> bool:
         return self._running is job and self._wanted is None and not self._closed

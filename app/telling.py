@@ -60,6 +60,7 @@ class Telling(ABC):
     _result: MergeResult | None
     _config: Any
     _conflicts: Conflicts | None
+    _weighed: tuple[tuple[MergeResult, Inputs, Any], tuple[Conflicts, str]] | None = None
     _method: Story | None
     _hand: ByHand
     _placing: Placing
@@ -96,6 +97,20 @@ class Telling(ABC):
             self._stage.hud(state=words.sentence(story), mood="running", progress=words.progress(story))
             self._stage.flush()
 
+    def ending(self, job: Job, story: Story) -> None:
+        """What is to be said of an answer: with large maps it takes longer than to draw it."""
+        result = story.get(MergeResult)
+        if result is not None and job.steps is None:
+            self._weigh(result, job.config)
+
+    def _weigh(self, result: MergeResult, config: Any) -> tuple[Conflicts, str]:
+        """Where the maps contradict each other, and the page of the result; worked out once."""
+        of = (result, self._inputs, config)
+        if self._weighed is None or any(a is not b for a, b in zip(self._weighed[0], of, strict=True)):
+            found = find_conflicts(result.fusion)
+            self._weighed = of, (found, result_html(result, self._inputs, config, found))
+        return self._weighed[1]
+
     def ended(self, job: Job, story: Story) -> None:
         """The run came to its goal."""
         self._run.stoppable("run", False)
@@ -120,8 +135,8 @@ class Telling(ABC):
         if result.method != BY_HAND:
             self._method = story
         self._plots.show(story, follow=True)
-        self._conflicts = find_conflicts(result.fusion)
-        self._plots.tell(result_html(result, self._inputs, config, self._conflicts))
+        self._conflicts, told = self._weigh(result, config)
+        self._plots.tell(told)
         self._export.offer(Harvest(result, self._inputs, config))
         i = self._inputs
         if result.method == BY_HAND:  # there was no run that could be told again

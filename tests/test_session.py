@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from threading import Event
+from threading import Event, Thread
+from time import sleep
 
 import numpy as np
 import pytest
@@ -47,6 +48,9 @@ class Ear:
         self.heard.append(("show", story.last.detail.encounter.x_ref[0]))
         self.shown.set()
 
+    def ending(self, job, story):
+        self.heard.append(("ending", job.config))
+
     def ended(self, job, story):
         self.heard.append(("ended", job.config))
         self.done.set()
@@ -89,7 +93,7 @@ def steps(*numbers: float):
 def test_a_run_is_told_from_begin_to_end(start, ear):
     start(steps(1.0)).request(job("a"))
     assert ear.done.wait(PATIENCE)
-    assert ear.heard == [("begun", "a"), ("show", 1.0), ("ended", "a")]
+    assert ear.heard == [("begun", "a"), ("show", 1.0), ("ending", "a"), ("ended", "a")]
 
 
 def test_at_no_pace_the_pictures_come_at_most_once_a_frame_and_the_newest_is_kept(start, ear):
@@ -152,6 +156,44 @@ def test_nothing_of_a_run_is_told_once_stop_has_returned(start, ear):
     ear.shown.clear()
     assert ear.shown.wait(PATIENCE)
     assert [config for what, config in ear.heard[len(heard) :] if what == "begun"] == ["b"]
+
+
+def test_what_is_worked_out_at_the_end_keeps_nobody_from_stopping(start, ear, monkeypatch):
+    at_it, held = Event(), Event()
+
+    def ending(job, story):
+        at_it.set()
+        held.wait(PATIENCE)
+
+    monkeypatch.setattr(ear, "ending", ending)
+    session = start(steps(1.0))
+    session.request(job("a"))
+    assert at_it.wait(PATIENCE)
+    session.stop()  # returns at once
+    assert ear.heard[-1] == ("stopped", "a")
+    held.set()
+    ear.done.clear()
+    session.request(job("b"))
+    assert ear.done.wait(PATIENCE)
+    assert ("ended", "a") not in ear.heard
+
+
+def test_an_end_that_is_being_told_is_not_unsaid_by_stop(start, ear, monkeypatch):
+    stops, told = [], ear.ended
+
+    def ended(job, story):
+        stops.append(Thread(target=session.stop))
+        stops[0].start()
+        while session.busy:  # until Stop waits for the drawing to be done
+            sleep(0.001)
+        told(job, story)
+
+    monkeypatch.setattr(ear, "ended", ended)
+    session = start(steps(1.0))
+    session.request(job("a"))
+    assert ear.done.wait(PATIENCE)
+    stops[0].join(PATIENCE)
+    assert ear.heard[-1] == ("ended", "a")
 
 
 def test_stop_without_a_run_says_nothing(start, ear):

@@ -217,6 +217,9 @@ class Lesson:
             self._study = early
             self._show(fresh=True)
 
+    def ending(self, job: Job, story: Story) -> None:
+        """There is nothing to work out."""
+
     def ended(self, job: Job, story: Story) -> None:
         """The run came to its end."""
         had = bool(self._study.steps)
