@@ -11,6 +11,7 @@ from driver import READY, settle
 
 from algorithms.casefiles import Case, read_observations
 from algorithms.observation import encounter
+from app.access import Access
 from app.channel import Channel, Numbers
 from app.guard import guarded_server
 from app.layout import lay_out
@@ -24,7 +25,7 @@ VALUE = "agreement (m of wall)"
 
 def test_everything_the_page_tells_arrives_in_order(browser):
     told: list[list[float]] = []
-    server = guarded_server("127.0.0.1", 0)
+    server = guarded_server("127.0.0.1", 0, Access(), 4)
     context = browser.new_context()
     try:
 
