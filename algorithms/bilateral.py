@@ -2,30 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass
 
+from algorithms.baselines.direct import DirectConfig, Found, run_direct
 from algorithms.chain import Chain, Memo
-from algorithms.conclude import conclude
-from algorithms.fuse import Conflict, Fusion, fuse
 from algorithms.gridmap import GridMap
-from algorithms.observation import (
-    Observation,
-    bilateral_covariance,
-    bilateral_transform,
-    encounter,
-)
-from algorithms.steps import Answer, AnswersDetail, ObservationDetail, Step
-from algorithms.verdict import VerdictConfig
+from algorithms.observation import Observation, bilateral_covariance, bilateral_transform
+from algorithms.steps import Answer, AnswersDetail, Step
 
 
-@dataclass(frozen=True)
-class BilateralConfig:
+@dataclass(frozen=True, kw_only=True)
+class BilateralConfig(DirectConfig):
     """Settings of the bilateral method: it has none but what follows the transform."""
-
-    verdict: VerdictConfig = field(default_factory=VerdictConfig)
-    conflict: Conflict = Conflict.OCCUPIED_WINS
-    """Which map is believed where one says wall and the other says free."""
 
 
 def run(
@@ -41,39 +30,14 @@ def run(
 
     raises SettingError where the observation lacks the bearing back or the observed heading
     """
-    chain = Chain({} if memo is None else memo)
     observation = observations[0]
-    seen: ObservationDetail = yield from chain.stage(
-        "observe",
-        (observations,),
-        lambda: [ObservationDetail(tuple(encounter(observation) for observation in observations))],
-    )
-    found: AnswersDetail = yield from chain.stage(
-        "search",
-        (observation,),
-        lambda: [AnswersDetail((Answer(bilateral_transform(observation), 0.0, "closed form"),))],
-    )
-    best = found.answers[0].T_ref_mov
-    fusion: Fusion = yield from chain.stage(
-        "fuse", (ref, mov, found, config.conflict), lambda: [fuse(ref, mov, best, config.conflict)]
-    )
-    yield from chain.stage(
-        "verdict",
-        (fusion, config.verdict, method),
-        lambda: [
-            conclude(
-                ref,
-                mov,
-                best,
-                fusion,
-                seen.encounters,
-                lambda _: bilateral_covariance(observation),
-                config.verdict,
-                value=None,
-                answers=found.answers,
-                method=method,
-                seed=seed,
-                timings_s=chain.timings_s,
-            )
-        ],
-    )
+
+    def search(chain: Chain) -> Generator[Step, None, Found]:
+        found: AnswersDetail = yield from chain.stage(
+            "search",
+            (observation, method),
+            lambda: [AnswersDetail((Answer(bilateral_transform(observation), 0.0, "closed form"),))],
+        )
+        return found, bilateral_covariance(observation)
+
+    return run_direct(ref, mov, observations, config, seed, memo, method, search, valued=False)

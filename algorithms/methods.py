@@ -4,10 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from algorithms import bilateral, pipeline
 from algorithms.augment import AugmentConfig
+from algorithms.baselines import features, smm_only
+from algorithms.baselines.detectors import (
+    DetectorConfig,
+    HarrisConfig,
+    OrbConfig,
+    ShiTomasiConfig,
+    SiftConfig,
+    SurfConfig,
+)
+from algorithms.baselines.features import FeatureConfig
+from algorithms.baselines.pictures import PictureConfig
 from algorithms.certificate import ProofConfig
 from algorithms.chain import Memo
 from algorithms.gridmap import GridMap
@@ -19,6 +30,9 @@ from algorithms.window import WindowConfig
 
 Run = Callable[..., Iterator[Step]]
 
+Family = Literal["ours", "paper", "rivals"]
+"""Ours; the paper's own, and its parts; what the paper compares with, and what people would try today."""
+
 
 @dataclass(frozen=True)
 class Method:
@@ -26,14 +40,24 @@ class Method:
 
     title    : what a person reads in a menu
     defaults : its frozen config; panel and flags are made from it
+    family   : whose it is; methods of one family stand together in a menu
+    uses_observation : whether the sighting helps it to its transform; the verdict weighs it in any case
     """
 
     run: Run
     title: str
     defaults: Any
+    family: Family = "ours"
+    uses_observation: bool = True
 
 
 DEFAULT_METHOD = "spectra-proven"
+
+
+def _features(title: str, detector: DetectorConfig, reach: float) -> Method:
+    config = FeatureConfig(picture=PictureConfig(reach=reach), detector=detector)
+    return Method(features.run, title, config, "rivals", False)
+
 
 METHODS: dict[str, Method] = {
     "spectra-proven": Method(
@@ -60,12 +84,23 @@ METHODS: dict[str, Method] = {
             window=WindowConfig(kind="origin"),
             refine=RefineConfig(candidates=1),
         ),
+        "paper",
     ),
     "bilateral": Method(
-        bilateral.run,
-        "Bilateral, eqs. (2), (3) alone",
-        bilateral.BilateralConfig(),
+        bilateral.run, "Bilateral, eqs. (2), (3) alone", bilateral.BilateralConfig(), "paper"
     ),
+    "smm-window": Method(
+        pipeline.run,
+        "Spectra and window, no swarm",
+        PipelineConfig(refine=RefineConfig(optimiser="none")),
+        "paper",
+    ),
+    "smm-only": Method(smm_only.run, "Spectra alone (Carpin)", smm_only.SmmConfig(), "rivals", False),
+    "harris": _features("Harris corners", HarrisConfig(), reach=1.0),
+    "shi-tomasi": _features("Shi–Tomasi corners", ShiTomasiConfig(), reach=1.0),
+    "surf": _features("SURF features", SurfConfig(), reach=0.4),
+    "sift": _features("SIFT features", SiftConfig(), reach=0.4),
+    "orb": _features("ORB features", OrbConfig(), reach=1.0),
 }
 
 

@@ -68,8 +68,8 @@ OPTIMISERS: dict[str, Optimiser] = {"pso": swarm, "mco": monte_carlo}
 class RefineConfig:
     """Which optimiser refines, and how many of the candidates."""
 
-    optimiser: Literal["pso", "mco"] = "pso"
-    """PSO: a swarm that talks. MCO: independent samples."""
+    optimiser: Literal["pso", "mco", "none"] = "pso"
+    """PSO: a swarm that talks. MCO: independent samples. None: the spectra's own answers, as they are."""
     lookup: Lookup = Lookup.BILINEAR
     """Bilinear is smooth between cells; nearest is the paper's raster."""
     candidates: Annotated[int, Bounds(1, 24, 1, "", "", "refined")] = 4
@@ -141,6 +141,7 @@ def run(
             config.swarm.particles,
             config.refine.lookup,
             config.refine.objective,
+            config.refine.optimiser == "none",
             config.agreement,
             seed,
         ),
@@ -225,6 +226,10 @@ def _search(
     objective = objective_of(ref, mov, encounters, augmented, config)
     looked = []
     for index, candidate in enumerate(candidates):
+        if config.refine.optimiser == "none":
+            value = float(objective(candidate.T_ref_mov.array()[None])[0])
+            looked.append(replace(candidate, value=value))
+            continue
         box = box_around(candidate.T_ref_mov, window, config.box)
         rng = np.random.default_rng([seed, 0, index])
         poses = rng.uniform(box.low, box.high, (config.swarm.particles, 3))
@@ -267,6 +272,14 @@ def _known(value: float | None) -> float:
 
 def _refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Iterator[Detail]:
     """The optimiser on each of the best candidates in turn."""
+    if config.refine.optimiser == "none":
+        yield AnswersDetail(
+            tuple(
+                Answer(candidate.T_ref_mov, _known(candidate.value), "not refined")
+                for candidate in found.candidates
+            )
+        )
+        return
     optimise = OPTIMISERS[config.refine.optimiser]
     settled = settled_within(found.objective.cell)
     refined = found.candidates[: config.refine.candidates]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from algorithms.augment import AugmentedMap
 from algorithms.certificate import ProofState
 from algorithms.fuse import Fusion
+from algorithms.gridmap import BoolArray
 from algorithms.objective import Objective
 from algorithms.observation import Encounter
 from algorithms.polish import Peak
@@ -89,6 +90,37 @@ class RefineDetail:
     total: int  # how many of them are refined
     box: Box
     state: SearchState
+
+
+@dataclass(frozen=True, eq=False)
+class MatchesDetail:
+    """Stages "match" and "search" of a method that matches features.
+
+    ref_features, mov_features : (N, 2), (M, 2) all that were found; metres, each in its own map's frame
+    ref, mov : (K, 2) those taken for the same places, pair by pair; likewise
+    inliers  : (K,) bool, which pairs agree with the transform; none before there is one
+    """
+
+    ref_features: FloatArray
+    mov_features: FloatArray
+    ref: FloatArray
+    mov: FloatArray
+    inliers: BoolArray
+
+
+@dataclass(frozen=True, eq=False)
+class TurnsDetail:
+    """Stage "search" of a method that tries every turn.
+
+    turns  : (K,) of map 2; radians, rising
+    scores : (K,) how well the maps agree at the best shift of each turn, the higher the better; NaN where
+             it has not been tried
+    best   : the turn that the answer comes from, after all refinement; None before
+    """
+
+    turns: FloatArray
+    scores: FloatArray
+    best: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,6 +208,8 @@ Detail = (
     | ShiftDetail
     | CandidatesDetail
     | RefineDetail
+    | MatchesDetail
+    | TurnsDetail
     | AnswersDetail
     | ProofDetail
     | ProvenDetail
@@ -188,7 +222,7 @@ Detail = (
 class Step:
     """One thing a method has done.
 
-    stage   : "observe", "augment", "spectra", "search", "refine", "prove", "fuse" or "verdict"
+    stage   : "observe", "augment", "spectra", "match", "search", "refine", "prove", "fuse" or "verdict"
     detail  : what came out of it, for whoever draws or reports it
     seconds : spent on it, without what the caller did between two steps
     reused  : whether it comes from an earlier run with the same settings (``seconds`` are that run's)

@@ -43,7 +43,16 @@ class Setting:
 
 @cache
 def field_docs(config_type: type) -> dict[str, str]:
-    """The string below each field of a class, its lines joined; {} where the source is not there."""
+    """The string below each field of a class and of those it is made from, its lines joined; without those
+    whose source is not there.
+    """
+    docs: dict[str, str] = {}
+    for base in reversed(config_type.__mro__[:-1]):
+        docs |= _own_docs(base)
+    return docs
+
+
+def _own_docs(config_type: type) -> dict[str, str]:
     try:
         tree = ast.parse(textwrap.dedent(inspect.getsource(config_type)))
     except (OSError, TypeError, SyntaxError):

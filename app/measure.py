@@ -1,10 +1,13 @@
-"""What a method maximises, as a person reads it: Γ of eq. (17), or metres of wall that agree."""
+"""What a method maximises, as a person reads it: Γ of eq. (17), metres of wall that agree, or its own."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any
+
+from algorithms.baselines.features import FeatureConfig
+from algorithms.baselines.smm_only import SmmConfig
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,16 @@ GAMMA = Measure("Γ", "Γ, eq. (17)", "")
 AGREEMENT = Measure("agreement", "agreement (m of wall)", "m")
 
 
+_OWN = {
+    FeatureConfig: Measure("agreeing matches", "matches that agree", ""),
+    SmmConfig: Measure("acceptance index", "acceptance index of the search", ""),
+}
+
+
 def measure_of(config: Any) -> Measure:
     """What the method with this config maximises; one without an objective says nothing of it."""
+    for kind, measure in _OWN.items():
+        if isinstance(config, kind):
+            return measure
     objective = getattr(getattr(config, "refine", None), "objective", "gamma")
     return AGREEMENT if objective == "agreement" else GAMMA

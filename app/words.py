@@ -6,6 +6,8 @@ import re
 from math import degrees, isfinite
 from typing import Any
 
+import numpy as np
+
 from algorithms.certificate import ProofState
 from algorithms.fuse import Fusion
 from algorithms.pose import Pose2, pose_error
@@ -14,12 +16,14 @@ from algorithms.steps import (
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
+    MatchesDetail,
     MergeResult,
     ObservationDetail,
     ProofDetail,
     ProvenDetail,
     RefineDetail,
     ShiftDetail,
+    TurnsDetail,
     WindowDetail,
 )
 from algorithms.verdict import SAME_PLACE, VerdictConfig
@@ -35,6 +39,8 @@ _SHARE: dict[type, float] = {
     ShiftDetail: 0.2,
     CandidatesDetail: 0.4,
     RefineDetail: 0.4,
+    MatchesDetail: 0.4,
+    TurnsDetail: 0.1,
     AnswersDetail: 0.8,
     ProofDetail: 0.8,
     ProvenDetail: 0.95,
@@ -84,6 +90,10 @@ def sentence(story: Story) -> str:
         where = f"candidate {detail.index + 1} of {detail.total}, iteration {state.iteration + 1}"
         value = f"{measure.name} {measure.text(state.best_value)}"
         return f"Searching: {where}, {value if isfinite(state.best_value) else 'outside the window'}."
+    if isinstance(detail, MatchesDetail):
+        return _matching(detail)
+    if isinstance(detail, TurnsDetail):
+        return _turning(detail)
     if isinstance(detail, AnswersDetail):
         return f"The search is done: {detail.answers[0].stopped}."
     if isinstance(detail, ProofDetail):
@@ -95,6 +105,21 @@ def sentence(story: Story) -> str:
     if isinstance(detail, MergeResult):
         return detail.verdict.reason
     return "Starting."
+
+
+def _matching(detail: MatchesDetail) -> str:
+    agreeing, all_of_them = int(detail.inliers.sum()), len(detail.ref)
+    if agreeing:
+        return f"{agreeing} of {all_of_them} matched features agree on one transform."
+    found = f"{len(detail.ref_features)} features in map 1, {len(detail.mov_features)} in map 2"
+    return f"{found}: {all_of_them} look alike."
+
+
+def _turning(detail: TurnsDetail) -> str:
+    tried = int(np.isfinite(detail.scores).sum())
+    if detail.best is not None:
+        return typeset(f"Best of {tried} turns: map 2 turned by {degrees(detail.best):.1f}°.")
+    return f"Turning: {tried} of {len(detail.turns)} turns tried."
 
 
 def fits_nowhere(state: ProofState) -> bool:
@@ -196,6 +221,8 @@ def progress(story: Story) -> float:
         share += 0.2 * (detail.index + 1) / max(1, detail.total)
     if isinstance(detail, RefineDetail):
         share += 0.4 * detail.index / max(1, detail.total)
+    if isinstance(detail, TurnsDetail):
+        share += 0.7 * float(np.isfinite(detail.scores).mean())
     if isinstance(detail, ProofDetail):
         share += 0.15 * detail.state.nodes / (detail.state.nodes + _MANY_BLOCKS)
     return share

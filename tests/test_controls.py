@@ -83,10 +83,10 @@ def test_no_method_shows_a_setting_that_does_nothing_in_it(name):
     shown = {s.path[0] for s in settings_of(config) if not idle(config, s.path)}
     assert ("agreement" in shown) == (name == "spectra-proven")
     proofs = [s.path[-1] for s in settings_of(config) if s.path[0] == "proof" and not idle(config, s.path)]
-    assert proofs == {
-        "spectra-proven": ["whole_circle", "angle", "distance", "patience"],
-        "bilateral": [],
-    }.get(name, ["whole_circle"])
+    usual = ["whole_circle"] if isinstance(config, PipelineConfig) else []
+    whole = {"spectra-proven": ["whole_circle", "angle", "distance", "patience"]}
+    assert proofs == whole.get(name, usual)
+    assert ("swarm" in shown) == ("box" in shown) == (bool(usual) and name != "smm-window")
 
 
 def test_a_setting_comes_back_with_the_one_it_belongs_to():
@@ -119,11 +119,9 @@ def test_every_setting_of_every_method_can_be_shown(name):
         assert setting.bounds is None or setting.bounds.low <= setting.default <= setting.bounds.high
 
 
-def test_every_slider_of_the_method_has_a_hint():
-    missing = [
-        setting.path for setting in settings_of(PipelineConfig()) if setting.bounds and not setting.hint
-    ]
-    assert missing == []
+@pytest.mark.parametrize("name", METHODS)
+def test_every_setting_of_a_method_has_a_hint(name):
+    assert [s.path for s in settings_of(METHODS[name].defaults) if not s.hint] == []
 
 
 def test_docs_of_a_class_without_source_are_empty():

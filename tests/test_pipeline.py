@@ -19,7 +19,7 @@ from algorithms.window import WindowConfig
 
 REF, MOV, SEEN, T_REF_MOV = flat_pair()
 QUICK = PipelineConfig(swarm=SwarmConfig(particles=100, iterations=40))
-SURE = [name for name in METHODS if name != "paper-argmax"]  # the bare argmax may pick the twin
+SURE = [name for name, method in METHODS.items() if method.family == "ours"] + ["bilateral"]
 
 
 def off(result, T=T_REF_MOV):

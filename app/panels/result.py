@@ -23,6 +23,7 @@ STAGES = {
     "observe": "observation",
     "augment": "augmentation",
     "spectra": "Hough spectra",
+    "match": "matched features",
     "search": "candidates",
     "refine": "swarm",
     "prove": "proof",

@@ -51,6 +51,8 @@ def idle(config: Any, path: Path) -> bool:
         return proof is not None and not proof.whole_circle
     if path in {("swarm", "omega"), ("swarm", "tau")}:
         return refine is not None and refine.optimiser != "pso"
+    if path[0] in {"swarm", "box"} or path == ("refine", "candidates"):
+        return refine is not None and refine.optimiser == "none"
     return False
 
 
