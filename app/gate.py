@@ -30,9 +30,10 @@ MAX_TEXT = 10_000  # letters in a control
 MAX_PARTS = 64  # numbers in a control
 MAX_NUMBER = 1e12
 CHUNK = 512 * 1024  # bytes of one part of an upload
+PATIENCE = 60.0  # seconds until a browser that reads nothing is given up
 RATE, BURST = 200.0, 400.0  # messages a second, and at once; a tab that is dragged over sends about 60
 
-# All that the page's own script ever sends. An answer of the browser to a download is let through unread.
+# All that the page's own script ever sends
 HEARD: dict[str, type[messages.Message]] = {
     kind.__name__: kind
     for kind in (
@@ -41,7 +42,6 @@ HEARD: dict[str, type[messages.Message]] = {
         messages.ScenePointerMessage,
         messages.FileTransferStartUpload,
         messages.FileTransferPart,
-        messages.FileTransferPartAck,
     )
 }
 
@@ -69,7 +69,10 @@ class Gate:
         log.debug("dropped: %s", why)
 
     def guard(self, connection: Any) -> None:
-        """Stand before a connection: its ``recv`` gives only what may pass, at a bearable rate."""
+        """Stand before a connection: its ``recv`` gives only what may pass, at a bearable rate.
+
+        And ``send`` gives up a browser that takes nothing any more: what waits for it fills the memory.
+        """
         hear = connection.recv
         bucket = Bucket(self._clock)
 
@@ -91,7 +94,16 @@ class Gate:
                 else:
                     return raw
 
-        connection.recv = recv
+        send = connection.send
+
+        async def patiently(*what: Any, **more: Any) -> None:
+            try:
+                await asyncio.wait_for(send(*what, **more), PATIENCE)
+            except asyncio.TimeoutError:
+                self.drop("does not read")
+                connection.transport.abort()  # nothing that is still to be sent would ever arrive
+
+        connection.recv, connection.send = recv, patiently
 
     def takes(self, gui: Any, message: messages.GuiUpdateMessage) -> bool:
         """Whether a control may take what a browser says it holds now."""
@@ -225,11 +237,6 @@ _FIELDS: dict[str, dict[str, Callable[[Any], bool]]] = {
         "transfer_uuid": _id,
         "part_index": _count,
         "content": lambda value: isinstance(value, bytes) and len(value) <= CHUNK,
-    },
-    "FileTransferPartAck": {
-        "source_component_uuid": _maybe(_id),
-        "transfer_uuid": _id,
-        **dict.fromkeys(("transferred_bytes", "total_bytes"), _count),
     },
 }
 

@@ -56,6 +56,9 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
             live.add(connection)
             try:
                 await handler(connection)
+            except RuntimeError:
+                if not ending():  # viser tells who has gone in threads that may have ended already
+                    raise
             finally:
                 live.discard(connection)
 
@@ -69,6 +72,11 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
         datastructures=websockets.datastructures,
         exceptions=websockets.exceptions,
     )
+
+    def ending() -> bool:
+        event = server._websock_server._stop_event
+        return event is not None and event.is_set()
+
     real = infra.websockets
     infra.websockets = shim  # viser's own name for the library; it is looked up once, in the constructor
     try:

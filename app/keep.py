@@ -75,6 +75,11 @@ class Keep:
             self._forget()
             self._sweep_later()
 
+    def forget_all(self) -> None:
+        """Let go of everything that tabs left behind: the room is needed by tabs that are there."""
+        with self._lock:
+            self._away.clear()
+
     def sweep(self) -> None:
         """Let go of what nobody came back for."""
         with self._lock:

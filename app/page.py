@@ -15,6 +15,7 @@ from algorithms.conflicts import Conflicts
 from algorithms.errors import MapMergeError, TooLargeError
 from algorithms.steps import MergeResult, RefineDetail
 from app import words
+from app.budget import Budget
 from app.channel import Channel
 from app.comparison import MODES, Comparison
 from app.desk import Desk
@@ -35,6 +36,7 @@ from app.panels.tuning import TuningPanel
 from app.session import Job, Session
 from app.stage import Stage, TabStage, mark
 from app.story import Story
+from app.takeaway import TAKEAWAY
 from app.telling import Telling
 from app.timeline import Timeline
 from app.views.closer import Closeness
@@ -53,7 +55,12 @@ class Page(Telling, Handling, Learning):
     """Listens to its session and draws; the callbacks of its widgets only ask."""
 
     def __init__(
-        self, client: viser.ClientHandle, initial: Case | None, keep: Keep, lesson: Path | None = None
+        self,
+        client: viser.ClientHandle,
+        initial: Case | None,
+        keep: Keep,
+        lesson: Path | None = None,
+        budget: Budget | None = None,
     ) -> None:
         self._client = client
         self._palette: Palette = LIGHT
@@ -72,6 +79,7 @@ class Page(Telling, Handling, Learning):
         self._merged = False  # from the first Merge on, a moved slider runs the whole method again
         self._asked = False  # whether anything was asked for at all
         self._keep, self._key, self._gone = keep, "", False
+        self._budget = budget or Budget()
         self._turn = RLock()  # wishes come one after the other; taken before session.drawing
         self.session = Session(self)
         self._channel.on("compare", self._compare, mode=MODES)
@@ -113,6 +121,7 @@ class Page(Telling, Handling, Learning):
         return None if history is None else Kept(history, self._run.dark)
 
     def _end(self) -> None:
+        self._budget.release(self)
         self._channel.close()
         self._lesson.close()
         self._hand.close()
@@ -185,7 +194,7 @@ class Page(Telling, Handling, Learning):
             self.session.stop()
 
     def _save(self, name: str, content: bytes) -> None:
-        self._client.send_file_download(name, content, save_immediately=True)
+        TAKEAWAY.send(self._client, name, content)
 
     def _restore(self, desk: Desk) -> None:
         """Put a desk back: as it was, or worked out again where that has been let go of."""
@@ -214,7 +223,11 @@ class Page(Telling, Handling, Learning):
                     self.session.request(job)
 
     def _show_inputs(self, inputs: Inputs) -> bool:
+        if self._gone:
+            return False
         try:
+            grids = [grid for grid in (inputs.ref, inputs.mov) if grid is not None]
+            self._budget.claim(self, sum(grid.cells.size for grid in grids))
             layout = lay_out(inputs.ref, inputs.mov, inputs.at)
         except MapMergeError as error:
             self._report(error)
@@ -240,7 +253,6 @@ class Page(Telling, Handling, Learning):
         self._turn_view()
         self._maps.apart()
         self._stage.layer("readout", None)
-        grids = [grid for grid in (inputs.ref, inputs.mov) if grid is not None]
         self._tuning.resolutions(*(grid.resolution for grid in grids))
         self._run.merge.disabled = not inputs.complete
         self._export.offer(None)

@@ -14,6 +14,7 @@ import viser
 from algorithms.casefiles import Case
 from algorithms.errors import MapMergeError
 from app.access import Access
+from app.budget import Budget
 from app.guard import guarded_server
 from app.keep import Keep
 from app.page import Page
@@ -21,7 +22,7 @@ from app.page import Page
 log = logging.getLogger(__name__)
 
 
-MOST_TABS = 16  # each holds its own maps and results
+MOST_TABS = 64  # about 8 MB each, and what its maps and results take
 SPARE = 8  # connections more, so that a tab too many is told so
 
 
@@ -55,13 +56,14 @@ def make_server(
     camera.fov, camera.near, camera.far = radians(4), 10.0, 5000.0
     pages: dict[int, Page] = {}
     keep = Keep()
+    budget = Budget(make_room=keep.forget_all)
 
     @server.on_client_connect
     def _(client: viser.ClientHandle) -> None:
         if len(pages) >= MOST_TABS:
             client.gui.add_markdown(f"{MOST_TABS} tabs are open already. Close one, then reload this page.")
             return
-        pages[client.client_id] = Page(client, initial, keep, lesson)
+        pages[client.client_id] = Page(client, initial, keep, lesson, budget)
 
     @server.on_client_disconnect
     def _(client: viser.ClientHandle) -> None:

@@ -20,6 +20,7 @@ from algorithms.observation import Observation
 from algorithms.steps import AnswersDetail, CandidatesDetail, MergeResult, Step
 from app.player import FRAME, Waiting, dwell
 from app.story import Story
+from app.turns import COMMON, Turns
 
 log = logging.getLogger(__name__)
 
@@ -61,6 +62,9 @@ class Listener(Protocol):
     def ending(self, job: Job, story: Story) -> None:
         """The run is at its goal: work out what takes long to tell of it. It can still be stopped."""
 
+    def waits(self, job: Job, before: int) -> None:
+        """Other tabs' runs have the processors; so many of them are before this one."""
+
     def ended(self, job: Job, story: Story) -> None:
         """The run came to its goal."""
 
@@ -86,9 +90,11 @@ class Session:
         clock: Callable[[], float] = perf_counter,
         waiting: Waiting | None = None,
         beside: Session | None = None,
+        turns: Turns = COMMON,
     ) -> None:
         self._listener, self._run, self._clock = listener, run, clock
         self._waiting = waiting or Waiting()
+        self._turns = turns
         self._memo: Memo = beside._memo if beside else {}
         self._wake = Condition()
         self._wanted: Job | None = None
@@ -174,7 +180,8 @@ class Session:
             return
         drawn_at = -FRAME
         whole = (job.method, job.ref, job.mov, job.observations, job.config, job.seed, self._memo)
-        for step in job.steps() if job.steps is not None else self._run(*whole):
+        steps = job.steps() if job.steps is not None else self._run(*whole)
+        while (step := self._next(job, steps)) is not None:
             story.tell(step)
             mark = self._waiting.mark
             stay = dwell(step, self._pace, job.again)
@@ -198,6 +205,15 @@ class Session:
     def _end(self, job: Job, story: Story) -> None:
         self._ended = job
         self._listener.ended(job, story)
+
+    def _next(self, job: Job, steps: Iterator[Step]) -> Step | None:
+        """The next step, worked out when it is this run's turn; None at the end."""
+
+        def tell(before: int) -> None:
+            self._deliver(job, lambda: self._listener.waits(job, before))
+
+        with self._turns.take(lambda: self._wants(job), tell) as mine:
+            return next(steps, None) if mine else None
 
     def _wants(self, job: Job) -> bool:
         return self._running is job and self._wanted is None and not self._closed

@@ -111,6 +111,12 @@ class Telling(ABC):
             self._weighed = of, (found, result_html(result, self._inputs, config, found))
         return self._weighed[1]
 
+    def waits(self, job: Job, before: int) -> None:
+        """Other tabs' runs are at work."""
+        place = f"{before} before this one" if before else "this one is next"
+        self._stage.hud(state=f"Other tabs are merging: {place}.", mood="running")
+        self._stage.flush()
+
     def ended(self, job: Job, story: Story) -> None:
         """The run came to its goal."""
         self._run.stoppable("run", False)

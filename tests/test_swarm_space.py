@@ -13,10 +13,12 @@ from proofs import proof_state
 from algorithms.polish import Peak
 from algorithms.pose import Pose2
 from algorithms.search import SearchState
-from algorithms.steps import ProvenDetail, RefineDetail
+from algorithms.steps import ProvenDetail, RefineDetail, Step
 from algorithms.window import Box
-from app.palette import LIGHT
-from app.views.swarm_space import in_box, proven_optimum
+from app.palette import DARK, LIGHT
+from app.stage import Stage
+from app.story import Story
+from app.views.swarm_space import SwarmSpaceView, in_box, proven_optimum
 
 BOX = Box(np.array([2.0, 3.0, 1.0]), np.array([4.0, 5.0, 1.2]), np.array([30.0, -7.0]))
 inner = st.tuples(st.floats(2.0, 4.0), st.floats(3.0, 5.0), st.floats(1.0, 1.2))
@@ -57,3 +59,36 @@ def test_a_turn_is_taken_to_the_side_of_the_box_that_is_nearer():
     across = Box(np.array([0, 0, pi - 0.1]), np.array([1, 1, pi + 0.1]), np.zeros(2))
     assert in_box(Pose2(0.5, 0.5, -pi + 0.05), across)[2] == pytest.approx(pi + 0.05)
     assert shown(BOX.transform(BOX.centre + (0, 0, radians(178))))[2]["t"].startswith("0.0 m and 178°")
+
+
+class Drawn(Stage):
+    """A stage that keeps what is drawn on it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.layers: dict[str, object] = {}
+
+    def send(self, message):
+        self.layers.update(message.get("layers", {}))
+
+
+def test_who_comes_back_finds_the_box_and_its_numbers_again_in_the_colours_of_now():
+    stage = Drawn()
+    view, story = SwarmSpaceView(stage), Story()
+    one = BOX.centre[None]
+    state = SearchState(0, one, np.zeros(1), one, np.zeros(1), BOX.centre, 0.0)
+    story.tell(Step("refine", RefineDetail(0, 1, BOX, state), 0.0))
+
+    def frame(palette):
+        view.show(story, palette, look=True)
+        stage.flush()
+        return stage.layers["axes"]
+
+    first = frame(LIGHT)
+    assert first
+    view.hide()
+    stage.flush()
+    assert stage.layers["axes"] is None
+    again = frame(LIGHT)
+    assert [item.get("t") for item in again] == [item.get("t") for item in first]
+    assert [item["c"] for item in frame(DARK)] != [item["c"] for item in again]

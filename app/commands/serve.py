@@ -68,6 +68,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Serve until Ctrl-C."""
     from app.server import make_server
+    from app.takeaway import TAKEAWAY
 
     if (args.map1 is None) != (args.map2 is None) or (args.map1 is None) != (args.observation is None):
         parser.error("give MAP1, MAP2 and --observation FILE together, or none of them for a sample")
@@ -83,6 +84,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
             webbrowser.open(url)
         threading.Event().wait()
     except KeyboardInterrupt:
+        TAKEAWAY.finish()
         server.stop()
         print()
     return 0

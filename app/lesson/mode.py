@@ -220,6 +220,9 @@ class Lesson:
     def ending(self, job: Job, story: Story) -> None:
         """There is nothing to work out."""
 
+    def waits(self, job: Job, before: int) -> None:
+        """Other tabs' runs are at work; the picture says that it is being worked out."""
+
     def ended(self, job: Job, story: Story) -> None:
         """The run came to its end."""
         had = bool(self._study.steps)

@@ -15,6 +15,7 @@ from app.palette import LIGHT, QUIET
 from app.panels.replay import ReplayButton
 from app.panels.tables import box
 from app.publish import publish_command
+from app.takeaway import TAKEAWAY
 
 _NOTHING = box("After a merge it can be taken away from here: map, transform, report.", "plain")
 _OUTDATED = box("Out of date: a setting was changed.", "plain", faded=True)
@@ -95,6 +96,14 @@ class ExportPanel:
         if not self._at_work.acquire(blocking=False):
             return  # a second click while the files are being made
         try:
+            self._make(harvest, name)
+        finally:
+            self._at_work.release()
+
+    def _make(self, harvest: Harvest, name: str) -> None:
+        with TAKEAWAY.making() as begun:
+            if not begun:
+                return
             notice = self._client.add_notification(
                 "Making the files",
                 "Map, pictures and report; of large maps this takes some seconds.",
@@ -105,9 +114,7 @@ class ExportPanel:
                 content = harvest.archive() if name == ARCHIVE else harvest.files[name]
             finally:
                 notice.remove()
-            self._client.send_file_download(name, content, save_immediately=True)
-        finally:
-            self._at_work.release()
+            TAKEAWAY.send(self._client, name, content)
 
 
 def line_html(harvest: Harvest, faded: bool = False) -> str:

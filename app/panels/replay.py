@@ -9,6 +9,7 @@ from threading import Lock
 import viser
 
 from app.palette import QUIET
+from app.takeaway import TAKEAWAY
 
 
 class ReplayButton:
@@ -42,6 +43,14 @@ class ReplayButton:
         if make is None or not self._at_work.acquire(blocking=False):
             return  # a second click while it is being made
         try:
+            self._record(name, make)
+        finally:
+            self._at_work.release()
+
+    def _record(self, name: str, make: Callable[[], bytes]) -> None:
+        with TAKEAWAY.making() as begun:
+            if not begun:
+                return
             notice = self._client.add_notification(
                 "Recording the run",
                 "It is told once more, for the file.",
@@ -52,9 +61,7 @@ class ReplayButton:
                 page = make()
             finally:
                 notice.remove()
-            self._client.send_file_download(file_name(name), page, save_immediately=True)
-        finally:
-            self._at_work.release()
+            TAKEAWAY.send(self._client, file_name(name), page)
 
 
 def file_name(name: str) -> str:

@@ -61,13 +61,14 @@ class SwarmSpaceView:
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
         self._trail: list[FloatArray] = []
-        self._of: object = None
+        self._of: tuple[Box, Palette] | None = None  # whose frame is drawn
 
     def hide(self) -> None:
         """Take everything away."""
         for name in ("axes", "swarm", "trail", "best", "rival", "floor"):
             self._stage.layer(name, None)
         self._trail.clear()
+        self._of = None
 
     def show(self, story: Story, palette: Palette, look: bool) -> None:
         """Draw the newest snapshot; ``look`` puts the camera before the box."""
@@ -90,8 +91,8 @@ class SwarmSpaceView:
         known = proven is not None and proven.state.best is not None
         self._stage.layer("rival", proven_optimum(proven, detail, palette) if proven and known else None)
         low, high = detail.box.low, detail.box.high
-        if self._of is not detail.box:
-            self._of = detail.box
+        if self._of is None or self._of[0] is not detail.box or self._of[1] is not palette:
+            self._of = detail.box, palette
             self._trail.clear()
             self._stage.layer("axes", self._frame(detail, palette))
         step = -(-len(detail.state.poses) // POINTS)

@@ -1,0 +1,44 @@
+"""How much all tabs of a server may hold: one who loads too much is told so, and the others go on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from threading import Lock
+
+from algorithms.errors import TooLargeError
+
+# Of the maps on all pages together. A page takes 16 to 25 bytes for a cell of its maps (measured at
+# 4000 x 4000 and 1200 x 1200), so this is about 6 GB.
+MOST_CELLS = 250_000_000
+
+
+class Budget:
+    """Cells that are spoken for, by who holds them."""
+
+    def __init__(self, most: int = MOST_CELLS, make_room: Callable[[], None] = lambda: None) -> None:
+        """make_room : is called before anyone is refused; lets go of what nobody looks at"""
+        self._most, self._make_room = most, make_room
+        self._held: dict[object, int] = {}
+        self._lock = Lock()
+
+    def claim(self, who: object, cells: int) -> None:
+        """Have so many cells from now on, in place of those before.
+
+        raises : TooLargeError where it would be too many; what was held before is then still held
+        """
+        with self._lock:
+            others = sum(self._held.values()) - self._held.get(who, 0)
+            if others and others + cells > self._most:
+                raise TooLargeError(
+                    f"these maps have {cells / 1e6:.0f} million cells, and the other tabs of this server "
+                    f"hold {others / 1e6:.0f} of the {self._most / 1e6:.0f} million that there may be; "
+                    "close one of them, or make the maps coarser"
+                )
+            if others + cells > self._most / 2:
+                self._make_room()
+            self._held[who] = cells
+
+    def release(self, who: object) -> None:
+        """Hold nothing any more."""
+        with self._lock:
+            self._held.pop(who, None)

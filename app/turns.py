@@ -1,0 +1,68 @@
+"""Who computes when many tabs want to: as many at a time as there are processors, the others in their order.
+
+A turn is one step of a run, not a whole one: all of them go on, and none has to wait for another's end.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from threading import Condition
+from time import monotonic
+
+PATIENCE = 1.0  # seconds of waiting that need no words
+
+
+class Turns:
+    """So many at a time, first come, first served."""
+
+    def __init__(self, places: int) -> None:
+        self._free = places
+        self._queue: deque[object] = deque()
+        self._wake = Condition()
+
+    @contextmanager
+    def take(self, wanted: Callable[[], bool], tell: Callable[[int], None]) -> Iterator[bool]:
+        """A turn, which ends with the block; gives whether there is one.
+
+        wanted : whether it still makes sense to wait; asked now and then
+        tell   : is told how many are before, where it takes a while
+        """
+        me, since, told = object(), monotonic(), False
+        with self._wake:
+            self._queue.append(me)
+        try:
+            while True:
+                with self._wake:
+                    ready = self._wake.wait_for(lambda: self._free > 0 and self._queue[0] is me, 0.25)
+                    if ready:
+                        self._queue.popleft()
+                        self._free -= 1
+                        self._wake.notify_all()  # there may be a place for the next one, too
+                        break
+                    before = self._queue.index(me)
+                if not wanted():
+                    break
+                if not told and monotonic() - since > PATIENCE:
+                    told = True
+                    tell(before)
+        except BaseException:
+            ready = False
+            raise
+        finally:
+            if not ready:
+                with self._wake:
+                    self._queue.remove(me)
+                    self._wake.notify_all()
+        try:
+            yield ready
+        finally:
+            if ready:
+                with self._wake:
+                    self._free += 1
+                    self._wake.notify_all()
+
+
+COMMON = Turns(os.cpu_count() or 1)
