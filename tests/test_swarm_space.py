@@ -52,7 +52,9 @@ def test_an_optimum_outside_of_it_stands_on_the_border_and_says_how_far_it_is(tu
     assert np.abs(star["p"]).max() == pytest.approx(1.0)
     assert ray["p"][1] == pytest.approx(star["p"])
     assert star["t"] == "proven optimum, outside"
-    assert more["t"].startswith(f"{np.hypot(dx, dy):.1f} m and ")
+    metres, _, words = more["t"].partition(" m and ")
+    assert float(metres) == pytest.approx(np.hypot(dx, dy), abs=0.0501)  # a digit is told
+    assert words.endswith("from the swarm's best")
 
 
 def test_a_turn_is_taken_to_the_side_of_the_box_that_is_nearer():
