@@ -17,6 +17,8 @@ from tempfile import TemporaryDirectory
 from threading import Event, Thread
 from typing import Any
 
+import cv2
+
 from algorithms import kernels
 from app.executor import Executor, Lost, Shared, Task, Work, unpacked
 
@@ -131,7 +133,9 @@ _known: OrderedDict[str, Any] = OrderedDict()
 
 def _begin(line: Connection, jobs: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the first process hears it and ends the others
-    kernels.use_threads(max(1, cores() // jobs))
+    threads = max(1, cores() // jobs)
+    kernels.use_threads(threads)
+    cv2.setNumThreads(threads)
     Thread(target=_end_with, args=(line,), daemon=True).start()
 
 

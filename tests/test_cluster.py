@@ -9,21 +9,28 @@ from threading import Event, Thread, Timer
 
 import pytest
 from test_executor import fail, until
+from test_sweep import plan, untimed
 
 from algorithms.errors import SettingError
 from app import cluster
 from app.cli import main
 from app.cluster import Cluster
-from app.executor import Lost, Shared, Task, executor_for
+from app.executor import Here, Lost, Shared, Task, executor_for
+from app.sweep import in_order, sweep
 
 
 @pytest.fixture(scope="module")
-def address():
-    """Of a scheduler with two workers, processes of one thread each, and a nanny for either."""
+def scheduler():
+    """With two workers, processes of one thread each, and a nanny for either."""
     from distributed import LocalCluster
 
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, host="127.0.0.1") as started:
-        yield started.scheduler_address
+        yield started.scheduler
+
+
+@pytest.fixture
+def address(scheduler):
+    return scheduler.address
 
 
 def meet(folder, order):
@@ -38,6 +45,10 @@ def stay(folder, order):
     (folder / f"{order}_{os.getpid()}").touch()
     assert until((folder / "go").exists)
     return order
+
+
+def who(_, order):
+    return os.getpid()
 
 
 def die_at_two(_, order):
@@ -91,6 +102,16 @@ def test_cases_judged_on_a_cluster_are_those_judged_here_bit_for_bit(
     assert [entry["case"] for entry in told[0]] == ["bad_1", "flat_1", "neg_1"]
 
 
+def test_a_sweep_on_a_cluster_is_that_of_this_machine_though_a_worker_is_killed_in_it(address, small_case):
+    here = untimed(in_order(plan(), list(sweep(small_case, plan(), Here()))))
+    running = sweep(small_case, plan(), Cluster(address))
+    points = [next(running)]
+    ((_, victim),) = Cluster(address).run(who, [Task(0)])
+    os.kill(victim, signal.SIGKILL)
+    points += running
+    assert untimed(in_order(plan(), points)) == here
+
+
 def test_what_the_work_raises_is_raised_to_whoever_asked(address):
     with pytest.raises(SettingError, match="1 is none of ours"):
         list(Cluster(address).run(fail, [Task(1)]))
@@ -141,8 +162,9 @@ def test_without_dask_the_remedy_is_named(monkeypatch):
         executor_for(scheduler="tcp://127.0.0.1:1")
 
 
-def test_a_task_that_kills_every_worker_is_lost_and_the_others_are_not(address):
-    # the last test: the workers are a while coming back
-    told = dict(Cluster(address).run(die_at_two, [Task(order) for order in range(4)]))
-    assert isinstance(told.pop(2), Lost)
-    assert told == {0: 0, 1: 1, 3: 3}
+def test_a_task_that_kills_its_workers_is_lost_and_the_next_one_is_not(scheduler, monkeypatch):
+    # the last test: the worker is a while coming back
+    monkeypatch.setattr(scheduler, "allowed_failures", 0)
+    ((_, answer),) = Cluster(scheduler.address).run(die_at_two, [Task(2)])
+    assert isinstance(answer, Lost)
+    assert list(Cluster(scheduler.address).run(die_at_two, [Task(3)])) == [(0, 3)]

@@ -28,7 +28,7 @@ def usage_error(*words):
 
 
 def test_a_sweep_that_is_killed_and_started_again_ends_with_the_same_files(case_folder, tmp_path, capsys):
-    ranges = ["--x", "augment.spread=0.5:8:20", "--y", "swarm.particles=20,40,60"]
+    ranges = ["--x", "augment.spread=0.5:8:10", "--y", "swarm.particles=20,40,60"]
     command = ["sweep", str(case_folder), *ranges, *SMALL, "--jobs", "1", "--out"]
     whole, torn = tmp_path / "whole", tmp_path / "torn"
     journal = torn / "journal.jsonl"
@@ -40,18 +40,37 @@ def test_a_sweep_that_is_killed_and_started_again_ends_with_the_same_files(case_
         assert until(lambda: lines() >= 3)
         first.send_signal(signal.SIGKILL)
     kept = lines()
-    assert 3 <= kept < 60
+    assert 3 <= kept < 30
     assert [path.name for path in torn.iterdir()] == ["journal.jsonl"]
     assert main([*command, str(torn)]) == 0
-    assert f"{kept} of 60 points are known from before" in capsys.readouterr().out
+    assert f"{kept} of 30 points are known from before" in capsys.readouterr().out
     assert main([*command, str(whole)]) == 0
     names = {path.name for path in whole.iterdir()}
     assert names == {path.name for path in torn.iterdir()}
     same = {name for name in names if (whole / name).read_bytes() == (torn / name).read_bytes()}
     name = "swarm.particles_by_augment.spread"
     assert same == {f"{name}{end}" for end in (".csv", ".runs.csv", ".json", ".png", ".svg")}
-    assert len(table(whole / f"{name}.csv")) == 60
-    assert len(table(whole / f"{name}.runs.csv")) == 120
+    assert len(table(whole / f"{name}.csv")) == 30
+    assert len(table(whole / f"{name}.runs.csv")) == 60
+
+
+def test_an_interrupted_sweep_says_how_far_it_came(case_folder, tmp_path, monkeypatch, capsys):
+    from app import sweep as sweeping
+
+    calls = []
+
+    def attempt(*args):
+        calls.append(args)
+        if len(calls) > 4:
+            raise KeyboardInterrupt
+        return trial(*args)
+
+    trial = sweeping.attempt
+    monkeypatch.setattr(sweeping, "attempt", attempt)
+    words = ["sweep", str(case_folder), "--x", "augment.spread=1,2,3", *SMALL, "--out", str(tmp_path)]
+    assert main([*words, "--jobs", "1"]) == 130
+    assert "2 of 3 points are kept; the same command goes on there" in capsys.readouterr().out
+    assert [path.name for path in tmp_path.iterdir()] == ["journal.jsonl"]
 
 
 def test_without_a_range_both_sweeps_of_the_paper_are_made(case_folder, tmp_path, capsys, monkeypatch):

@@ -82,10 +82,15 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         total, done = len(plan.places()), done_before(case, plan, journal)
         if done:
             print(f"{name_of(plan)}: {done} of {total} points are known from before")
-        with bar(total=total, initial=done, unit="point") as shown:
-            for point in sweep(case, plan, executor, journal):
-                points.append(point)
-                shown.update(len(points) > done)
+        try:
+            with bar(total=total, initial=done, unit="point") as shown:
+                for point in sweep(case, plan, executor, journal):
+                    points.append(point)
+                    shown.update(len(points) > done)
+        except KeyboardInterrupt:
+            kept = done_before(case, plan, journal)
+            print(f"{name_of(plan)}: {kept} of {total} points are kept; the same command goes on there")
+            raise
         files = sweep_files(case, plan, points)
         write_files({out / name: data for name, data in files.items()})
         written += files
