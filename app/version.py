@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError
 from importlib.metadata import version as installed
 from pathlib import Path
 
-MATTERS = ("numpy", "numba", "scipy", "opencv-python-headless", "scikit-image")  # what may change a number
+MATTERS = ("numpy", "numba", "scipy", "opencv-python-headless", "scikit-image", "mahotas")  # may change a number
 
 
 def version() -> str:
