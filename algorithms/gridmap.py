@@ -69,6 +69,10 @@ class GridMap:
             raise SettingError(f"{self.name}: resolution is {self.resolution} m; it must be > 0")
         self.cells.flags.writeable = False
 
+    def __reduce__(self) -> tuple[type[GridMap], tuple[CellArray, float, Pose2, str]]:
+        """What travels to another process: what the map was made of, and nothing that was made of it."""
+        return GridMap, (self.cells, self.resolution, self.origin, self.name)
+
     @property
     def height(self) -> int:
         """Number of rows."""

@@ -9,7 +9,8 @@ from importlib.metadata import PackageNotFoundError
 from importlib.metadata import version as installed
 from pathlib import Path
 
-MATTERS = ("numpy", "numba", "scipy", "opencv-python-headless", "scikit-image", "mahotas")  # may change a number
+# what may change a number
+MATTERS = ("numpy", "numba", "scipy", "opencv-python-headless", "scikit-image", "mahotas")
 
 
 def version() -> str:

@@ -1,3 +1,5 @@
+import pickle
+
 import numpy as np
 import pytest
 from drawn import poses
@@ -5,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from algorithms.errors import SettingError, TooLargeError
-from algorithms.gridmap import UNKNOWN, GridMap, check_size
+from algorithms.gridmap import FREE, UNKNOWN, GridMap, check_size
 from algorithms.pose import Pose2
 
 
@@ -56,3 +58,14 @@ def test_a_resolution_must_be_a_positive_number(resolution):
 def test_too_many_cells_are_refused_before_they_are_made():
     with pytest.raises(TooLargeError, match="coarser resolution"):
         check_size(100_000, 100_000, "the merged map")
+
+
+def test_a_map_travels_to_another_process_as_it_was_made_and_cannot_be_written_there():
+    made = GridMap(np.full((40, 30), FREE, dtype=np.int8), 0.05, Pose2(1.0, 2.0, 0.3), "mine")
+    plain = pickle.dumps(made)
+    assert not made.occupied.any()  # it keeps what it has worked out; that stays at home
+    assert pickle.dumps(made) == plain
+    copy = pickle.loads(plain)
+    assert (copy.cells == made.cells).all()
+    assert not copy.cells.flags.writeable
+    assert (copy.resolution, copy.origin, copy.name) == (made.resolution, made.origin, made.name)
