@@ -5,12 +5,12 @@ from __future__ import annotations
 import io
 import zipfile
 from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
 from typing import Any
 
 from algorithms.casefiles import OBSERVATION_FILE, observations_to_bytes
 from algorithms.steps import MergeResult
+from app.errand import Check, unwatched
 from app.inputs import Inputs
 from app.report import (
     MERGED_FILES,
@@ -39,13 +39,21 @@ class Harvest:
     result: MergeResult
     inputs: Inputs
     config: Any
+    _made: dict[str, bytes] = field(default_factory=dict, init=False)
 
-    @cached_property
+    @property
     def files(self) -> Mapping[str, bytes]:
         """Everything by name: what ``mapmeld merge`` leaves in a folder, and the observation as used."""
-        report = report_of(self.result, self.config, inputs=self._named())
-        files = result_files(self.result, self.inputs, self.config, report, with_merged=True)
-        return {OBSERVATION_FILE: observations_to_bytes(self.inputs.observations), **files}
+        return self.make()
+
+    def make(self, check: Check = unwatched) -> Mapping[str, bytes]:
+        """The same; ``check`` is called now and then while they are made, which is once."""
+        if not self._made:
+            report = report_of(self.result, self.config, inputs=self._named())
+            files = result_files(self.result, self.inputs, self.config, report, with_merged=True, check=check)
+            self._made[OBSERVATION_FILE] = observations_to_bytes(self.inputs.observations)
+            self._made.update(files)
+        return self._made
 
     def _named(self) -> dict[str, str]:
         i = self.inputs

@@ -152,7 +152,7 @@ class Page(Telling, Handling, Learning):
         self._files = FilesPanel(gui, self._load, self._report, chosen, self._save, self._turn, self._errand)
         self._observation = ObservationPanel(gui)
         self._tuning = TuningPanel(gui, self._changed, self._report, self._turn)
-        self._export = ExportPanel(client)
+        self._export = ExportPanel(client, self._errand)
         self._handle_with(gui)
         self._timeline = Timeline(gui, self._channel, self._turn, self._restore)
         self._plots = PlotDock(client, self._press)

@@ -18,6 +18,7 @@ from algorithms.mapio import map_to_bytes
 from algorithms.merit import performance_index
 from algorithms.steps import MergeResult
 from app import render
+from app.errand import Check, unwatched
 from app.inputs import Inputs
 from app.palette import LIGHT
 from app.publish import transform_yaml
@@ -140,19 +141,27 @@ def overlay_png(result: MergeResult) -> bytes:
 
 
 def result_files(
-    result: MergeResult, inputs: Inputs, config: Any, report: Mapping[str, Any], with_merged: bool
+    result: MergeResult,
+    inputs: Inputs,
+    config: Any,
+    report: Mapping[str, Any],
+    with_merged: bool,
+    check: Check = unwatched,
 ) -> dict[str, bytes]:
     """All files of a result by name, in the order they are to be written: the report is the last.
 
     inputs, config : what was merged, and the settings that were used
     with_merged    : also what a robot would act upon: the merged map and the transform
+    check          : is called now and then
     """
     files: dict[str, bytes] = {}
     if with_merged:
         files |= map_to_bytes(result.fusion.merged, MERGED)
         files[TRANSFORM_FILE] = transform_yaml(result)
+    check(0.1)
     files[OVERLAY_FILE] = overlay_png(result)
-    files[PAGE_FILE] = report_page(result, inputs, config, report)
+    check(0.2)
+    files[PAGE_FILE] = report_page(result, inputs, config, report, check)
     files[REPORT_FILE] = report_json(report)
     return files
 

@@ -14,6 +14,7 @@ from algorithms.methods import METHODS
 from algorithms.steps import MergeResult
 from app import charts, words
 from app.controls import Setting, settings_of, value_at, word_for
+from app.errand import Check, unwatched
 from app.inputs import Inputs
 from app.measure import measure_of
 from app.panels.places import MOST_PLACES, signed, summary, whose
@@ -29,18 +30,25 @@ _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 Row = Sequence[str]
 
 
-def report_page(result: MergeResult, inputs: Inputs, config: Any, report: Mapping[str, Any]) -> bytes:
+def report_page(
+    result: MergeResult,
+    inputs: Inputs,
+    config: Any,
+    report: Mapping[str, Any],
+    check: Check = unwatched,
+) -> bytes:
     """The content of report.html.
 
     config : the settings that were used
     report : what report.json says
+    check  : is called between the pictures
     """
     verdict, found = result.verdict, find_conflicts(result.fusion)
     ended = "Merged" if verdict.accepted else "Refused"
     name = inputs.name or "two maps"
     parts = [
         _verdict(result, config),
-        _pictures(result, inputs, found),
+        _pictures(result, inputs, found, check),
         _section("Contradictions, place by place", *_places(found)),
         _section("The numbers", _table(numbers(result, inputs, config), "two")),
         _proof(result, config),
@@ -87,13 +95,15 @@ def _bare(reason: str) -> str:
     return rest[:1].upper() + rest[1:]
 
 
-def _pictures(result: MergeResult, inputs: Inputs, found: Conflicts) -> str:
+def _pictures(result: MergeResult, inputs: Inputs, found: Conflicts, check: Check) -> str:
     figures = []
+    check(0.3)
     if inputs.ref is not None and inputs.mov is not None:
         drawn = outcome.sources(inputs.ref, inputs.mov, inputs.observations, result.encounters)
         figures.append(
             _figure(drawn, "The maps as they came, each in its own frame, and what robot 1 saw of robot 2.")
         )
+    check(0.45)
     figures.append(
         _figure(
             outcome.overlay(result, inputs.observations),
@@ -101,12 +111,14 @@ def _pictures(result: MergeResult, inputs: Inputs, found: Conflicts) -> str:
             "floor; a cell's breadth of it along a wall means nothing.",
         )
     )
+    check(0.65)
     figures.append(
         _figure(
             outcome.difference(result, found),
             "Only what contradicts by more than the breadth of a wall. The numbers are those of the table.",
         )
     )
+    check(0.85)
     return _section("Pictures", *figures)
 
 

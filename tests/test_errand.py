@@ -139,6 +139,32 @@ def test_stop_has_nothing_to_stop_before_and_after(person):
     assert not person.errand.stop()
 
 
+def test_words_aside_are_taken_back_and_tell_how_far_it_is(person, monkeypatch):
+    monkeypatch.setattr("app.errand.perf_counter", iter(range(100)).__next__)
+    with person.errand("Making the files.", aside=True) as check:
+        check(0.5)
+        assert person.said == {"state": "Making the files.", "mood": "running", "progress": 0.5}
+    assert person.said == BEFORE
+
+
+def test_stop_ends_everything_that_is_under_way_at_once(person):
+    left = []
+
+    def both():
+        with person.errand("Reading.") as first, person.errand("Making the files.", aside=True) as second:
+            assert person.errand.stop()
+            for check in (first, second):
+                with pytest.raises(Left):
+                    check()
+                left.append(check)
+
+    with pytest.raises(Left):
+        both()
+    assert len(left) == 2
+    assert person.could_stop == [True, True, True, False]
+    assert person.said == BEFORE
+
+
 def test_a_press_at_the_last_moment_still_counts(person):
     with pytest.raises(Left), person.errand("Reading."):
         person.errand.stop()

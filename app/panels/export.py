@@ -10,6 +10,7 @@ from threading import Lock
 
 import viser
 
+from app.errand import Errand, Left
 from app.export import ACTED_UPON, ALONE, ARCHIVE, Harvest
 from app.palette import LIGHT, QUIET
 from app.panels.replay import ReplayButton
@@ -24,8 +25,8 @@ _OUTDATED = box("Out of date: a setting was changed.", "plain", faded=True)
 class ExportPanel:
     """Holds the result that can be downloaded; None while there is none, or it is out of date."""
 
-    def __init__(self, client: viser.ClientHandle) -> None:
-        self._client = client
+    def __init__(self, client: viser.ClientHandle, errand: Errand) -> None:
+        self._client, self._errand = client, errand
         self._harvest: Harvest | None = None
         self._at_work = Lock()
         gui = client.gui
@@ -41,7 +42,7 @@ class ExportPanel:
             self._one = gui.add_dropdown("One file", ALONE, visible=False, hint="A file of the zip, alone.")
             self._alone = gui.add_button("Download this file", color=QUIET, visible=False)
             self._alone.on_click(lambda _: self._ask(self._one.value))
-            self.replay = ReplayButton(client)
+            self.replay = ReplayButton(client, errand)
             self.replay.visible(False)
             self._line = gui.add_html("")
             self._note = gui.add_html(_NOTHING)  # last, so that nothing moves when it comes
@@ -97,6 +98,8 @@ class ExportPanel:
             return  # a second click while the files are being made
         try:
             self._make(harvest, name)
+        except Left:
+            pass  # there is no file, and that is all
         finally:
             self._at_work.release()
 
@@ -104,16 +107,9 @@ class ExportPanel:
         with TAKEAWAY.making() as begun:
             if not begun:
                 return
-            notice = self._client.add_notification(
-                "Making the files",
-                "Map, pictures and report; of large maps this takes some seconds.",
-                loading=True,
-                with_close_button=False,
-            )
-            try:
-                content = harvest.archive() if name == ARCHIVE else harvest.files[name]
-            finally:
-                notice.remove()
+            with self._errand("Making the files: map, pictures and report.", aside=True) as check:
+                files = harvest.make(check)
+                content = harvest.archive() if name == ARCHIVE else files[name]
             TAKEAWAY.send(self._client, name, content)
 
 

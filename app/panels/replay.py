@@ -8,6 +8,7 @@ from threading import Lock
 
 import viser
 
+from app.errand import Check, Errand, Left
 from app.palette import QUIET
 from app.takeaway import TAKEAWAY
 
@@ -15,10 +16,10 @@ from app.takeaway import TAKEAWAY
 class ReplayButton:
     """Holds the run that can be recorded; None while there is none, or it is out of date."""
 
-    def __init__(self, client: viser.ClientHandle) -> None:
-        self._client = client
+    def __init__(self, client: viser.ClientHandle, errand: Errand) -> None:
+        self._client, self._errand = client, errand
         self._name = ""
-        self._make: Callable[[], bytes] | None = None
+        self._make: Callable[[Check], bytes] | None = None
         self._at_work = Lock()
         self._button = client.gui.add_button(
             "Save replay",
@@ -29,8 +30,8 @@ class ReplayButton:
         )
         self._button.on_click(lambda _: self._save())
 
-    def offer(self, name: str | None, make: Callable[[], bytes] | None = None) -> None:
-        """Take a run, by the name of its pair and a way to make its page; or none."""
+    def offer(self, name: str | None, make: Callable[[Check], bytes] | None = None) -> None:
+        """Take a run, by the name of its pair and a way to make its page, which can be left; or none."""
         self._name, self._make = name or "", make
         self._button.disabled = make is None
 
@@ -44,23 +45,17 @@ class ReplayButton:
             return  # a second click while it is being made
         try:
             self._record(name, make)
+        except Left:
+            pass  # there is no file, and that is all
         finally:
             self._at_work.release()
 
-    def _record(self, name: str, make: Callable[[], bytes]) -> None:
+    def _record(self, name: str, make: Callable[[Check], bytes]) -> None:
         with TAKEAWAY.making() as begun:
             if not begun:
                 return
-            notice = self._client.add_notification(
-                "Recording the run",
-                "It is told once more, for the file.",
-                loading=True,
-                with_close_button=False,
-            )
-            try:
-                page = make()
-            finally:
-                notice.remove()
+            with self._errand("Recording the run: it is told once more, for the file.", aside=True) as check:
+                page = make(check)
             TAKEAWAY.send(self._client, file_name(name), page)
 
 

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
+from app import words
+from app.errand import Check, unwatched
 from app.inputs import Inputs
 from app.replay.facts import About
 from app.replay.page import replay_html
 from app.replay.record import record
+from app.story import Story
 
 if TYPE_CHECKING:
     from algorithms.steps import Step
@@ -17,12 +20,23 @@ if TYPE_CHECKING:
 __all__ = ["About", "record", "replay_html", "replay_of"]
 
 
-def replay_of(job: Job, steps: Callable[[Job], Iterator[Step]], inputs: Inputs) -> bytes:
+def replay_of(
+    job: Job, steps: Callable[[Job], Iterator[Step]], inputs: Inputs, check: Check = unwatched
+) -> bytes:
     """The page for a run.
 
     job    : what ran, and how
     steps  : gives the steps of that run
     inputs : the same maps and sightings, with their name and, where it is known, the truth
+    check  : is called at every step
     """
+
+    def watched() -> Iterator[Step]:
+        story = Story(job.config)
+        for step in steps(job):
+            story.tell(step)
+            check(words.progress(story))
+            yield step
+
     about = About(inputs, job.method, job.config, job.seed)
-    return replay_html(record(steps(job), inputs, job.config), about)
+    return replay_html(record(watched(), inputs, job.config), about)
