@@ -119,7 +119,7 @@ def test_a_server_that_is_told_to_end_finishes_the_files_that_it_is_making():
             tab.press("Merge")
             merged(tab)
             tab.press("Download everything")
-            until(lambda: tab.notices("Making the files"), "the work to begin")
+            until(lambda: tab.state.startswith("Making the files"), "the work to begin")
             page.send_signal(signal.SIGTERM)
             assert page.wait(timeout=PATIENCE) == 0
             (archive,) = tab.files.values()
