@@ -18,6 +18,7 @@ from typing import Any
 import viser
 
 from app.gate import listen_unseen
+from app.mishap import words
 from app.stage import Stage
 
 log = logging.getLogger(__name__)
@@ -73,6 +74,7 @@ class Channel:
     """Calls back in the order of the messages, one at a time, in a thread of its own."""
 
     def __init__(self, gui: viser.GuiApi, stage: Stage) -> None:
+        self._stage = stage
         self._events: dict[str, _Event] = {}
         self._last = 0  # number of the newest message
         self._waiting: deque[tuple[_Event, dict[str, Any]]] = deque()
@@ -134,8 +136,10 @@ class Channel:
                 event, fields = self._waiting.popleft()
             try:
                 event.callback(**fields)
-            except Exception:  # as of viser's own callbacks: it is logged, and the tab lives on
+            except Exception as error:  # as of viser's own callbacks: told, logged, and the tab lives on
                 log.exception("what the page told ended in a bug")
+                self._stage.hud(state=words(error), mood="failed", progress=None)
+                self._stage.flush()
 
 
 def _parsed(text: str) -> tuple[int, str, dict[str, Any]]:

@@ -26,6 +26,7 @@ from websockets.http11 import Response
 from app.access import HEADERS, PAGE_POLICY, Access, Answer, Asked
 from app.entrance import served
 from app.gate import MAX_FRAME, MAX_UPLOADS_OF_ALL, Gate
+from app.mishap import watched
 
 TOO_MANY = Answer(503, "too many tabs are open here; close one, and reload")
 
@@ -86,6 +87,7 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
         infra.websockets = real
     for kind in (messages.ShareUrlRequest, messages.ShareUrlDisconnect):
         server._websock_server.unregister_handler(kind)
+    server._thread_executor.submit = watched(server._thread_executor.submit)  # type: ignore[method-assign]
     server.gate = gate  # type: ignore[attr-defined]
     return server
 

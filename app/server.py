@@ -17,6 +17,7 @@ from app.access import Access
 from app.budget import Budget
 from app.guard import guarded_server
 from app.keep import Keep
+from app.logs import facts
 from app.page import Page
 
 log = logging.getLogger(__name__)
@@ -63,12 +64,15 @@ def make_server(
         if len(pages) >= MOST_TABS:
             client.gui.add_markdown(f"{MOST_TABS} tabs are open already. Close one, then reload this page.")
             return
+        log.info("a tab came", extra=facts(tab=client.client_id, tabs=len(pages) + 1))
         pages[client.client_id] = Page(client, initial, keep, lesson, budget)
 
     @server.on_client_disconnect
     def _(client: viser.ClientHandle) -> None:
         page = pages.pop(client.client_id, None)
         if page is not None:
+            dropped = dict(server.gate.dropped)
+            log.info("a tab went", extra=facts(tab=client.client_id, tabs=len(pages), dropped=dropped))
             page.close()
 
     threading.Thread(target=warm_up, name="mapmeld-warm-up", daemon=True).start()

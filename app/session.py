@@ -18,6 +18,7 @@ from algorithms.errors import MapMergeError
 from algorithms.gridmap import GridMap
 from algorithms.observation import Observation
 from algorithms.steps import AnswersDetail, CandidatesDetail, MergeResult, Step
+from app.logs import facts
 from app.player import FRAME, Waiting, dwell
 from app.story import Story
 from app.turns import COMMON, Turns
@@ -159,6 +160,7 @@ class Session:
                 job, self._wanted = self._wanted, None
                 assert job is not None
                 self._running, self._story, self._pace = job, Story(job.config), job.pace
+            began = self._clock()
             try:
                 self._tell(job)
             except MapMergeError as error:
@@ -166,6 +168,7 @@ class Session:
             except Exception as error:
                 log.exception("a run of %s ended in a bug", job.method)
                 self._fail(job, error)
+            log.info("run over", extra=facts(method=job.method, seconds=round(self._clock() - began, 3)))
             with self._wake:
                 if self._running is job:
                     self._running = None

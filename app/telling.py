@@ -13,7 +13,7 @@ from algorithms.conflicts import Conflicts, find_conflicts
 from algorithms.errors import MapMergeError, NoAnswerError
 from algorithms.handmade import BY_HAND
 from algorithms.steps import AugmentDetail, MergeResult
-from app import words
+from app import mishap, words
 from app.byhand import ByHand
 from app.comparison import Comparison
 from app.export import Harvest
@@ -176,7 +176,7 @@ class Telling(ABC):
         if isinstance(error, MapMergeError):
             self._report(error)
             return
-        text = f"A bug of mapmeld's ended the run ({type(error).__name__}); the server's log has the details."
+        text = mishap.words(error)
         self._notify("The run ended", text, "red")
         self._stage.hud(state=text, mood="failed", progress=None)
         self._stage.flush()

@@ -56,6 +56,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument(
         "--behind", action="append", default=[], metavar="NAME", help="host name of a proxy in front of it"
     )
+    parser.add_argument("--verbose", action="store_true", help="log who comes and what is run, too")
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
     parser.add_argument(
         "--lesson",
@@ -67,11 +68,13 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Serve until Ctrl-C."""
+    from app import logs
     from app.server import make_server
     from app.takeaway import TAKEAWAY
 
     if (args.map1 is None) != (args.map2 is None) or (args.map1 is None) != (args.observation is None):
         parser.error("give MAP1, MAP2 and --observation FILE together, or none of them for a sample")
+    logs.start(args.verbose)
     if args.lesson is not None:
         _check_lesson(args.lesson)
     access = access_for(args.host, args.token_file, tuple(args.behind), args.certfile, args.keyfile)

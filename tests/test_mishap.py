@@ -1,0 +1,100 @@
+"""What goes wrong on the server's side: said in the right tab, logged, and everything else goes on."""
+
+from __future__ import annotations
+
+import json
+import logging
+
+import pytest
+from wire import WireTab, until
+
+from app.export import Harvest
+from app.logs import Lines, facts
+from app.mishap import OUT_OF_MEMORY, words
+from app.panels.files import read_case as real_read_case
+from app.server import make_server
+
+
+@pytest.fixture(scope="module")
+def server(small_case):
+    server = make_server(port=0, initial=small_case)
+    yield server
+    server.stop()
+
+
+@pytest.fixture
+def tab(server):
+    tab = WireTab(server.get_port())
+    tab.choose("Instant")
+    yield tab
+    tab.close()
+
+
+def merge(tab: WireTab) -> str:
+    tab.words["mood"] = ""  # not that of the last time
+    tab.press("Merge")
+    until(lambda: tab.mood in ("accepted", "refused", "failed"), "the merge")
+    return tab.mood
+
+
+@pytest.mark.parametrize("error", [MemoryError(), RuntimeError("within")])
+def test_a_stage_that_fails_is_told_and_the_next_merge_works(server, tab, monkeypatch, caplog, error):
+    other = WireTab(server.get_port())
+
+    def broken(*_: object, **__: object) -> None:
+        raise error
+
+    with monkeypatch.context() as patch:
+        patch.setattr("algorithms.pipeline.fuse", broken)
+        assert merge(tab) == "failed"
+    assert tab.state == words(error)
+    assert "within" not in tab.state
+    assert other.mood == "idle"  # it was none of theirs
+    assert "a run of spectra-proven ended in a bug" in caplog.text
+    assert merge(tab) == "accepted"
+    other.close()
+
+
+def test_files_that_cannot_be_made_are_told_of_and_can_be_asked_for_again(tab, monkeypatch):
+    assert merge(tab) == "accepted"
+
+    def full(_: object) -> bytes:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Harvest, "archive", full)
+        tab.press("Download everything")
+        until(lambda: tab.notices("This did not work"), "a word of it")
+    assert not tab.files
+    tab.press("Download everything")
+    until(lambda: tab.files, "the files")
+
+
+def test_a_sample_that_has_gone_meanwhile_is_named_and_what_was_there_stays(tab, monkeypatch, tmp_path):
+    monkeypatch.setattr("app.panels.files.read_case", lambda _: real_read_case(tmp_path / "gone"))
+    before = tab.words["case"]
+    tab.write("Sample", "office_r2_r1", "Dropdown")
+    until(lambda: tab.mood == "failed", "a word of it")
+    assert "gone" in tab.state
+    assert "no such file" in tab.state
+    assert tab.words["case"] == before
+    assert merge(tab) == "accepted"
+
+
+def test_what_went_wrong_is_said_without_a_trace():
+    assert words(MemoryError()) == OUT_OF_MEMORY
+    assert "No space left on device" in words(OSError(28, "No space left on device"))
+    assert "KeyError" in words(KeyError("secret"))
+    assert "secret" not in words(KeyError("secret"))
+
+
+def test_a_line_of_the_log_is_one_line_that_programs_read():
+    record = logging.LogRecord("app.server", logging.INFO, __file__, 1, "a tab\ncame", (), None)
+    record.__dict__.update(facts(tab=3))
+    line = Lines().format(record)
+    assert "\n" not in line
+    told = json.loads(line)
+    assert told["what"] == "a tab\ncame"
+    assert told["tab"] == 3
+    assert told["level"] == "info"
+    assert told["when"].endswith("+00:00")
