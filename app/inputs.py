@@ -43,6 +43,7 @@ class Inputs:
     truth        : the known answer of a sample
     bare         : numbers of the maps whose image is there, and nothing that says what it shows
     imageless    : numbers of the maps whose YAML file is there, and the image it names is not
+    unnamed      : a sentence for each YAML file that names another image than the one that was loaded
     """
 
     ref: GridMap | None = None
@@ -52,6 +53,7 @@ class Inputs:
     truth: Truth | None = None
     bare: tuple[int, ...] = ()
     imageless: Mapping[int, str] = field(default_factory=dict)
+    unnamed: tuple[str, ...] = ()
 
     @property
     def encounters(self) -> tuple[Encounter, ...]:
@@ -92,7 +94,7 @@ class Inputs:
 
     def doubt(self) -> str:
         """What is odd about the inputs, in sentences; empty where nothing is."""
-        return " ".join(filter(None, self.doubts()))
+        return " ".join(filter(None, (*self.unnamed, *self.doubts())))
 
     def doubts(self) -> tuple[str, ...]:
         """What is odd about each sighting, as a sentence; empty where nothing is."""

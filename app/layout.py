@@ -68,6 +68,16 @@ class Layout:
     mov_corners: FloatArray | None
     apart: Pose2
 
+    def frames(self) -> list[list[float] | None]:
+        """Of each map its anchor and the rectangle around what is known of it, relative to the anchor."""
+        return [
+            None if corners is None else [*anchor.tolist(), *rect_of(corners)]
+            for anchor, corners in (
+                (self.anchor_ref, self.ref_corners),
+                (self.anchor_mov, self.mov_corners),
+            )
+        ]
+
     def placed(self, T_ref_mov: Pose2) -> Pose2:
         """Where ``anchor_mov`` lies under a transform, and map 2's turn; scene."""
         x, y = (T_ref_mov.apply(self.anchor_mov) - self.anchor_ref).tolist()

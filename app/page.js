@@ -100,10 +100,14 @@
   function readings(g, view, camera, colour) { // what a click and the pointer read off the map
     const x = 18, y = view.high - 22;
     if (S.hud.readout) words(g, view, S.hud.readout, x, y - 62, colour, 12);
-    if (pointer && S.hud.anchor) {
-      const x1 = (pointer[0] - view.wide / 2) / view.metre + camera.position.x + S.hud.anchor[0];
-      const y1 = (view.high / 2 - pointer[1]) / view.metre + camera.position.y + S.hud.anchor[1];
-      words(g, view, `x ${x1.toFixed(2)} m   y ${y1.toFixed(2)} m   in map 1`.replaceAll("-", "−"), x, y - 42, colour, 11);
+    if (pointer && S.hud.frames) {
+      const at = [(pointer[0] - view.wide / 2) / view.metre + camera.position.x, (view.high / 2 - pointer[1]) / view.metre + camera.position.y];
+      const dx = at[0] - S.mov.x, dy = at[1] - S.mov.y, c = Math.cos(S.mov.theta), s = Math.sin(S.mov.theta);
+      const places = [at, [c * dx + s * dy, c * dy - s * dx]]; // the same place in both maps
+      const within = (k) => S.hud.frames[k] && places[k][0] >= S.hud.frames[k][2] && places[k][1] >= S.hud.frames[k][3]
+        && places[k][0] <= S.hud.frames[k][4] && places[k][1] <= S.hud.frames[k][5];
+      const k = !within(0) && within(1) ? 1 : 0, frame = S.hud.frames[k];
+      if (frame) words(g, view, `x ${(places[k][0] + frame[0]).toFixed(2)} m   y ${(places[k][1] + frame[1]).toFixed(2)} m   in map ${k + 1}`.replaceAll("-", "−"), x, y - 42, colour, 11);
     }
   }
   function paint(time) {

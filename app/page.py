@@ -12,7 +12,7 @@ import viser
 
 from algorithms.casefiles import Case
 from algorithms.conflicts import Conflicts
-from algorithms.errors import MapMergeError, TooLargeError
+from algorithms.errors import InputFileError, MapMergeError, TooLargeError
 from algorithms.steps import MergeResult, RefineDetail
 from app import words
 from app.budget import Budget
@@ -201,6 +201,7 @@ class Page(Telling, Handling, Learning):
         self.session.stop()
         self._lesson.shut()
         self._hand.end()
+        placing = self._placing.active and desk.outcome is None
         self._placing.end()
         self._tuning.restore(desk.method, desk.config)
         self._run.restore(desk.method, desk.seed)
@@ -221,6 +222,8 @@ class Page(Telling, Handling, Learning):
                 job = self._job(goal=desk.goal)
                 if job is not None:
                     self.session.request(job)
+        if placing and desk.goal is None:  # who takes a step back while placing goes on placing
+            self._placing.begin()
 
     def _show_inputs(self, inputs: Inputs) -> bool:
         if self._gone:
@@ -256,6 +259,7 @@ class Page(Telling, Handling, Learning):
         self._tuning.resolutions(*(grid.resolution for grid in grids))
         self._run.merge.disabled = not inputs.complete
         self._export.offer(None)
+        self._files.placed(bool(inputs.observations))
         doubt = inputs.doubt()
         self._stage.hud(
             case=inputs.name,
@@ -263,7 +267,7 @@ class Page(Telling, Handling, Learning):
             mood="refused" if doubt else "idle",
             progress=None,
             readout="",
-            anchor=layout.anchor_ref.tolist(),
+            frames=layout.frames(),
             measure=bool(grids),
             legend=legend(self._palette, MAP, self._story),
         )
@@ -392,9 +396,12 @@ class Page(Telling, Handling, Learning):
     def _report(self, error: MapMergeError) -> None:
         """Tell the person what is wrong with an input, in this tab."""
         title = "Too large" if isinstance(error, TooLargeError) else "This cannot be used"
+        said = str(error)
+        if not isinstance(error, InputFileError):  # that begins with a file's name
+            said = said[:1].upper() + said[1:]
         with self.session.drawing:
-            self._notify(title, str(error), "orange")
-            self._stage.hud(state=str(error), mood="failed", progress=None)
+            self._notify(title, said, "orange")
+            self._stage.hud(state=said, mood="failed", progress=None)
             self._stage.flush()
 
     def _notify(self, title: str, text: str, colour: Literal["orange", "red"]) -> None:

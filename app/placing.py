@@ -105,6 +105,11 @@ class Placing:
                 self._host.placing_ends()
                 return
             self._host.placing_asked()
+            self.begin()
+
+    def begin(self) -> None:
+        """Offer the robots of the inputs, or none yet, to be placed."""
+        with self._turn:
             inputs = self._host.inputs
             if inputs.ref is None or inputs.mov is None:
                 return

@@ -95,6 +95,8 @@ def warm_up() -> None:
         merge(room, room, Observation(Pose2(2.0, 2.0), 3.0, 2.0, 1.0, 0.0))
     except MapMergeError:
         log.debug("warming up ended early", exc_info=True)
+    except Exception:  # nobody asked for it: who merges is told then
+        log.warning("warming up failed", exc_info=True)
 
 
 def _taken(port: int) -> str:

@@ -47,7 +47,7 @@ class Stage(ABC):
             self._pending.setdefault("layers", {})[name] = items or None
 
     def hud(self, **words: Any) -> None:
-        """Change words above the map: case, state, mood, progress, legend, anchor."""
+        """Change words above the map: case, state, mood, progress, legend, frames."""
         with self._lock:
             changed = {key: value for key, value in words.items() if self._hud.get(key, self) != value}
             self._hud.update(changed)

@@ -27,7 +27,9 @@ def server():
 
 @pytest.fixture
 def channel(server):
-    channel = Channel(server.gui, SimpleNamespace(listen=lambda uuid: None, hud=lambda **said: None, flush=lambda: None))
+    channel = Channel(
+        server.gui, SimpleNamespace(listen=lambda uuid: None, hud=lambda **said: None, flush=lambda: None)
+    )
     yield channel
     channel.close()
 

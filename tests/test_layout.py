@@ -63,3 +63,15 @@ def test_where_a_transform_puts_map_2_gives_the_transform_back(x, y, theta):
     at = Layout(np.array([3.0, -2.0]), np.array([-7.0, 11.0]), None, None, Pose2())
     T = at.transform(at.placed(Pose2(x, y, theta)))
     assert T.array() == pytest.approx([x, y, theta], abs=1e-9)
+
+
+@given(st.floats(-9, 9), st.floats(-9, 9))
+def test_the_frames_that_the_page_is_told_hold_what_is_known_of_each_map(x, y):
+    second = grid(30, 60, Pose2(x, y, 0.4))
+    layout = lay_out(grid(50, 50), second, None)
+    ref, mov = layout.frames()
+    assert ref[:2] == layout.anchor_ref.tolist()
+    anchor, low, high = np.array(mov[:2]), np.array(mov[2:4]), np.array(mov[4:])
+    assert (second.corners() - anchor >= low - 1e-9).all()
+    assert (second.corners() - anchor <= high + 1e-9).all()
+    assert lay_out(None, second, None).frames()[0] is None

@@ -72,13 +72,43 @@ def test_files_that_arrive_together_are_taken_one_after_the_other(server, tmp_pa
         here.release()
 
     panel = FilesPanel(server.gui, load, reports.append, "", lambda name, content: None)
-    lacking = b"image: mine.pgm\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
+    text = (
+        b"image: mine.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
+        b"occupied_thresh: 0.65\nfree_thresh: 0.2\n"
+    )
     files = [
-        ("yaml1", viser.UploadedFile("mine.yaml", lacking)),
+        ("yaml1", viser.UploadedFile("mine.yaml", text)),
         ("image1", viser.UploadedFile("mine.pgm", b"P5\n2 2\n255\n\0\1\2\3")),
     ]
     with ThreadPoolExecutor(2) as pool:
         list(pool.map(lambda file: panel._take_upload(*file), files))
     assert len(loaded) == 2
-    assert len(reports) == 1
+    assert loaded[-1].ref is not None
+    assert reports == []
+
+
+def test_a_file_that_cannot_be_used_is_told_and_what_is_loaded_stays(server):
+    loaded, reports = [], []
+    panel = FilesPanel(server.gui, loaded.append, reports.append, "", lambda name, content: None)
+    panel._take_upload("image1", viser.UploadedFile("mine.pgm", b"P5\n2 2\n255\n\0\1\2\3"))
+    assert len(loaded) == 1
+    panel._take_upload("yaml1", viser.UploadedFile("mine.yaml", b"image: mine.pgm\n"))
+    assert len(loaded) == 1
     assert "mine.yaml" in str(reports[0])
+    assert set(panel.files.uploads) == {"image1"}
+    assert "cannot be used" in panel._status.content
+    panel._take_upload("observation", viser.UploadedFile("o.yaml", b"[]"))
+    assert "mine.pgm" in panel._status.content
+
+
+def test_a_yaml_file_that_names_another_image_is_taken_with_a_doubt(server):
+    loaded = []
+    panel = FilesPanel(server.gui, loaded.append, loaded.append, "", lambda name, content: None)
+    text = (
+        b"image: other.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
+        b"occupied_thresh: 0.65\nfree_thresh: 0.2\n"
+    )
+    panel._take_upload("yaml2", viser.UploadedFile("mine.yaml", text))
+    panel._take_upload("image2", viser.UploadedFile("mine.pgm", b"P5\n2 2\n255\n\0\1\2\3"))
+    assert loaded[-1].mov is not None
+    assert "mine.yaml names the image other.pgm; loaded is mine.pgm." in loaded[-1].doubt()

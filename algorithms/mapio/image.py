@@ -138,5 +138,5 @@ def _check_header(source: str, width: int, height: int, bits: int) -> None:
     if width <= 0 or height <= 0:
         raise InputFileError(source, f"has {width} x {height} pixels", "give an image with pixels")
     if bits > 8:
-        raise InputFileError(source, f"has {bits} bits per pixel and colour", CONVERT)
+        raise InputFileError(source, f"has {bits} bits for each grey or colour of a pixel", CONVERT)
     check_size(width, height, source)

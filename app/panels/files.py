@@ -66,13 +66,19 @@ def inputs_from(uploads: dict[str, Upload], known: Known | None = None, check: C
     known = {} if known is None else known
     now: Known = {}
     imageless: dict[int, str] = {}
+    unnamed: list[str] = []
 
     def grid(number: int):  # type: ignore[no-untyped-def]
         text, image = uploads.get(f"yaml{number}"), uploads.get(f"image{number}")
+        named = _short(parse_meta(text.name, text.content).image) if text is not None else ""
         if text is not None and image is None:  # what is wrong with it is told at once
-            imageless[number] = _short(parse_meta(text.name, text.content).image)
+            imageless[number] = named
         if text is None or image is None:
             return None
+        if named != image.name and not text.by_form:
+            unnamed.append(
+                f"{text.name} names the image {named}; loaded is {image.name}. Do they belong together?"
+            )
         found = known.get((text, image))
         if found is None:
             found = map_from_bytes(text.name, text.content, image.name, Watched(image.content, check))
@@ -81,13 +87,15 @@ def inputs_from(uploads: dict[str, Upload], known: Known | None = None, check: C
 
     seen = uploads.get("observation")
     bare = tuple(n for n in MAPS if f"image{n}" in uploads and f"yaml{n}" not in uploads)
+    ref, mov = grid(1), grid(2)
     inputs = Inputs(
-        ref=grid(1),
-        mov=grid(2),
+        ref=ref,
+        mov=mov,
         observations=observations_from_bytes(seen.name, seen.content) if seen else (),
         name="your files" if uploads else "",
         bare=bare,
         imageless=imageless,
+        unnamed=tuple(unnamed),
     )
     known.clear()  # of what is not there any more
     known.update(now)
@@ -113,6 +121,7 @@ class FilesPanel:
         self._load, self._report, self._errand = load, report, errand
         self._uploads: dict[str, Upload] = {}
         self._known: Known = {}
+        self._placed = False
         # viser calls back from a thread of its own for each file: two that were dropped together must
         # not be read, and shown, across each other
         self._turn = turn or RLock()
@@ -136,7 +145,8 @@ class FilesPanel:
                         number = int(key[-1])
                         use = partial(self._take, f"yaml{number}")
                         self._forms[number] = ImageForm(gui, number, self._turn, use, save)
-                gui.add_button("Forget uploads", color=QUIET).on_click(lambda _: self._forget())
+                self._forget_them = gui.add_button("Forget uploads", color=QUIET, visible=False)
+                self._forget_them.on_click(lambda _: self._forget())
         self._taken = chosen or NONE
 
     @property
@@ -149,10 +159,16 @@ class FilesPanel:
         with self._turn:
             self._uploads = dict(files.uploads)
             self._offer_forms()
-            self._status.content = self._table()
+            self._tell()
             self._taken = files.sample or NONE
             if self._sample.value != self._taken:
                 self._sample.value = self._taken
+
+    def placed(self, yes: bool) -> None:
+        """Whether there is an observation, wherever it came from."""
+        if self._placed != yes:
+            self._placed = yes
+            self._tell()
 
     def _take_sample(self) -> None:
         with self._turn:
@@ -160,15 +176,16 @@ class FilesPanel:
             folder = paths.samples().get(name)
             if folder is None or name == self._taken:
                 return
-            self._taken = name
             try:
                 case = read_case(folder)
             except MapMergeError as error:
+                self._sample.value = self._taken
                 self._report(error)
                 return
+            self._taken = name
             self._uploads.clear()
             self._offer_forms()
-            self._status.content = self._table()
+            self._tell()
             self._load(Inputs.of(case))
 
     def _take_upload(self, key: str, file: viser.UploadedFile) -> None:
@@ -188,9 +205,9 @@ class FilesPanel:
                 self._offer_forms()
                 return
             except MapMergeError as error:
-                self._uploads = before
+                self._uploads = before  # and what is on the page stays there
                 self._offer_forms()
-                self._show(inputs_from(self._uploads, self._known), bad=key)
+                self._tell(key)
                 self._report(error)
                 return
             self._show(inputs)
@@ -215,13 +232,19 @@ class FilesPanel:
             self._offer_forms()
             self._show(Inputs())
 
-    def _show(self, inputs: Inputs, bad: str = "") -> None:
+    def _show(self, inputs: Inputs) -> None:
         """What was on the page gives way to the uploads: nobody merges other maps than they think."""
-        self._status.content = self._table(bad)
+        self._tell()
         self._taken = NONE
         if self._sample.value != NONE:
             self._sample.value = NONE
         self._load(inputs)
+
+    def _tell(self, bad: str = "") -> None:
+        """Show which files are there; bad: the one that cannot be used."""
+        self._status.content = self._table(bad)
+        if self._forget_them.visible != bool(self._uploads):
+            self._forget_them.visible = bool(self._uploads)
 
     def _table(self, bad: str = "") -> str:
         rows = []
@@ -230,6 +253,8 @@ class FilesPanel:
             sign = "✗" if key == bad else "✓" if upload else "·"
             colour = "#D55E00" if key == bad else "#009E73" if upload else "#9CA3AF"
             name = "missing" if upload is None else escape(upload.name)
+            if key == "observation" and upload is None and self._placed and self._uploads:
+                sign, colour, name = "✓", "#009E73", "placed by hand"
             if upload is not None and upload.by_form:
                 name = "filled in below"
             if key == bad:

@@ -278,7 +278,11 @@ class MapView:
         """What both maps know of a place in the scene: coordinates, occupancy, level."""
         point = place + self.layout.anchor_ref
         there = self._mov_at.inverse().apply(place) + self.layout.anchor_mov
-        parts = [f"x {point[0]:.2f} m, y {point[1]:.2f} m"]
+        ref, mov = self._inputs.ref, self._inputs.mov
+        frame, at = 1, point
+        if mov is not None and mov.contains(there) and not (ref is not None and ref.contains(point)):
+            frame, at = 2, there
+        parts = [f"x {at[0]:.2f} m, y {at[1]:.2f} m in map {frame}"]
         augmented = story.get(AugmentDetail)
         for number, grid, at in ((1, self._inputs.ref, point), (2, self._inputs.mov, there)):
             if grid is None:
