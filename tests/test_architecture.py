@@ -96,6 +96,11 @@ def test_what_is_tested_without_a_browser_loads_no_server(module):
     assert "viser" not in loaded_by(f"app.{module}")
 
 
+def test_only_the_figures_know_a_plotting_library_and_only_the_cluster_knows_dask():
+    assert {module.rsplit(".", 1)[0] for module in offenders("app", PLOTTERS)} == {"app.figures"}
+    assert set(offenders("app", {"dask", "distributed"})) == {"app.cluster"}
+
+
 def test_no_two_scripts_of_the_page_style_the_same_class():
     """All of their styles are in force at once: a name that two of them use is drawn by both."""
     styled: dict[str, set[str]] = {}

@@ -35,7 +35,7 @@ themselves they would hand out every wrong one, so it is the column "wrong" that
 Left in --out: methods.csv (that table), scores.csv (a row per case and method), compare.json (both, with
 settings and machine), bars and, per case, maps: the merged maps side by side, .png and .svg.
 
-Exit status: 0 done, 1 some case could not be read, 2 bad input, 130 interrupted."""
+Exit status: 0 done, 1 no method could be run on some case, 2 bad input, 130 interrupted."""
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
@@ -60,7 +60,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
-    """Run all, print the table, leave the files; 1 where a case could not be read."""
+    """Run all, print the table, leave the files; 1 where no method could be run on a case."""
     from algorithms.errors import OutputError
     from app.contest import contest, defaults_of, pairs_in
     from app.contest_files import NOTES, remarks, table_rows

@@ -118,7 +118,7 @@ def _line(
     axes: Axes, at: list[float], spreads: Sequence[Spread | None], hue: str, marker: str, label: str = "",
     width: float = 1.8, middle: str = "mean",
 ) -> None:  # fmt: skip
-    """A curve with a band: mean and standard deviation, or median and extremes."""
+    """A curve with a band: mean and standard deviation within the extremes, or median and extremes."""
     pairs = [(x, spread) for x, spread in zip(at, spreads, strict=True) if spread is not None]
     x = [place for place, _ in pairs]
     if middle == "median":
@@ -126,8 +126,8 @@ def _line(
         low, high = [spread.low for _, spread in pairs], [spread.high for _, spread in pairs]
     else:
         curve = [spread.mean for _, spread in pairs]
-        low = [spread.mean - spread.deviation for _, spread in pairs]
-        high = [spread.mean + spread.deviation for _, spread in pairs]
+        low = [max(spread.low, spread.mean - spread.deviation) for _, spread in pairs]
+        high = [min(spread.high, spread.mean + spread.deviation) for _, spread in pairs]
     axes.fill_between(x, low, high, color=hue, alpha=0.18, linewidth=0)
     axes.plot(x, curve, color=hue, marker=marker, markersize=3 + width, linewidth=width, label=label or None)
 
