@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from threading import RLock
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +15,9 @@ from algorithms.errors import InputFileError
 from algorithms.mapio import map_from_bytes
 from app.errand import Errand, Left, Watched
 from app.panels.files import FilesPanel, Upload
+from app.panels.replay import ReplayButton
 from app.stage import Stage
+from app.takeaway import TAKEAWAY
 
 YAML = b"image: a\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
 BEFORE = {"state": "Ready. Press Merge.", "mood": "idle", "progress": None}
@@ -127,6 +130,30 @@ def test_a_small_file_is_read_without_a_word_and_a_small_png_of_many_pixels_is_n
     assert len(packed.getvalue()) < 100_000
     panel._take("image1", Upload("blank.png", packed.getvalue()))
     assert person.could_stop == [True, False]
+
+
+def test_a_replay_whose_recording_is_stopped_is_not_sent_and_can_be_made_after_all(
+    server, person, monkeypatch
+):
+    sent = []
+    client = SimpleNamespace(gui=server.gui, send_file_download=lambda name, *_, **__: sent.append(name))
+    button = ReplayButton(client, person.errand)
+
+    def make(check):
+        check(0.5)
+        return b"<html>"
+
+    monkeypatch.setattr(TAKEAWAY, "_sent", [])
+    button.offer("a pair", make)
+    person.impatient = True
+    button._save()
+    assert sent == []
+    assert person.said == BEFORE
+    person.impatient = False
+    button._save()
+    assert sent == ["replay_a_pair.html"]
+    assert person.said == BEFORE
+    assert person.could_stop == [True, False] * 2
 
 
 def test_stop_has_nothing_to_stop_before_and_after(person):
