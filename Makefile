@@ -8,13 +8,14 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help run test bench fuzz samples screenshots equations clean
+.PHONY: help run test bench fuzz soak samples screenshots equations clean
 
 help:
 	@echo "make run          open the tool on a sample, in the browser (ARGS=--no-browser: only serve it)"
 	@echo "make test         check style and types, run every test, browser tests included"
 	@echo "make bench        time the stages of a merge"
 	@echo "make fuzz         feed every reader of files with damaged ones (ARGS='--seconds 300')"
+	@echo "make soak         many tabs for ten minutes: memory, answers, leaks (ARGS='--minutes 2')"
 	@echo "make samples      simulate the maps in sample_maps again"
 	@echo "make screenshots  take the pictures of the README and the guides again"
 	@echo "make equations    typeset the equations in static/equations again"
@@ -38,6 +39,9 @@ bench: $(VENV)/ready-to-test
 fuzz: $(VENV)/ready-to-test
 	@$(PIP) install -e '.[fuzz]'
 	@$(BIN)/python tests/fuzz.py $(ARGS)
+
+soak: $(VENV)/ready-to-test
+	@$(BIN)/python tests/soak.py $(ARGS)
 
 samples: $(VENV)/ready
 	$(BIN)/mapmeld samples sample_maps

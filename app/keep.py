@@ -22,10 +22,11 @@ MOST_KEPT = 8  # tabs that are away; the one that is away longest is forgotten f
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """What a tab leaves behind: where it has been, and how it was looked at."""
+    """What a tab leaves behind: where it has been, how it was looked at, and how fast."""
 
     history: History
     dark: bool = False
+    speed: str = ""
 
 
 Leave = Callable[[], "Kept | None"]

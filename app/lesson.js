@@ -1,5 +1,5 @@
 // The lesson and the museum: how their texts, equations and pictures look in the dock, and that each step
-// begins at its top.
+// begins at its top, with Back and Next only where they lead anywhere.
 (() => {
   if (document.getElementById("mapmeld-lesson")) return;
   const style = document.createElement("style");
@@ -32,6 +32,11 @@
     if (now === seen) return;
     seen = now;
     const view = step && step.closest(".mantine-ScrollArea-viewport");
-    if (view) view.scrollTop = 0;
+    if (!view) return;
+    view.scrollTop = 0;
+    for (const button of view.querySelectorAll("button")) { // viser's rows of buttons have no such switch
+      if (button.textContent === "◀ Back") button.disabled = now === "1";
+      if (button.textContent === "Next ▶") button.disabled = now === step.dataset.last;
+    }
   }, 100);
 })();

@@ -103,7 +103,8 @@ class Page(Telling, Handling, Learning):
             if kept is None:
                 self._load(initial)
             else:
-                self._run.dark = kept.dark
+                self._run.dark, self._run.speed = kept.dark, kept.speed
+                self._press()
                 self._timeline.resume(kept.history)
 
     def close(self) -> None:
@@ -118,7 +119,7 @@ class Page(Telling, Handling, Learning):
     def _leave(self) -> Kept | None:
         self._end()
         history = self._timeline.history
-        return None if history is None else Kept(history, self._run.dark)
+        return None if history is None else Kept(history, self._run.dark, self._run.speed)
 
     def _end(self) -> None:
         self._budget.release(self)

@@ -175,7 +175,7 @@ def _settings(result: MergeResult, config: Any, report: Mapping[str, Any]) -> li
     times = [
         (STAGES.get(stage, stage), f"{1000 * seconds:.0f} ms") for stage, seconds in result.timings_s.items()
     ]
-    parts.append(_table(times, "two", ("time per stage", "")))
+    parts.append(_table(times, "", ("time per stage", "")))
     return parts
 
 

@@ -12,7 +12,7 @@ sys.path.append(str(ROOT / "tests" / "browser"))
 
 from screenshots import SHOWN  # noqa: E402
 
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "SECURITY.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
 def test_the_examples_of_the_readme_do_what_they_say(monkeypatch):
@@ -28,9 +28,7 @@ def linked(page: Path) -> set[Path]:
     return {(page.parent / name).resolve() for name in targets if not name.startswith("http")}
 
 
-@pytest.mark.parametrize(
-    "page", [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))], ids=lambda p: p.name
-)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_everything_that_a_page_links_to_is_there(page):
     assert linked(page)
     assert [target for target in linked(page) if not target.is_file()] == []

@@ -99,9 +99,10 @@ class LessonPanel:
         if self._step.value != self._titles[index]:
             self._step.value = self._titles[index]
         dots = "".join(f"<i{' data-on' if k <= index else ''}></i>" for k in range(len(self._titles)))
-        where = f"step {index + 1} of {len(self._titles)}"
+        step, last = index + 1, len(self._titles)
+        where = f"step {step} of {last}"
         self._title.content = (
-            f'<div class="mm-lesson" data-step="{index + 1}"><h3>{escape(title)}</h3>'
+            f'<div class="mm-lesson" data-step="{step}" data-last="{last}"><h3>{escape(title)}</h3>'
             f'<span class="mm-dots" role="img" aria-label="{where}" title="{where}">{dots}</span></div>'
         )
         self._body.content = body

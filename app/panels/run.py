@@ -85,6 +85,16 @@ class RunPanel:
         return PACES[self._speed.value]
 
     @property
+    def speed(self) -> str:
+        """Name of the pace."""
+        return str(self._speed.value)
+
+    @speed.setter
+    def speed(self, name: str) -> None:
+        if name in PACES and self._speed.value != name:
+            self._speed.value = name
+
+    @property
     def seed(self) -> int:
         """Where the luck of the swarm comes from."""
         return int(self._seed.value)

@@ -1,0 +1,164 @@
+"""Load a server for some minutes and print what it took: ``make soak``. Nothing here is a test that fails
+by the clock; it ends with 1 where a merge came out otherwise, something leaked, or a log holds a trace.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from statistics import median
+from time import monotonic, sleep
+
+from wire import WireTab, until
+
+ROOT = Path(__file__).parent.parent
+MOST_LEAKED = 60.0  # MB between the fifth wave and the last: what an allocator keeps back
+
+
+class Served:
+    """``mapmeld serve`` in a process of its own, and what the system says of it."""
+
+    def __init__(self, log: Path) -> None:
+        self._log = log.open("w+")
+        command = [sys.executable, "-m", "app", "serve", "--no-browser", "--port", "0", "--verbose"]
+        self.process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=self._log, text=True, cwd=ROOT
+        )
+        assert self.process.stdout is not None
+        said = next(line for line in self.process.stdout if line.startswith("mapmeld is at "))
+        self.port = int(re.findall(r":(\d+)/", said)[0])
+
+    def status(self, name: str) -> float:
+        """A number of /proc/PID/status."""
+        text = Path(f"/proc/{self.process.pid}/status").read_text()
+        return float(re.findall(rf"^{name}:\s+(\d+)", text, flags=re.MULTILINE)[0])
+
+    @property
+    def megabytes(self) -> float:
+        return self.status("VmRSS") / 1024
+
+    @property
+    def open_files(self) -> int:
+        return len(list(Path(f"/proc/{self.process.pid}/fd").iterdir()))
+
+    def end(self) -> tuple[int, str]:
+        """End it as a system does; exit status and log."""
+        self.process.terminate()
+        status = self.process.wait(60)
+        self._log.seek(0)
+        return status, self._log.read()
+
+
+@contextmanager
+def tabs(port: int, count: int) -> Iterator[list[WireTab]]:
+    opened: list[WireTab] = []
+    try:
+        for _ in range(count):
+            opened.append(WireTab(port))
+        yield opened
+    finally:
+        for tab in opened:
+            tab.close()
+
+
+def merge(tab: WireTab) -> tuple[str, float]:
+    """What came of it, and the seconds it took."""
+    tab.words["mood"] = ""
+    began = monotonic()
+    tab.press("Merge")
+    until(lambda: tab.mood in ("accepted", "refused", "failed"), "a merge")
+    return tab.state, monotonic() - began
+
+
+def answer(tab: WireTab, value: float) -> float:
+    """Seconds until a slider is answered: the server has set it, and says what it is at."""
+    tab.words["state"] = ""
+    began = monotonic()
+    tab.write("I_aug intensity", value, "Slider")
+    until(lambda: tab.state, "an answer")
+    return monotonic() - began
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--minutes", type=float, default=10.0, help="about how long (default: 10)")
+    parser.add_argument("--tabs", type=int, default=50, help="tabs of a wave (default: 50)")
+    parser.add_argument("--log", type=Path, default=Path("out/soak.log"), help="the server's log")
+    args = parser.parse_args()
+    args.log.parent.mkdir(parents=True, exist_ok=True)
+    server, wrong = Served(args.log), []
+    end = monotonic() + 60 * args.minutes
+    print(f"server at rest: {server.megabytes:.0f} MB, {server.open_files} files", flush=True)
+
+    with tabs(server.port, 1) as (tab,):
+        tab.choose("Instant")
+        sleep(5)  # kernels are compiled at the start
+        right, alone = merge(tab)
+        print(f"a merge alone: {alone:.2f} s; one tab: {server.megabytes:.0f} MB", flush=True)
+
+    with tabs(server.port, 11) as (idle, *busy):
+        for tab in busy:
+            tab.choose("Instant")
+        took: list[float] = []
+
+        def work(tab: WireTab) -> None:
+            said, seconds = merge(tab)
+            took.append(seconds)
+            if said != right:
+                wrong.append(f"a merge said: {said}")
+
+        threads = [threading.Thread(target=work, args=(tab,)) for tab in busy]
+        for thread in threads:
+            thread.start()
+        answers, value = [], 200.0
+        while any(thread.is_alive() for thread in threads):
+            value = 1000.0 - value
+            answers.append(answer(idle, value))
+        for thread in threads:
+            thread.join()
+        print(
+            f"10 tabs merging at once: {min(took):.1f} to {max(took):.1f} s each; "
+            f"a slider of an 11th is answered in {median(answers):.2f} s, at worst {max(answers):.2f} s "
+            f"({len(answers)} times); {server.megabytes:.0f} MB",
+            flush=True,
+        )
+
+    sizes: list[float] = []
+    waves = 0
+    while waves < 20 or (monotonic() < end and waves < 1000):
+        if monotonic() > end:
+            break
+        with tabs(server.port, args.tabs) as opened:
+            merge(opened[waves % len(opened)])
+            at = server.megabytes
+        until(lambda: server.open_files < 40, "the connections to end")
+        sleep(0.5)
+        waves += 1
+        sizes.append(server.megabytes)
+        threads_now = int(server.status("Threads"))
+        if waves % 5 == 0 or waves == 1:
+            print(
+                f"wave {waves}: {args.tabs} tabs open {at:.0f} MB, closed {sizes[-1]:.0f} MB, "
+                f"{threads_now} threads, {server.open_files} files",
+                flush=True,
+            )
+    if len(sizes) > 5 and sizes[-1] - sizes[4] > MOST_LEAKED:
+        wrong.append(f"{sizes[-1] - sizes[4]:.0f} MB more than after the fifth wave")
+    status, log = server.end()
+    traces = log.count("Traceback")
+    if status:
+        wrong.append(f"the server ended with {status}")
+    if traces:
+        wrong.append(f"{traces} traces in {args.log}")
+    print("\n".join(wrong) or f"{waves} waves, nothing leaked, no trace in the log")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
