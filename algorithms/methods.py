@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from algorithms import bilateral, pipeline
 from algorithms.augment import AugmentConfig
-from algorithms.baselines import features, smm_only
+from algorithms.baselines import features, mse, phase, smm_only
 from algorithms.baselines.detectors import (
     DetectorConfig,
     HarrisConfig,
@@ -96,9 +96,13 @@ METHODS: dict[str, Method] = {
         "paper",
     ),
     "smm-only": Method(smm_only.run, "Spectra alone (Carpin)", smm_only.SmmConfig(), "rivals", False),
+    "mse": Method(mse.run, "Least squared error (MSE)", mse.MseConfig(), "rivals", False),
     "harris": _features("Harris corners", HarrisConfig(), reach=1.0),
     "shi-tomasi": _features("Shi–Tomasi corners", ShiTomasiConfig(), reach=1.0),
     "surf": _features("SURF features", SurfConfig(), reach=0.4),
+    "phase-correlation": Method(
+        phase.run, "Phase correlation", phase.PhaseCorrelationConfig(), "rivals", False
+    ),
     "sift": _features("SIFT features", SiftConfig(), reach=0.4),
     "orb": _features("ORB features", OrbConfig(), reach=1.0),
 }

@@ -7,6 +7,8 @@ from math import isfinite
 from typing import Any
 
 from algorithms.baselines.features import FeatureConfig
+from algorithms.baselines.mse import MseConfig
+from algorithms.baselines.phase import PhaseCorrelationConfig
 from algorithms.baselines.smm_only import SmmConfig
 
 
@@ -39,8 +41,11 @@ GAMMA = Measure("Γ", "Γ, eq. (17)", "")
 AGREEMENT = Measure("agreement", "agreement (m of wall)", "m")
 
 
+_SIMILARITY = Measure("similarity", "similarity (1 − MSE)", "")
 _OWN = {
     FeatureConfig: Measure("agreeing matches", "matches that agree", ""),
+    MseConfig: _SIMILARITY,
+    PhaseCorrelationConfig: _SIMILARITY,
     SmmConfig: Measure("acceptance index", "acceptance index of the search", ""),
 }
 

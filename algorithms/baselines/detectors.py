@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from skimage.feature import corner_orientations
 
-from algorithms.baselines.pictures import Picture
+from algorithms.baselines.pictures import Picture, Turn
 from algorithms.bounds import Bounds, check_bounds
 from algorithms.errors import SettingError
 from algorithms.pose import FloatArray
@@ -106,13 +106,13 @@ def describe(picture: Picture, config: DetectorConfig) -> Described:
 
 def _sift(picture: Picture, config: SiftConfig) -> Described:
     sift = cv2.SIFT.create(config.most, contrastThreshold=config.contrast)
-    found, looks = sift.detectAndCompute(picture.pixels, None)
+    found, looks = sift.detectAndCompute(picture.grey, None)
     return _places(found), _root(looks)
 
 
 def _orb(picture: Picture, config: OrbConfig) -> Described:
     orb = cv2.ORB.create(config.most, nlevels=6, fastThreshold=config.contrast)
-    found, looks = orb.detectAndCompute(picture.pixels, None)
+    found, looks = orb.detectAndCompute(picture.grey, None)
     if looks is None:
         return np.empty((0, 2)), np.empty((0, 256), dtype=np.bool_)
     return _places(found), np.unpackbits(np.asarray(looks, dtype=np.uint8), axis=1).astype(np.bool_)
@@ -121,7 +121,7 @@ def _orb(picture: Picture, config: OrbConfig) -> Described:
 def _corners(picture: Picture, config: ShiTomasiConfig | HarrisConfig) -> Described:
     cell = picture.cell
     found = cv2.goodFeaturesToTrack(
-        picture.pixels,
+        picture.grey,
         config.most,
         WEAKEST,
         config.spacing / cell,
@@ -135,7 +135,7 @@ def _corners(picture: Picture, config: ShiTomasiConfig | HarrisConfig) -> Descri
         cv2.KeyPoint(x, y, size, angle)
         for (x, y), angle in zip(at.tolist(), _orientations(picture, at, config.radius), strict=True)
     ]
-    described, looks = cv2.SIFT.create().compute(picture.pixels, points)
+    described, looks = cv2.SIFT.create().compute(picture.grey, points)
     return _places(described), _root(looks)
 
 
@@ -146,21 +146,17 @@ def _surf(picture: Picture, config: SurfConfig) -> Described:
     is turned by 90° half of the features are not known again. Its detector and its descriptor are sound.
     """
     surf = _mahotas_surf()
-    points = surf.interest_points(picture.pixels.astype(np.float64), max_points=config.most)
+    points = surf.interest_points(picture.grey.astype(np.float64), max_points=config.most)
     at = np.asarray(points[:, [1, 0]], dtype=np.float64).reshape(-1, 2)
-    height, width = picture.pixels.shape
-    side = int(np.hypot(height, width)) + 2
     steps = np.rint(np.array(_orientations(picture, at, config.radius)) / 360 * UPRIGHT_STEPS).astype(int)
     steps %= UPRIGHT_STEPS
     places, looks = [np.empty((0, 2))], [np.empty((0, 64))]
     for step in np.unique(steps).tolist():
-        turn = cv2.getRotationMatrix2D(((width - 1) / 2, (height - 1) / 2), 360 * step / UPRIGHT_STEPS, 1)
-        turn[:, 2] += (side - width) / 2, (side - height) / 2
-        upright = cv2.warpAffine(picture.pixels, turn, (side, side), borderValue=255)
+        upright = Turn.of(picture.grey.shape, -2 * np.pi * step / UPRIGHT_STEPS)
         mine = points[steps == step]
-        mine[:, [1, 0]] = at[steps == step] @ turn[:, :2].T + turn[:, 2]
-        told = surf.descriptors(upright.astype(np.float64), mine)
-        places.append((told[:, [1, 0]] - turn[:, 2]) @ turn[:, :2])
+        mine[:, [1, 0]] = upright.there(at[steps == step])
+        told = surf.descriptors(upright(picture.grey, 255).astype(np.float64), mine)
+        places.append(upright.back(told[:, [1, 0]]))
         looks.append(told[:, 6:])
     return np.concatenate(places), np.concatenate(looks)
 
@@ -194,7 +190,7 @@ def _orientations(picture: Picture, at: FloatArray, radius: float) -> list[float
     rows, cols = np.indices((2 * reach + 1, 2 * reach + 1)) - reach
     disc = (rows**2 + cols**2 <= reach**2).astype(np.uint8)
     where = np.rint(at[:, ::-1]).astype(np.intp)
-    angles = corner_orientations(picture.pixels, where, disc)
+    angles = corner_orientations(picture.grey, where, disc)
     return [float(angle) % 360 for angle in np.degrees(angles)]
 
 

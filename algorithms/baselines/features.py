@@ -16,7 +16,7 @@ from skimage.transform import EuclideanTransform
 
 from algorithms.baselines.detectors import DetectorConfig, SiftConfig, describe
 from algorithms.baselines.direct import DirectConfig, Found, run_direct
-from algorithms.baselines.pictures import PictureConfig, common_cell, picture
+from algorithms.baselines.pictures import MARGIN, PictureConfig, common_cell, picture
 from algorithms.bounds import Bounds, check_bounds
 from algorithms.chain import Chain, Memo
 from algorithms.errors import NoAnswerError
@@ -90,7 +90,7 @@ def match_features(ref: GridMap, mov: GridMap, config: FeatureConfig) -> Matches
     cell = common_cell(ref, mov, config.picture.pixels)
     places, looks = [], []
     for grid in (ref, mov):
-        drawn = picture(grid, cell, config.picture)
+        drawn = picture(grid, cell, config.picture.reach, MARGIN)
         at, look = describe(drawn, config.detector)
         places.append(drawn.places(at))
         looks.append(look)

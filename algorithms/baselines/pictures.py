@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from functools import cached_property
+from typing import Annotated, Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.bounds import Bounds, check_bounds
-from algorithms.gridmap import UNKNOWN, GridMap
-from algorithms.pose import FloatArray
+from algorithms.gridmap import UNKNOWN, BoolArray, GridMap
+from algorithms.pose import FloatArray, Pose2, rotation
 
-MARGIN = 64  # pixels around what is known, so that what lies at its rim is described as well as the rest
+MARGIN = 64  # pixels around what is known, where its rim is to be described as well as the rest
 
 
 @dataclass(frozen=True)
@@ -33,18 +34,25 @@ class PictureConfig:
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """A map as a picture.
+    """A map as a picture; row 0 is the bottom.
 
-    pixels : (H, W) uint8, row 0 at the bottom; 0 on a wall, 255 from the reach on
-    cell   : metres per pixel
-    low    : (2,) where the corner of pixel (0, 0) lies; metres, in the axes of the grid
-    grid   : the map it was made from
+    far   : (H, W) float32, distance to the next wall over the reach; 0 on a wall, 1 from the reach on
+    known : (H, W) bool, where the map knows anything
+    cell  : metres per pixel
+    low   : (2,) where the corner of pixel (0, 0) lies; metres, in the axes of the grid
+    grid  : the map it was made from
     """
 
-    pixels: NDArray[np.uint8]
+    far: NDArray[np.float32]
+    known: BoolArray
     cell: float
     low: FloatArray
     grid: GridMap
+
+    @cached_property
+    def grey(self) -> NDArray[np.uint8]:
+        """(H, W) the distance in 256 steps; 0 on a wall."""
+        return np.asarray(np.rint(255 * self.far), dtype=np.uint8)
 
     def places(self, at: FloatArray) -> FloatArray:
         """(N, 2) column and row, whole numbers at a pixel's middle, as (N, 2) metres of the map's frame."""
@@ -69,25 +77,71 @@ def common_cell(ref: GridMap, mov: GridMap, pixels: int) -> float:
     return float(max(ref.resolution, mov.resolution, max(sides) / pixels))
 
 
-def drawn(mask: NDArray[np.bool_], resolution: float, cell: float, margin: int) -> NDArray[np.bool_]:
+def drawn(mask: BoolArray, resolution: float, cell: float, margin: int) -> BoolArray:
     """A mask of cells on pixels that are as coarse or coarser: set where a set cell's centre falls."""
     height, width = (int(np.ceil(side * resolution / cell - 1e-6)) for side in mask.shape)
     out = np.zeros((height + 2 * margin, width + 2 * margin), dtype=np.bool_)
-    rows, cols = np.nonzero(mask)
-    scale = resolution / cell
-    out[((rows + 0.5) * scale).astype(np.intp) + margin, ((cols + 0.5) * scale).astype(np.intp) + margin] = (
-        True
-    )
+    rows, cols = (((at + 0.5) * (resolution / cell)).astype(np.intp) + margin for at in np.nonzero(mask))
+    out[rows, cols] = True
     return out
 
 
-def picture(grid: GridMap, cell: float, config: PictureConfig) -> Picture:
-    """The map's distance to the next wall, of what is known and a margin around it."""
+def picture(grid: GridMap, cell: float, reach: float, margin: int = 0) -> Picture:
+    """The map's distance to the next wall, of what is known.
+
+    reach  : up to which distances are told apart; metres
+    margin : pixels more on every side
+    """
     rows, cols = known_cells(grid)
-    walls = drawn(grid.occupied[rows, cols], grid.resolution, cell, MARGIN)
-    far = np.full(walls.shape, config.reach, dtype=np.float32)
+    walls = drawn(grid.occupied[rows, cols], grid.resolution, cell, margin)
+    known = drawn(grid.cells[rows, cols] != UNKNOWN, grid.resolution, cell, margin)
+    far = np.ones(walls.shape, dtype=np.float32)
     if walls.any():
-        far = cv2.distanceTransform((~walls).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE) * cell
-    pixels = np.rint(255 * np.minimum(far / config.reach, 1.0)).astype(np.uint8)
-    low = np.array([cols.start, rows.start]) * grid.resolution - MARGIN * cell
-    return Picture(pixels, cell, low, grid)
+        metres = cell * cv2.distanceTransform((~walls).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        far = np.minimum(metres / reach, 1).astype(np.float32)
+    low = np.array([cols.start, rows.start]) * grid.resolution - margin * cell
+    return Picture(far, known, cell, low, grid)
+
+
+@dataclass(frozen=True, eq=False)
+class Turn:
+    """A picture's frame, turned about its middle, on a square that holds it at every turn.
+
+    angle  : radians, counter-clockwise
+    matrix : (2, 3) takes column and row to those of the square
+    side   : of the square; pixels
+    """
+
+    angle: float
+    matrix: FloatArray
+    side: int
+
+    @staticmethod
+    def of(shape: tuple[int, ...], angle: float) -> Turn:
+        """The turn of a picture of this shape."""
+        height, width = shape
+        side = int(np.hypot(height, width)) + 2
+        turn = rotation(angle)
+        middle = np.array([side - 1, side - 1]) / 2 - turn @ (np.array([width - 1, height - 1]) / 2)
+        return Turn(angle, np.column_stack([turn, middle]), side)
+
+    def __call__(self, pixels: NDArray[Any], outside: float = 0.0) -> NDArray[Any]:
+        """(side, side) the picture turned; ``outside`` where there is none of it."""
+        size = (self.side, self.side)
+        return np.asarray(cv2.warpAffine(pixels, self.matrix, size, borderValue=outside))
+
+    def there(self, at: FloatArray) -> FloatArray:
+        """(N, 2) columns and rows of the picture as those of the square."""
+        return np.asarray(at @ self.matrix[:, :2].T + self.matrix[:, 2], dtype=np.float64)
+
+    def back(self, at: FloatArray) -> FloatArray:
+        """(N, 2) columns and rows of the square as those of the picture."""
+        return np.asarray((at - self.matrix[:, 2]) @ self.matrix[:, :2], dtype=np.float64)
+
+
+def pose_of(ref: Picture, mov: Picture, turn: Turn, shift: FloatArray) -> Pose2:
+    """T_ref_mov that turns mov's picture and then moves it by (2,) columns and rows over ref's."""
+    first = np.full(2, 0.5 * mov.cell) + mov.low
+    there = (turn.matrix[:, 2] + shift + 0.5) * ref.cell + ref.low
+    x, y = (there - rotation(turn.angle) @ first).tolist()
+    return ref.grid.origin @ Pose2(x, y, turn.angle) @ mov.grid.origin.inverse()
