@@ -114,3 +114,14 @@ def test_no_two_scripts_of_the_page_style_the_same_class():
     assert {
         name: scripts for name, scripts in styled.items() if len(scripts) > 1 and name not in shared
     } == {}
+
+
+def test_no_clock_that_can_be_set_decides_anything():
+    """Waits, rates and graces go by the monotonic clock; the time of day stands in the log alone."""
+    asking = {}
+    for package in ("app", "algorithms"):
+        for path in sorted((ROOT / package).rglob("*.py")):
+            found = re.findall(r"\btime\.time\(|\bdatetime\.(?:now|today|utcnow)\(", path.read_text("utf-8"))
+            if found:
+                asking[path.relative_to(ROOT).as_posix()] = found
+    assert asking == {}
