@@ -206,8 +206,8 @@
     [data-theme=dark] .mm-title{color:#9CA3AF} [data-theme=dark] .mm-title b{color:#56B4E9}
     .mm-state{flex:1 0 100%;font-size:15px;font-weight:550;display:flex;gap:8px;align-items:baseline;min-height:20px}
     .mm-state span{display:-webkit-box;-webkit-line-clamp:2;-webkit-box-orient:vertical;overflow:hidden}
-    .mm-tools{display:flex;gap:6px;min-height:22px}
-    .mm-tools>span{display:inline-flex;border:1px solid #CBD5E1;border-radius:6px;overflow:hidden}
+    .mm-tools{display:flex;flex-wrap:wrap;gap:4px 6px;min-height:22px;max-width:100%}
+    .mm-tools>span{display:inline-flex;flex-wrap:wrap;border:1px solid #CBD5E1;border-radius:6px;overflow:hidden}
     .mm-tools button{pointer-events:auto;font:inherit;font-size:11.5px;line-height:20px;padding:0 7px;border:0;background:transparent;color:inherit;cursor:pointer}
     .mm-tools button+button{border-left:1px solid #CBD5E1}
     .mm-tools button:hover{background:rgba(0,114,178,.10)}
@@ -236,7 +236,13 @@
     .mm-legend i.mm-dot{border-radius:50%;width:8px;height:8px}
     .mm-legend i.mm-line{height:0;width:16px;background:none;border-top:2px dashed var(--c)}
     .mm-legend i.mm-scale{width:84px;height:9px;border-radius:2px}
-    .mm-legend i.mm-star,.mm-legend i.mm-diamond{border-radius:1px;transform:rotate(45deg);width:8px;height:8px;outline:1px solid #374151}`;
+    .mm-legend i.mm-star,.mm-legend i.mm-diamond{border-radius:1px;transform:rotate(45deg);width:8px;height:8px;outline:1px solid #374151}
+    #mapmeld-hud{container-type:inline-size}
+    @container (max-width:460px){ /* a small window, or a page that is zoomed */
+      .mm-tools button{padding:0 5px}
+      .mm-state span{-webkit-line-clamp:5}
+      .mm-legend{bottom:54px;max-width:calc(100% - 24px);gap:1px 10px;font-size:11px}
+    }`;
   document.head.append(style);
 
   // --- what the page tells ----------------------------------------------------------------------
