@@ -30,7 +30,7 @@ test: $(VENV)/ready-to-test
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	@chromium="$$($(BIN)/python tests/chromium.py)" && \
-	  echo "pytest, with $$chromium" && CHROMIUM="$$chromium" $(BIN)/python -m pytest $(ARGS)
+	  echo "pytest, with $$chromium" && CHROMIUM="$$chromium" $(BIN)/python -m pytest -n 2 --dist worksteal $(ARGS)
 
 bench: $(VENV)/ready-to-test
 	$(BIN)/python -m pytest -o addopts="" -o python_files="bench_*.py" -o python_functions="bench_*" \
