@@ -13,6 +13,7 @@ from algorithms.pose import Pose2
 from algorithms.steps import MergeResult
 from app.controls import Setting, settings_of, value_at, word_for
 from app.inputs import Files, Inputs
+from app.research.guest import Guest
 from app.session import Goal
 from app.story import Story
 
@@ -26,6 +27,7 @@ class Desk:
     goal    : how far it was asked for; None: nothing was asked for yet
     hand    : where map 2 was put by hand, T_ref_mov; None where a method says it
     outcome : of the run that came to its end with all this; None before
+    guest   : another method's answer that is looked at in its place
     """
 
     inputs: Inputs
@@ -36,6 +38,7 @@ class Desk:
     goal: Goal | None = None
     hand: Pose2 | None = None
     outcome: Story | None = field(default=None, repr=False)
+    guest: Guest | None = None
 
     @property
     def held(self) -> bool:
@@ -94,6 +97,8 @@ def change(before: Desk, after: Desk) -> tuple[str, Hashable]:
         return f"seed {before.seed} → {after.seed}", "seed"
     if before.hand != after.hand:
         return ("map 2 by hand" if after.hand is not None else "not by hand"), "hand"
+    if before.guest is not after.guest:
+        return (f"look at {after.guest.title}" if after.guest is not None else "back to one's own"), None
     return "", None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import replace
 from threading import RLock
 from typing import Any
@@ -63,6 +64,8 @@ class Handling(ABC):
     _merged: bool
     _asked: bool
     _turn: RLock
+    _farewell: Callable[[], bool]  # app/researching.py
+    _research_changes: Callable[[], None]
     _method: Story | None = None  # of the last run whose answer was not made by hand
     _refining: tuple[Scales, Pose2] | None = None  # where map 2 was when its refinement began
 
@@ -127,6 +130,7 @@ class Handling(ABC):
 
     def placing_begins(self, layout: Layout) -> None:
         """The maps are shown side by side, and stay so."""
+        self._farewell()
         self._comparison.clear()
         self._fade()
         if self._run.view != MAP:
@@ -144,6 +148,7 @@ class Handling(ABC):
         self._merged = self._asked = False
         self._plots.clear()
         self._run.merge.disabled = not self._inputs.complete
+        self._research_changes()
         self._timeline.note(self._desk())
 
     def placing_ends(self) -> None:
@@ -195,6 +200,7 @@ class Handling(ABC):
 
     def hand_begins(self) -> None:
         """What was found is out of the way from now on; blink and curtain go along with the hand."""
+        self._farewell()
         self._comparison.offer(None, self._palette)
         if self._run.view != MAP:
             self._run.view = MAP

@@ -70,6 +70,11 @@ class Inputs:
         """Whether there is all that a merge needs."""
         return self.ref is not None and self.mov is not None and bool(self.observations)
 
+    def same_pair(self, other: Inputs) -> bool:
+        """Whether these are the very maps and sightings of others."""
+        mine, theirs = (self.ref, self.mov, self.observations), (other.ref, other.mov, other.observations)
+        return all(a is b for a, b in zip(mine, theirs, strict=True))
+
     def missing(self) -> str:
         """What to load next, as a sentence; empty where nothing is missing."""
         if self.bare:

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Lock, Timer
 from time import monotonic
+from typing import Any
 
 from app.history import History
 
@@ -27,6 +28,7 @@ class Kept:
     history: History
     dark: bool = False
     speed: str = ""
+    research: tuple[Any, ...] = ()  # what each of its tabs had found: app/researching.py
 
 
 Leave = Callable[[], "Kept | None"]

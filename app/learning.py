@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from pathlib import Path
 from threading import RLock
 from typing import Any
@@ -49,6 +50,7 @@ class Learning(ABC):
     _inputs: Inputs
     _story: Story
     _turn: RLock
+    _farewell: Callable[[], bool]  # app/researching.py
     _hand: ByHand
 
     def _learn_with(self, gui: viser.GuiApi, lesson: Path | None) -> None:
@@ -132,6 +134,7 @@ class Learning(ABC):
         """The lesson takes the place of the plots, or gives it back."""
         self._hand.end()
         self._placing_done()
+        self._farewell()
         self._run.open(LESSON, open_)
         self._plots.visible(not open_)
         self._comparison.clear()

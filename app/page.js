@@ -299,7 +299,7 @@
     showHud();
   };
   function press() { // viser's groups of buttons do not show which one is chosen
-    const pressed = S.hud.pressed || [];
+    const pressed = [...(S.hud.pressed || []), S.hud.measure];
     for (const button of document.querySelectorAll("button.mantine-Button-root[data-size^=compact]")) {
       const on = String(pressed.includes(button.textContent.trim()));
       if (button.getAttribute("aria-pressed") !== on) button.setAttribute("aria-pressed", on);

@@ -33,6 +33,7 @@ from app.panels.observation import ObservationPanel
 from app.panels.result import result_html
 from app.panels.run import HEIGHTS, MAP, SWARM, RunPanel, Wishes
 from app.panels.tuning import TuningPanel
+from app.researching import Researching
 from app.session import Job, Session
 from app.stage import Stage, TabStage, mark
 from app.story import Story
@@ -51,7 +52,7 @@ log = logging.getLogger(__name__)
 LARGE = 2_000_000  # cells of a map that takes a while to draw
 
 
-class Page(Telling, Handling, Learning):
+class Page(Telling, Handling, Learning, Researching):
     """Listens to its session and draws; the callbacks of its widgets only ask."""
 
     def __init__(
@@ -106,6 +107,7 @@ class Page(Telling, Handling, Learning):
                 self._run.dark, self._run.speed = kept.dark, kept.speed
                 self._press()
                 self._timeline.resume(kept.history)
+                self._research_resumes(*kept.research)
 
     def close(self) -> None:
         """The tab is gone; what it leaves behind is kept for a while."""
@@ -119,13 +121,16 @@ class Page(Telling, Handling, Learning):
     def _leave(self) -> Kept | None:
         self._end()
         history = self._timeline.history
-        return None if history is None else Kept(history, self._run.dark, self._run.speed)
+        if history is None:
+            return None
+        return Kept(history, self._run.dark, self._run.speed, self._research_leaves())
 
     def _end(self) -> None:
         self._budget.release(self)
         self._channel.close()
         self._lesson.close()
         self._hand.close()
+        self._research_closes()
         self._closer.close()
         self.session.close()
 
@@ -157,6 +162,7 @@ class Page(Telling, Handling, Learning):
         self._handle_with(gui)
         self._timeline = Timeline(gui, self._channel, self._turn, self._restore)
         self._plots = PlotDock(client, self._press)
+        self._research_with(gui)
         client.scene.on_click()(self._read_out)
 
     def _theme(self) -> None:
@@ -206,6 +212,7 @@ class Page(Telling, Handling, Learning):
         self._placing.end()
         self._tuning.restore(desk.method, desk.config)
         self._run.restore(desk.method, desk.seed)
+        self._research_changes()
         self._files.restore(desk.files)
         with self.session.drawing:
             bare = desk.goal is None or (desk.goal == "candidates" and self._result is not None)
@@ -217,6 +224,10 @@ class Page(Telling, Handling, Learning):
             if desk.outcome is not None and desk.result is not None:
                 self._answered(desk.outcome, desk.result, desk.config, live=False)
                 self._stage.flush()
+                if desk.guest is not None:
+                    self._welcome(desk.guest)
+            elif desk.guest is not None:
+                self._welcome(desk.guest)
             elif desk.held:
                 self._hand.begin(desk.hand)
             elif desk.goal is not None:
@@ -241,6 +252,7 @@ class Page(Telling, Handling, Learning):
             self._notice = None
         self._hand.end()
         self._placing.end()
+        self._farewell()
         self._hand.panel.offer(inputs.complete)
         self._inputs, self._result, self._story, self._method = inputs, None, Story(), None
         self._weighed = None
@@ -272,6 +284,7 @@ class Page(Telling, Handling, Learning):
             measure=bool(grids),
             legend=legend(self._palette, MAP, self._story),
         )
+        self._research_changes()
         self._stage.flush()
         return True
 
@@ -310,6 +323,7 @@ class Page(Telling, Handling, Learning):
 
     def _changed(self) -> None:
         """A setting was moved: what is on the screen is out of date."""
+        self._research_changes()
         if self._lesson.open:
             self._lesson.changed()
             return
@@ -378,6 +392,7 @@ class Page(Telling, Handling, Learning):
             self._comparison.recolour(self._palette)
             self._turn_view()
             self._lesson.recolour()
+            self._research_recolours()
 
     def _turn_view(self) -> None:
         """Show the chosen view of the newest state."""

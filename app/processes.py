@@ -49,8 +49,9 @@ def cores() -> int:
 class Processes(Executor):
     """Processes of this machine, which share its cores evenly."""
 
-    def __init__(self, jobs: int) -> None:
-        self._jobs = jobs
+    def __init__(self, jobs: int, gentle: bool = False) -> None:
+        """gentle : they take only what time others leave them."""
+        self._jobs, self._gentle = jobs, gentle
 
     @property
     def jobs(self) -> int:
@@ -80,7 +81,7 @@ class Processes(Executor):
         listening, line = SPAWN.Pipe(duplex=False)
         running: dict[Future[Any], Numbered] = {}
         pool = ProcessPoolExecutor(
-            jobs, mp_context=SPAWN, initializer=_begin, initargs=(listening, self._jobs)
+            jobs, mp_context=SPAWN, initializer=_begin, initargs=(listening, self._jobs, self._gentle)
         )
         try:
             while stop is None or not stop.is_set():
@@ -131,7 +132,9 @@ def _laid_down(shared: Shared, folder: Path) -> Path:
 _known: OrderedDict[str, Any] = OrderedDict()
 
 
-def _begin(line: Connection, jobs: int) -> None:
+def _begin(line: Connection, jobs: int, gentle: bool) -> None:
+    if gentle and hasattr(os, "nice"):  # not on Windows
+        os.nice(10)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the first process hears it and ends the others
     threads = max(1, cores() // jobs)
     kernels.use_threads(threads)

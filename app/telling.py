@@ -65,6 +65,7 @@ class Telling(ABC):
     _hand: ByHand
     _placing: Placing
     _refining: Any  # what the hand had refined, and the callback for it: app/handling.py
+    _farewell: Callable[[], bool]  # whoever else was looked at is not any more: app/researching.py
     _refined: Callable[[Story, MergeResult], None]
 
     @abstractmethod
@@ -78,6 +79,9 @@ class Telling(ABC):
     def begun(self, job: Job) -> None:
         """A run starts."""
         self._run.stoppable("run", True)
+        if self._farewell():  # who was looked at is not left on the map while something else is said
+            self._comparison.clear()
+            self._maps.apart()
         if job.pace > 0:  # told step by step; a run at once leaves what is seen until it has ended
             self._comparison.clear()
         self._stage.layer("readout", None)  # of a place that will look otherwise
@@ -137,6 +141,7 @@ class Telling(ABC):
 
     def _answered(self, story: Story, result: MergeResult, config: Any, live: bool) -> None:
         """Show an answer and everything that led to it."""
+        self._farewell()
         self._story, self._result, self._config = story, result, config
         if result.method != BY_HAND:
             self._method = story

@@ -19,7 +19,7 @@ from app.publish import publish_command
 from app.takeaway import TAKEAWAY
 
 _NOTHING = box("After a merge it can be taken away from here: map, transform, report.", "plain")
-_OUTDATED = box("Out of date: a setting was changed.", "plain", faded=True)
+_OUTDATED = "Out of date: a setting was changed."
 
 
 class ExportPanel:
@@ -53,13 +53,13 @@ class ExportPanel:
         self._note.content = "" if harvest is not None else _NOTHING
         self._line.content = "" if harvest is None else line_html(harvest)
 
-    def outdate(self) -> None:
-        """The result is out of date: it is greyed, and nothing of it can be taken."""
+    def outdate(self, why: str = _OUTDATED) -> None:
+        """The result is out of date, or not what is seen: it is greyed, and nothing of it can be taken."""
         last = self._harvest
         if last is None:
             return
         self._show(None, there=True)
-        self._note.content = _OUTDATED
+        self._note.content = box(why, "plain", faded=True)
         self._line.content = line_html(last, faded=True)
 
     def _show(self, harvest: Harvest | None, there: bool) -> None:

@@ -177,6 +177,10 @@ class PlotDock:
             padding=(10, 14, 0, 0),  # room for the outermost numbers of both axes
         )
 
+    def add_tab(self, title: str, icon: viser.IconName) -> Any:
+        """A further tab of the dock, to be filled in a ``with``."""
+        return self._panel.add_tab(title, icon=icon)
+
     def visible(self, yes: bool) -> None:
         """Show the dock, or leave its place to another."""
         self._panel.visible = yes

@@ -1,0 +1,238 @@
+"""The part of a page that compares methods and sweeps settings, and shows what another method has found."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import replace
+from threading import RLock
+from typing import Any, Literal
+
+import viser
+
+from algorithms.conflicts import find_conflicts
+from algorithms.errors import MapMergeError
+from algorithms.fuse import Fusion
+from algorithms.methods import METHODS
+from app.byhand import ByHand
+from app.channel import Channel
+from app.comparison import Comparison
+from app.desk import Desk
+from app.inputs import Inputs
+from app.lesson.mode import Lesson
+from app.palette import Palette
+from app.panels.export import ExportPanel
+from app.panels.run import MAP, RunPanel
+from app.panels.tuning import TuningPanel
+from app.research.compare import Compare
+from app.research.guest import NOT_YOURS, Guest
+from app.research.sweep import Sweep
+from app.session import Session
+from app.stage import Stage
+from app.story import Story
+from app.takeaway import TAKEAWAY
+from app.timeline import Timeline
+from app.views.maps import MapView
+from app.views.plots import PlotDock
+
+
+class Researching(ABC):
+    """Half of a Page; the attributes below are the other half's."""
+
+    session: Session
+    _client: viser.ClientHandle
+    _channel: Channel
+    _stage: Stage
+    _maps: MapView
+    _plots: PlotDock
+    _comparison: Comparison
+    _run: RunPanel
+    _tuning: TuningPanel
+    _export: ExportPanel
+    _timeline: Timeline
+    _lesson: Lesson
+    _hand: ByHand
+    _palette: Palette
+    _inputs: Inputs
+    _story: Story
+    _turn: RLock
+    _guest: Guest | None = None  # who is looked at in place of one's own result
+
+    def _research_with(self, gui: viser.GuiApi) -> None:
+        """Add both tabs to the dock of the plots."""
+        both = self._turn, self.session.drawing
+        with self._plots.add_tab("Compare", viser.Icon.SCALE):
+            self._compare_tab = Compare(gui, self._channel, *both, self)
+        with self._plots.add_tab("Sweep", viser.Icon.CHART_DOTS):
+            self._sweep_tab = Sweep(gui, self._channel, *both, self)
+        self._channel.on("back", self.back)
+
+    # --- what the other half does -----------------------------------------------------------------
+
+    @abstractmethod
+    def _restore(self, desk: Desk) -> None:
+        """Put a desk back."""
+
+    @abstractmethod
+    def _changed(self) -> None:
+        """A setting was moved."""
+
+    @abstractmethod
+    def _turn_view(self) -> None:
+        """Show the chosen view."""
+
+    @abstractmethod
+    def _tell_legend(self) -> None:
+        """Say what the colours of the picture mean."""
+
+    @abstractmethod
+    def _placing_done(self) -> None:
+        """The robots are no longer being placed."""
+
+    @abstractmethod
+    def _report(self, error: MapMergeError) -> None:
+        """Tell the person what is wrong."""
+
+    @abstractmethod
+    def _notify(self, title: str, text: str, colour: Literal["orange", "red"]) -> None:
+        """Show a notice."""
+
+    # --- what the tabs ask ------------------------------------------------------------------------
+
+    @property
+    def inputs(self) -> Inputs:
+        """What is loaded."""
+        return self._inputs
+
+    @property
+    def palette(self) -> Palette:
+        """The colours of the page."""
+        return self._palette
+
+    @property
+    def seed(self) -> int:
+        """Where the luck of a run comes from."""
+        return self._run.seed
+
+    @property
+    def method(self) -> str:
+        """The method of the panel."""
+        return self._tuning.method
+
+    def settings_for(self, method: str) -> Any:
+        """As the sliders stand for the method of the panel, the defaults for others."""
+        return self._tuning.config if method == self._tuning.method else METHODS[method].defaults
+
+    def mark(self, measure: str) -> None:
+        """Let the button of what the sweep is drawn by be seen to be the chosen one."""
+        self._stage.hud(measure=measure)
+        self._stage.flush()
+
+    def load_settings(self, method: str, config: Any) -> None:
+        """Put settings into the sliders, as if a person had moved them."""
+        with self._turn:
+            self._lesson.leave()
+            self._tuning.restore(method, config)
+            self._run.restore(method, self._run.seed)
+            self._changed()
+
+    def save(self, name: str, make: Callable[[], bytes]) -> None:
+        """Send a file, once it is made."""
+        with TAKEAWAY.making() as begun:
+            if not begun:
+                return
+            notice = self._client.add_notification(
+                "Making the files", "Tables and pictures.", loading=True, with_close_button=False
+            )
+            try:
+                content = make()
+            finally:
+                notice.remove()
+            TAKEAWAY.send(self._client, name, content)
+
+    # --- another method's transform over map 1 ----------------------------------------------------
+
+    def look(self, guest: Guest) -> None:
+        """Show what a method has found, in place of one's own result; undo goes back."""
+        self._lesson.leave()
+        self.session.stop()
+        with self.session.drawing:
+            self._hand.end()
+            self._placing_done()
+            desk = self._timeline.desk
+            if desk is not None and self._welcome(guest):
+                label = f"look at {guest.title}"
+                self._timeline.note(replace(desk, guest=guest), label)
+
+    def back(self) -> None:
+        """Show one's own result again, or the maps as they were."""
+        with self._turn:
+            desk = self._timeline.desk
+            if desk is not None and desk.guest is not None:
+                own = replace(desk, guest=None)
+                self._timeline.note(own, "back to one's own")
+                self._restore(own)
+
+    def _welcome(self, guest: Guest) -> bool:
+        """Draw it; whether it can be drawn. Whoever calls is drawing."""
+        i = self._inputs
+        if i.ref is None or i.mov is None:
+            return False
+        try:
+            story = guest.story(i.ref, i.mov, i.observations, self._story)
+        except MapMergeError as error:  # it throws the maps too far apart
+            self._report(error)
+            return False
+        fusion = story.get(Fusion)
+        assert fusion is not None
+        found = find_conflicts(fusion)
+        self._story, self._guest = story, guest
+        if self._run.view != MAP:
+            self._run.view = MAP
+            self._turn_view()
+        with self._client.atomic():
+            self._maps.show(story, guest.config, camera=self._run.follow, live=False)
+            self._comparison.offer(found, self._palette)
+            self._plots.tell(guest.html())
+            self._export.outdate(NOT_YOURS)
+            mood = "accepted" if guest.trial.accepted and guest.trial.right is not False else "refused"
+            self._stage.hud(state=guest.sentence(), mood=mood, progress=None, guest=guest.title)
+            self._tell_legend()
+            self._stage.flush()
+        self._compare_tab.shown(guest)
+        return True
+
+    def _farewell(self) -> bool:
+        """Something else is shown from now on; whether a guest was. Whoever calls is drawing."""
+        guest, self._guest = self._guest, None
+        if guest is not None:
+            self._stage.hud(guest="")
+            self._compare_tab.shown(None)
+        return guest is not None
+
+    # --- what the page tells the tabs -------------------------------------------------------------
+
+    def _research_changes(self) -> None:
+        """Other inputs, settings, method or seed."""
+        self._compare_tab.loaded(self._inputs)
+        self._sweep_tab.loaded(self._inputs)
+
+    def _research_recolours(self) -> None:
+        """The page is dark, or light again."""
+        self._compare_tab.recoloured()
+        self._sweep_tab.recoloured()
+
+    def _research_leaves(self) -> tuple[Any, Any]:
+        """What both tabs have found, for this page when it comes back."""
+        return self._compare_tab.found, self._sweep_tab.swept
+
+    def _research_resumes(self, found: Any = None, swept: Any = None) -> None:
+        """The page is back: so is what its tabs had found."""
+        with self.session.drawing:
+            self._compare_tab.resume(found)
+            self._sweep_tab.resume(swept)
+
+    def _research_closes(self) -> None:
+        """The tab is gone."""
+        self._compare_tab.close()
+        self._sweep_tab.close()
