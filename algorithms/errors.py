@@ -19,6 +19,10 @@ class InputFileError(MapMergeError):
         self.source, self.found, self.remedy = str(source), found, remedy
         super().__init__(f"{source}: {found}; {remedy}")
 
+    def __reduce__(self) -> tuple[type[InputFileError], tuple[str, str, str]]:
+        """What travels from another process: an error is made of its message alone unless told so."""
+        return type(self), (self.source, self.found, self.remedy)
+
 
 class SettingError(MapMergeError):
     """A setting outside what it may be."""
@@ -33,6 +37,10 @@ class NoAnswerError(MapMergeError):
     def __init__(self, why: str) -> None:
         self.why = why
         super().__init__(f"Refused: {why}.")
+
+    def __reduce__(self) -> tuple[type[NoAnswerError], tuple[str]]:
+        """As for InputFileError."""
+        return type(self), (self.why,)
 
 
 class TooLargeError(MapMergeError):
@@ -50,3 +58,7 @@ class OutputError(MapMergeError):
     def __init__(self, target: object, cause: str, remedy: str) -> None:
         self.target, self.cause, self.remedy = str(target), cause, remedy
         super().__init__(f"{target}: {cause}; {remedy}")
+
+    def __reduce__(self) -> tuple[type[OutputError], tuple[str, str, str]]:
+        """As for InputFileError."""
+        return type(self), (self.target, self.cause, self.remedy)

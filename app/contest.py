@@ -94,7 +94,11 @@ def pairs_in(root: Path, rough: bool = False) -> tuple[int, Pairs]:
 
 def _work(case: Case, order: tuple[str, Any, int]) -> Trial:
     method, config, seed = order
-    return attempt(case, method, config, seed, true_fusion(case))
+    try:
+        true = true_fusion(case)
+    except MapMergeError as error:
+        return _not_run(str(error))
+    return attempt(case, method, config, seed, true)
 
 
 def _not_run(reason: str) -> Trial:

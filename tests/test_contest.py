@@ -9,6 +9,7 @@ from test_sweep import trials
 
 from algorithms.errors import NoAnswerError
 from algorithms.methods import METHODS
+from algorithms.pose import Pose2
 from app.contest import Score, Unread, contest, defaults_of, pairs_in, tally
 from app.executor import Executor, Here, Lost
 from app.trial import attempt, true_fusion
@@ -77,6 +78,13 @@ def test_what_cannot_be_run_or_read_costs_no_other(small_case):
     rows = tally([Score(case, method, trial) for (case, method), trial in told.items()])
     assert (rows["bilateral"].n, rows["bilateral"].failed, rows["bilateral"].seconds) == (0, 2, None)
     assert (rows[QUICK].n, rows[QUICK].failed) == (1, 1)
+
+
+def test_a_truth_that_puts_the_maps_a_thousand_miles_apart_costs_no_other_case(small_case):
+    far = replace(small_case, truth=replace(small_case.truth, T_ref_mov=Pose2(1e6, 1e6)))
+    told = outcomes([("far", far), ("flat", small_case)])
+    assert "the limit is" in told["far", QUICK].reason
+    assert told["flat", QUICK].right
 
 
 def test_a_bug_in_a_method_is_told_as_one(small_case, monkeypatch):

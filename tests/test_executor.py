@@ -1,6 +1,7 @@
 """Work done elsewhere: the same answers whoever does it, and none that is lost with a worker."""
 
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -13,7 +14,7 @@ import cv2
 import pytest
 
 from algorithms import kernels
-from algorithms.errors import SettingError
+from algorithms.errors import InputFileError, NoAnswerError, OutputError, SettingError
 from app.executor import Here, Lost, Shared, Task, executor_for, unpacked
 from app.processes import Processes
 
@@ -94,6 +95,22 @@ def test_a_process_that_dies_costs_a_second_try_and_one_that_always_dies_only_it
 def test_what_the_work_raises_is_raised_to_whoever_asked(executor):
     with pytest.raises(SettingError, match="1 is none of ours"):
         list(executor.run(fail, [Task(1)]))
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        InputFileError("map.yaml", "is torn", "mend it"),
+        OutputError("out", "is full", "empty it"),
+        NoAnswerError("no corner was found"),
+        SettingError("too much"),
+    ],
+)
+def test_an_error_is_the_same_after_it_has_come_from_another_process(error):
+    copy = pickle.loads(pickle.dumps(error))
+    assert type(copy) is type(error)
+    assert str(copy) == str(error)
+    assert vars(copy) == vars(error)
 
 
 def test_tasks_are_taken_only_as_workers_become_free():
