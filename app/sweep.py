@@ -10,9 +10,11 @@ from statistics import fmean, median, pstdev
 from threading import Event
 from typing import Any
 
+from algorithms import merit
 from algorithms.casefiles import Case, observations_to_bytes, truth_to_bytes
 from algorithms.chain import Memo
 from algorithms.gridmap import GridMap
+from algorithms.methods import METHODS
 from app.controls import Path as SettingPath
 from app.controls import Setting, settings_of, with_value
 from app.executor import Executor, Lost, Shared, Task
@@ -191,7 +193,7 @@ def point_keys(case: Case, plan: Plan) -> dict[tuple[Any, Any], str]:
         "truth": None if case.truth is None else truth_to_bytes(case.truth).decode(),
         "method": plan.method,
         "seeds": plan.seeds,
-        "versions": {**versions(), "code": code()},
+        "versions": {**versions(), "code": [code(METHODS[plan.method].run.__module__), code(merit.__name__)]},
     }
     return {
         place: sha256(

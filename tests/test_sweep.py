@@ -13,6 +13,7 @@ from algorithms.errors import OutputError, SettingError
 from algorithms.gridmap import GridMap
 from algorithms.methods import METHODS
 from app import sweep as sweeping
+from app import version
 from app.executor import Executor, Here
 from app.journal import Journal
 from app.sweep import Axis, Plan, Spread, in_order, point_keys, sweep
@@ -146,6 +147,17 @@ def test_what_a_point_rests_on_is_its_key(small_case):
         (small_case, replace(plan(), config=replace(SMALL, swarm=replace(SMALL.swarm, omega=0.5)))),
     ):
         assert not set(point_keys(case, other).values()) & set(keys.values())
+
+
+def test_the_code_that_a_method_stands_on_is_told_apart_from_all_other_code():
+    swarm = version._stands_on("algorithms.pipeline")
+    assert {"algorithms/swarm.py", "algorithms/pose.py", "algorithms/kernels.py"} <= swarm
+    assert "algorithms/methods.py" not in swarm
+    assert not [path for path in swarm if "simulator" in path]
+    assert version._stands_on("algorithms.pose") == {"algorithms/pose.py"}
+    told = {version.code(), version.code("algorithms.pipeline"), version.code("algorithms.pose")}
+    assert len(told) == 3
+    assert version.code("algorithms.pose") == version.code("algorithms.pose")
 
 
 def test_a_value_out_of_bounds_is_refused_before_anything_is_run():
