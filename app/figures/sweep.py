@@ -41,21 +41,31 @@ def _curves(figure: Figure, plan: Plan, points: list[Point], title: str, cell: f
     panels = figure.subplots(1, 3 if judged else 2)
     figure.suptitle(title, x=0.01, ha="left")
     at = _places(plan.x, points)
-    _line(panels[0], at, [point.index for point in points], COLOURS[0], MARKERS[0])
+    joined = _is_number(plan.x)
+    _line(panels[0], at, [point.index for point in points], COLOURS[0], MARKERS[0], joined=joined)
     _no_closer(panels[0])
     panels[0].set(title="How much agrees", ylabel=INDEX)
     if judged:
         seeds = len(plan.seeds)
         panels[1].plot(
-            _places(plan.x, judged), [point.right for point in judged], color=COLOURS[2], marker=MARKERS[2]
-        )
+            _places(plan.x, judged), [point.right for point in judged], color=COLOURS[2], marker=MARKERS[2],
+            linestyle="-" if joined else "",
+        )  # fmt: skip
         panels[1].yaxis.set_major_locator(MaxNLocator(integer=True))
         panels[1].set(
             title="How often it is right",
             ylabel=f"right transforms of {seeds}",
             ylim=(-0.03 * seeds, seeds * 1.05),
         )
-    _line(panels[-1], at, [point.seconds for point in points], COLOURS[1], MARKERS[1], middle="median")
+    _line(
+        panels[-1],
+        at,
+        [point.seconds for point in points],
+        COLOURS[1],
+        MARKERS[1],
+        middle="median",
+        joined=joined,
+    )
     panels[-1].set(title="How long it takes", ylabel="time of a merge (s)")
     panels[-1].set_ylim(bottom=0)
     for panel in panels:
@@ -72,12 +82,13 @@ def _both(figure: Figure, plan: Plan, points: list[Point], title: str, cell: flo
         mine = [point for point in points if point.y == y]
         # the first is drawn widest: curves that lie on each other are all seen
         _line(
-            lines, _places(plan.x, mine), [point.index for point in mine], COLOURS[number], MARKERS[number],
-            label=_short(y), width=1.2 + 1.3 * (len(shown) - 1 - number),
+            lines, _places(plan.x, mine, number), [point.index for point in mine], COLOURS[number],
+            MARKERS[number], label=_short(y), width=1.2 + 1.3 * (len(shown) - 1 - number),
+            joined=_is_number(plan.x),
         )  # fmt: skip
     lines.legend(title=_label(plan, plan.y), title_fontsize=8)
     _no_closer(lines)
-    lines.set(title="The same as curves", ylabel=INDEX)
+    lines.set(title="Mean and spread over the seeds", ylabel=INDEX)
     _name_x(lines, plan, plan.x, cell)
 
 
@@ -86,9 +97,10 @@ def _heat(figure: Figure, axes: Axes, plan: Plan, y: Axis, points: list[Point], 
     for point in points:
         if point.index is not None:
             means[y.values.index(point.y), plan.x.values.index(point.x)] = point.index.mean
-    picture = axes.imshow(means, cmap="viridis", aspect="auto", origin="lower")
-    axes.grid(visible=False)
     low, high = (float(edge(means)) if np.isfinite(means).any() else 0.0 for edge in (np.nanmin, np.nanmax))
+    low = min(low, high - LEAST_SPAN)
+    picture = axes.imshow(means, cmap="viridis", aspect="auto", origin="lower", vmin=low, vmax=high)
+    axes.grid(visible=False)
     if len(plan.x.values) <= MOST_WRITTEN:
         for row, col in zip(*np.nonzero(np.isfinite(means)), strict=True):
             bright = means[row, col] > low + 0.6 * (high - low)
@@ -116,9 +128,12 @@ def _ticks(axis: Any, values: Sequence[Any], text: Any = None) -> None:
 
 def _line(
     axes: Axes, at: list[float], spreads: Sequence[Spread | None], hue: str, marker: str, label: str = "",
-    width: float = 1.8, middle: str = "mean",
+    width: float = 1.8, middle: str = "mean", joined: bool = True,
 ) -> None:  # fmt: skip
-    """A curve with a band: mean and standard deviation within the extremes, or median and extremes."""
+    """A curve with a band: mean and standard deviation within the extremes, or median and extremes.
+
+    joined : between choices lies nothing: they are not
+    """
     pairs = [(x, spread) for x, spread in zip(at, spreads, strict=True) if spread is not None]
     x = [place for place, _ in pairs]
     if middle == "median":
@@ -128,6 +143,10 @@ def _line(
         curve = [spread.mean for _, spread in pairs]
         low = [max(spread.low, spread.mean - spread.deviation) for _, spread in pairs]
         high = [min(spread.high, spread.mean + spread.deviation) for _, spread in pairs]
+    if not joined:
+        reach = np.abs(np.array([low, high]) - curve)
+        axes.errorbar(x, curve, reach, color=hue, fmt=marker, markersize=6, capsize=4, label=label or None)
+        return
     axes.fill_between(x, low, high, color=hue, alpha=0.18, linewidth=0)
     axes.plot(x, curve, color=hue, marker=marker, markersize=3 + width, linewidth=width, label=label or None)
 
@@ -141,11 +160,13 @@ def _no_closer(axes: Axes) -> None:
         axes.set_ylim(high - LEAST_SPAN, high)
 
 
-def _places(axis: Axis, points: Sequence[Point]) -> list[float]:
-    """Where points stand: at their number, or in a row where the setting is a choice."""
+def _places(axis: Axis, points: Sequence[Point], beside: int = 0) -> list[float]:
+    """Where points stand: at their number, or in a row where the setting is a choice, a little beside
+    those of another curve.
+    """
     if _is_number(axis):
         return [float(point.x) for point in points]
-    return [float(axis.values.index(point.x)) for point in points]
+    return [axis.values.index(point.x) + 0.08 * beside for point in points]
 
 
 def _is_number(axis: Axis) -> bool:
@@ -156,6 +177,7 @@ def _name_x(axes: Axes, plan: Plan, axis: Axis, cell: float) -> None:
     axes.set_xlabel(_label(plan, axis))
     if not _is_number(axis):
         _ticks(axes.xaxis, axis.values)
+        axes.set_xlim(-0.5, len(axis.values) - 0.5)
     elif len(axis.values) > 1 and looks_even_by_factor(axis.values):
         wide = max(axis.values) > 50 * min(axis.values)  # room for two numbers a decade, or three
         axes.set_xscale("log")
