@@ -8,7 +8,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help run test bench fuzz soak samples screenshots equations clean
+.PHONY: help run test bench fuzz soak samples screenshots equations replays results clean
 
 help:
 	@echo "make run          open the tool on a sample, in the browser (ARGS=--no-browser: only serve it)"
@@ -20,6 +20,7 @@ help:
 	@echo "make screenshots  take the pictures of the README and the guides again"
 	@echo "make equations    typeset the equations in static/equations again"
 	@echo "make replays      record the pages in static/replays again"
+	@echo "make results      measure the paper's section IV on the samples again: RESULTS.md, about 15 minutes"
 	@echo "make clean        remove the environment and everything that was made"
 
 run: $(VENV)/ready
@@ -57,6 +58,10 @@ equations: $(VENV)/ready
 replays: $(VENV)/ready
 	@for name in $(or $(ARGS),office_r2_r1 corridor_r3_r2); do \
 	  $(BIN)/mapmeld replay $$name --out static/replays/$$name.html || exit; done
+
+results: $(VENV)/ready
+	@$(PIP) install -e '.[surf]'
+	@$(BIN)/python tests/results.py
 
 clean:
 	rm -rf $(VENV) build dist out *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis .benchmarks
