@@ -99,6 +99,7 @@ class MatchesDetail:
     ref_features, mov_features : (N, 2), (M, 2) all that were found; metres, each in its own map's frame
     ref, mov : (K, 2) those taken for the same places, pair by pair; likewise
     inliers  : (K,) bool, which pairs agree with the transform; none before there is one
+    T_ref_mov : that transform; None before there is one
     """
 
     ref_features: FloatArray
@@ -106,6 +107,7 @@ class MatchesDetail:
     ref: FloatArray
     mov: FloatArray
     inliers: BoolArray
+    T_ref_mov: Pose2 | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,7 @@ from algorithms.certificate import ProofState
 from algorithms.pose import FloatArray
 from algorithms.smm import Candidate
 from algorithms.spectra import HoughMatch, ShiftMatch
+from algorithms.steps import TurnsDetail
 from app.measure import Measure
 
 Columns = tuple[FloatArray, ...]
@@ -20,6 +21,7 @@ TURNS = ("Their correlation, eq. (12)", "turn Δθ (°), or that + 180°")
 SHIFT_X = ("Correlation, window shaded", "Δx (m)")
 SHIFT_Y = ("Correlation, window shaded", "Δy (m)")
 CLIMB = ("Best {} so far", "iteration")
+CIRCLE = ("Best {} at every turn", "turn Δθ (°)")
 PROOF = ("Best {} at every turn", "turn Δθ (°), the whole circle")
 
 
@@ -51,6 +53,28 @@ def turn_correlation(match: HoughMatch, chosen: float | None) -> Columns:
         k = int(np.abs(np.mod(x - degrees(chosen) + 90, 180) - 90).argmin())
         best[k] = match.correlation[k]
     return x, match.correlation, marks, best
+
+
+def circle(detail: TurnsDetail) -> Columns:
+    """Turn in degrees, how well the maps agree, and the best turn; turns that are not tried yet lie where
+    the worst of the others does.
+    """
+    x, y = np.degrees(detail.turns), np.asarray(detail.scores, dtype=np.float64)
+    y = np.where(np.isfinite(y), y, float(y[np.isfinite(y)].min(initial=np.inf)))
+    y = np.where(np.isfinite(y), y, 0.0)
+    best = np.full(len(x), np.nan)
+    turn = detail.turns[y.argmax()] if detail.best is None else detail.best
+    k = int(np.abs(np.mod(x - degrees(turn) + 180, 360) - 180).argmin())
+    best[k] = y[k]
+    return x, y, best
+
+
+def circle_range(detail: TurnsDetail) -> tuple[float, float]:
+    """Axis of the agreement: from the worst of the turns to the best, and a little more."""
+    y = detail.scores[np.isfinite(detail.scores)]
+    low, high = (float(y.min()), float(y.max())) if len(y) else (0.0, 1.0)
+    room = 0.08 * max(high - low, 1e-3)
+    return low - room, high + room
 
 
 def turn_range(match: HoughMatch) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from algorithms.steps import (
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
+    MatchesDetail,
     MergeResult,
     ProofDetail,
     ProvenDetail,
@@ -86,6 +87,14 @@ def legend(
         best_yet = star if detail.state.proven else _chip("star", palette.answer, "best so far")
         rivals = [rival] if len(detail.state.rivals) else []
         return [*maps, best_yet, *rivals, _chip("line", palette.margin, "coupled window")]
+    if isinstance(detail, MatchesDetail):
+        agree = _chip("line", palette.best, "matches that agree")
+        others = _chip("line", palette.margin, "other matches")
+        return (
+            [*maps, agree, others]
+            if detail.inliers.any()
+            else [*maps, _chip("line", palette.particle, "match")]
+        )
     if isinstance(detail, RefineDetail):
         return [*maps, particle, best, _chip("line", palette.margin, "box")]
     if isinstance(detail, (WindowDetail, ShiftDetail)):

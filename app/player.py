@@ -11,12 +11,14 @@ from algorithms.steps import (
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
+    MatchesDetail,
     ObservationDetail,
     ProofDetail,
     ProvenDetail,
     RefineDetail,
     ShiftDetail,
     Step,
+    TurnsDetail,
     WindowDetail,
 )
 
@@ -32,6 +34,8 @@ DWELL: dict[type, float] = {
     WindowDetail: 0.4,
     ShiftDetail: 0.42,
     CandidatesDetail: 0.6,
+    MatchesDetail: 1.4,
+    TurnsDetail: 0.15,
     AnswersDetail: 0.4,
     ProvenDetail: 0.9,
     Fusion: 0.9,

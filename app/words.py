@@ -10,6 +10,7 @@ import numpy as np
 
 from algorithms.certificate import ProofState
 from algorithms.fuse import Fusion
+from algorithms.methods import METHODS
 from algorithms.pose import Pose2, pose_error
 from algorithms.steps import (
     AnswersDetail,
@@ -258,6 +259,8 @@ def remedy(result: MergeResult, config: Any = None) -> str:
     rules = getattr(config, "verdict", VerdictConfig())
     if verdict.accepted:
         return ""
+    if result.method in METHODS and not METHODS[result.method].uses_observation:
+        return "This method does not look at the observation: take one that does."
     if proof is not None and proof.empty:
         return "Check the numbers of the sightings, leave the odd one out, or widen the window's margin."
     if proof is not None and fits_nowhere(proof):

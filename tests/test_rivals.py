@@ -32,6 +32,7 @@ from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.methods import METHODS, merge, run
 from algorithms.pose import Pose2, pose_error
 from algorithms.steps import MatchesDetail, ObservationDetail, TurnsDetail
+from app import charts, words
 
 # Both robots have seen the whole flat.
 REF, MOV = drawn_map(T_REF_WORLD, name="ref"), drawn_map(T_MOV_WORLD, name="mov")
@@ -301,3 +302,26 @@ def test_pictures_of_large_maps_are_bounded():
     assert common_cell(large, REF, 1500) == pytest.approx(0.05 * 4000 / 1500)
     assert common_cell(REF, MOV, 1500) == 0.05
     assert max(picture(large, common_cell(large, REF, 400), 1.0).far.shape) == 400
+
+
+def test_what_helps_after_a_rival_was_refused_is_a_method_that_looks_at_the_sighting():
+    elsewhere = replace(SEEN, observed_x=SEEN.observed_x + 1.0)
+    refused = merge(REF, MOV, elsewhere, "orb")
+    assert words.remedy(refused) == "This method does not look at the observation: take one that does."
+    assert words.remedy(there("orb")) == ""
+
+
+def test_a_chart_of_every_turn_marks_the_best_and_holds_what_is_not_tried_yet():
+    turns = np.radians(np.arange(-180, 180, 10.0))
+    scores = np.where(np.arange(36) < 20, np.cos(turns - turns[12]), np.nan)
+    x, y, best = charts.circle(TurnsDetail(turns, scores))
+    assert np.flatnonzero(np.isfinite(best)).tolist() == [12]
+    assert (y[20:] == np.nanmin(scores)).all()
+    assert np.allclose(x, np.degrees(turns))
+    _, _, best = charts.circle(TurnsDetail(turns, scores, best=float(turns[3]) + 2 * np.pi))
+    assert np.flatnonzero(np.isfinite(best)).tolist() == [3]
+    low, high = charts.circle_range(TurnsDetail(turns, scores))
+    assert low < np.nanmin(scores) < np.nanmax(scores) < high
+    nothing = TurnsDetail(turns, np.full(36, np.nan))
+    assert np.isfinite(charts.circle(nothing)[1]).all()
+    assert charts.circle_range(nothing)[0] < charts.circle_range(nothing)[1]

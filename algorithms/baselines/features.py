@@ -140,7 +140,7 @@ def _rigid(mov: FloatArray, ref: FloatArray, tolerance: float) -> bool:
 def agreeing(matches: MatchesDetail, T_ref_mov: Pose2, tolerance: float) -> MatchesDetail:
     """The matches with those marked that a transform takes to their partners."""
     off = np.linalg.norm(T_ref_mov.apply(matches.mov) - matches.ref, axis=1)
-    return replace(matches, inliers=off <= tolerance)
+    return replace(matches, inliers=off <= tolerance, T_ref_mov=T_ref_mov)
 
 
 def fit_covariance(matches: MatchesDetail, T_ref_mov: Pose2) -> FloatArray:

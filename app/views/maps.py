@@ -16,11 +16,13 @@ from algorithms.steps import (
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
+    MatchesDetail,
     MergeResult,
     ProofDetail,
     ProvenDetail,
     RefineDetail,
     ShiftDetail,
+    TurnsDetail,
     WindowDetail,
 )
 from algorithms.touch import Touch, Walls
@@ -37,7 +39,7 @@ from app.views.images import Size
 
 TURN_MS, SLIDE_MS, FOLLOW_MS = 900.0, 330.0, 70.0
 MOST_PARTICLES = 600  # drawn; more would be a blot
-OF_A_RUN = ("aug", "window", "box", "swarm", "rival", "best")
+OF_A_RUN = ("aug", "window", "box", "swarm", "rival", "best", "matches")
 
 
 class MapView:
@@ -160,6 +162,10 @@ class MapView:
             look = self._refine(story, detail, glide)
         elif isinstance(detail, ProofDetail):
             look = self._prove(story, detail, glide)
+        elif isinstance(detail, MatchesDetail):
+            look = self._matches(detail)
+        elif isinstance(detail, TurnsDetail):
+            look = self._turned_best(detail, glide)
         elif isinstance(detail, (AnswersDetail, ProvenDetail, Fusion, MergeResult)):
             look = self._answer(story, glide)
         if camera and look is not None:
@@ -215,6 +221,30 @@ class MapView:
         self._robots(together=bool(places))
         return self.layout.swept()
 
+    def _matches(self, detail: MatchesDetail) -> Rect:
+        """Both maps side by side, with lines between the features that look alike; once there is a transform,
+        map 2 is turned by it, and the lines that agree run side by side.
+        """
+        look = self._beside(detail.T_ref_mov.theta if detail.T_ref_mov is not None else 0.0, 0.0)
+        self._stage.layer("matches", signs.matches(detail, self._mov_at, self.layout, self._palette))
+        return look
+
+    def _turned_best(self, detail: TurnsDetail, glide: float) -> Rect:
+        """Map 2 beside map 1, turned as agrees best so far."""
+        tried = np.isfinite(detail.scores)
+        turn = detail.best
+        if turn is None:
+            turn = float(detail.turns[np.nanargmax(np.where(tried, detail.scores, -np.inf))])
+        return self._beside(turn, glide * SLIDE_MS)
+
+    def _beside(self, turn: float, milliseconds: float) -> Rect:
+        turned = Pose2(self.layout.apart.x, self.layout.apart.y, turn)
+        self.ground.show("sources")
+        self._place(turned, milliseconds)
+        self._clear(*OF_A_RUN)
+        self._robots(together=False)
+        return union(self.layout.view(), self.layout.view(turned))
+
     def _refine(self, story: Story, detail: RefineDetail, glide: float) -> Rect | None:
         layout, colours, state = self.layout, self._palette, detail.state
         self.ground.show("sources")
@@ -254,7 +284,7 @@ class MapView:
         if story.answer is None:
             return None
         at = self.layout.placed(story.answer)
-        self._clear("aug", "window", "swarm", "box", "rival")
+        self._clear("aug", "window", "swarm", "box", "rival", "matches")
         self._place(at, glide * SLIDE_MS)
         self._robots(together=True)
         star = mark("star", at.xy, self._palette.answer, r=9, rim=css(self._palette.rim))

@@ -16,11 +16,13 @@ from algorithms.steps import (
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
+    MatchesDetail,
     MergeResult,
     ProofDetail,
     ProvenDetail,
     RefineDetail,
     ShiftDetail,
+    TurnsDetail,
     WindowDetail,
 )
 from app import charts, words
@@ -87,6 +89,15 @@ class PlotDock:
                 *charts.TURNS,
                 (_line("CC", GREY), _dots("candidates", MARK, 8), _dots("at hand", BEST, 10)),
                 190,
+            )
+            self._circle = self._plot(
+                gui,
+                charts.CIRCLE[0].format("agreement"),
+                charts.CIRCLE[1],
+                (_line("agreement", GREY), _dots("best", BEST, 10)),
+                230,
+                None,
+                (30.0, 45.0, 90.0, 180.0),
             )
             window = uplot.Series(
                 label="window", width=0, fill="rgba(107,114,128,.20)", points={"show": False}
@@ -211,13 +222,14 @@ class PlotDock:
         if self._pages.value != self.page:
             self._pages.value = self.page
         for handles, page in (
-            ((self._hough, self._turns), TURN),
+            ((self._hough, self._turns), TURN if "turn" in self._shown else ""),
+            ((self._circle,), TURN if "circle" in self._shown else ""),
             ([handle for pair in self._shifts for handle in pair], SHIFT),
             ((self._climb, self._candidates), SWARM),
             ((self._proof_says, self._proof, self._rivals), PROOF),
             ((self.result,), RESULT),
         ):
-            shown = self.page == page and self._filled(page)
+            shown = bool(page) and self.page == page and self._filled(page)
             for handle in handles:
                 if handle.visible != shown:
                     handle.visible = shown
@@ -231,6 +243,8 @@ class PlotDock:
         """Whether there is anything to show on a page."""
         if page == RESULT:
             return bool(self.result.content)
+        if page == TURN and "circle" in self._shown:
+            return True
         return {TURN: "turn", SHIFT: "shift", SWARM: "candidates", PROOF: "proof"}[page] in self._shown
 
     def tell(self, answer: str) -> None:
@@ -246,7 +260,7 @@ class PlotDock:
         self._candidates.content = self.result.content = ""
         self._proof_says.content = self._rivals.content = ""
         pairs = (plot for pair in self._shifts for plot in pair)
-        for plot in (self._hough, self._turns, *pairs, self._climb, self._proof):
+        for plot in (self._hough, self._turns, self._circle, *pairs, self._climb, self._proof):
             plot.data = (NOTHING[0], *(NOTHING[1] for _ in plot.data[1:]))
         self._show_page()
 
@@ -258,6 +272,10 @@ class PlotDock:
         found, proof = story.get(CandidatesDetail), story.get(ProofDetail)
         # after the search the best candidate is the one at hand
         at_hand = found.candidates[0] if found else shift.candidate if shift else None
+        if isinstance(detail, TurnsDetail):
+            self._turn_all(detail, story.measure.name)
+        elif hough is not None and detail is hough:
+            self._shown.pop("circle", None)
         if hough is not None and self._new("turn", (hough, at_hand)):
             self._hough.data = charts.hough_spectra(hough.match)
             chosen = at_hand.T_ref_mov.theta if at_hand else None
@@ -285,7 +303,7 @@ class PlotDock:
         self._show_page()
         if not follow:
             return
-        if isinstance(detail, (AugmentDetail, HoughDetail)):
+        if isinstance(detail, (AugmentDetail, HoughDetail, TurnsDetail)):
             self.turn_to(TURN)
         elif isinstance(detail, (WindowDetail, ShiftDetail, CandidatesDetail)):
             self.turn_to(SHIFT)
@@ -293,8 +311,19 @@ class PlotDock:
             self.turn_to(SWARM)
         elif isinstance(detail, (ProofDetail, ProvenDetail)):
             self.turn_to(PROOF)
-        elif isinstance(detail, MergeResult):
+        elif isinstance(detail, (MatchesDetail, MergeResult)):
             self.turn_to(RESULT)
+
+    def _turn_all(self, detail: TurnsDetail, measure: str) -> None:
+        if not self._new("circle", detail):
+            return
+        self._shown.pop("turn", None)  # of an earlier run, with spectra
+        self._circle.scales = {
+            "x": uplot.Scale(time=False, range=(-180.0, 180.0)),
+            "y": uplot.Scale(range=charts.circle_range(detail)),
+        }
+        _entitle(self._circle, charts.CIRCLE[0].format(measure))
+        self._circle.data = charts.circle(detail)
 
     def _prove(self, story: Story, state: ProofState) -> None:
         measure, span = story.measure, charts.proof_range(state, story.ceiling)

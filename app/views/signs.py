@@ -11,7 +11,7 @@ import numpy as np
 from algorithms.certificate import ProofState
 from algorithms.observation import Encounter, Observation
 from algorithms.pose import FloatArray, Pose2, rotation
-from algorithms.steps import WindowDetail
+from algorithms.steps import MatchesDetail, WindowDetail
 from algorithms.window import Box, CoupledWindow, Window
 from app.draft import Draft
 from app.layout import Layout, Rect
@@ -21,6 +21,7 @@ from app.stage import Item, ellipse, mark, path, rectangle
 ZERO = np.zeros(2)  # the meeting place of the first sighting, in both frames
 TURN_ARM = 90  # px from robot 2 to the knob that turns map 2; hand.js knows it as the knob's arm
 KNOB_ARM = 34  # px from a robot to the knob that turns it; hand.js knows it as ARM
+MOST_MATCHES = 160  # drawn; more would be a blot
 QUIET = 0.55  # opacity of what is told beside the first sighting
 DASHED = {"close": True, "d": [6, 4], "halo": True}
 
@@ -291,3 +292,27 @@ def footprint(b: Box, layout: Layout) -> Rect:
     half = max(0.8, 0.85 * float((high - low).max()))
     x, y = ((low + high) / 2).tolist()
     return x - half, y - half, x + half, y + half
+
+
+def matches(found: MatchesDetail, mov_at: Pose2, layout: Layout, colours: Palette) -> list[Item]:
+    """Lines between the features that look alike, from map 1 to map 2; those that agree on a transform on
+    top and strong.
+
+    mov_at : where map 2's anchor lies, and its turn; scene
+    """
+    first = found.ref - layout.anchor_ref
+    second = mov_at.apply(found.mov - layout.anchor_mov)
+    agreeing = bool(found.inliers.any())
+    items = []
+    for strong in (False, True):
+        some = np.flatnonzero(found.inliers == strong)
+        for k in some[:: max(1, -(-len(some) // MOST_MATCHES))].tolist():
+            ends = np.array([first[k], second[k]])
+            if strong:
+                items.append(path(ends, colours.best, w=1.7, alpha=0.9))
+                items.append(mark("dot", ends[0], colours.ref, r=2.6, rim="#ffffff"))
+                items.append(mark("dot", ends[1], colours.mov, r=2.6, rim="#ffffff"))
+            else:
+                faint = 0.22 if agreeing else 0.6
+                items.append(path(ends, colours.margin if agreeing else colours.particle, w=0.9, alpha=faint))
+    return items

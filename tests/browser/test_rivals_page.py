@@ -1,0 +1,57 @@
+"""Methods to compare with, in the page: what is seen of them, and how a refusal without a place looks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from driver import settle
+
+from algorithms.errors import NoAnswerError
+from algorithms.methods import METHODS
+from app.palette import LIGHT, css
+
+
+def test_matched_features_are_drawn_and_those_that_agree_run_side_by_side(tab):
+    tab.choose("Method", METHODS["sift"].title)
+    tab.press("Slow")
+    tab.press("Merge")
+    settle(lambda: "look alike" in tab.state, "the matches")
+    settle(lambda: len(tab.layer("matches")) > 50, "their lines")
+    settle(lambda: "agree on one transform" in tab.state, "the transform")
+
+    def agreeing():
+        lines = [item["p"] for item in tab.layer("matches") if item["k"] == "path"]
+        colours = [item["c"] for item in tab.layer("matches") if item["k"] == "path"]
+        strong = css(LIGHT.best, 0.9)
+        return [line for line, colour in zip(lines, colours, strict=True) if colour == strong]
+
+    settle(lambda: len(agreeing()) > 20, "the lines that agree")
+    ways = [(b[0] - a[0], b[1] - a[1]) for a, b in agreeing()]
+    for axis in (0, 1):
+        along = [way[axis] for way in ways]
+        assert max(along) - min(along) < 1.3  # twice the tolerance, and what a turn leaves; metres
+    tab.press("Instant")
+    tab.wait_for("accepted")
+    assert tab.layer("matches") == []
+    settle(lambda: tab.number("matches that agree") not in {"", "0"}, "their number")
+
+
+def test_a_method_without_an_answer_refuses_and_takes_the_old_answer_away(tab, monkeypatch):
+    tab.press("Instant")
+    tab.press("Merge")
+    tab.wait_for("accepted")
+    assert "Difference" in tab.text
+
+    def blind(*_):
+        raise NoAnswerError("no two places of these maps are alike")
+        yield
+
+    monkeypatch.setitem(METHODS, "orb", replace(METHODS["orb"], run=blind))
+    tab.choose("Method", METHODS["orb"].title)
+    tab.wait_for("refused")
+    assert tab.state == "Refused: no two places of these maps are alike."
+    settle(lambda: "Difference" not in tab.text, "the comparison to go")
+    settle(lambda: "After a merge it can be taken away" in tab.text, "nothing to take away")
+    settle(lambda: tab.text.count("Refused: no two places of these maps are alike.") == 2, "the reason")
+    tab.page.get_by_role("button", name="Undo").click()
+    tab.wait_for("accepted")
