@@ -179,7 +179,8 @@
   style.textContent = `
     .mm-steps{display:flex;gap:8px;margin:6px 10px 2px}
     .mm-step{flex:1;padding:4px 0;border:0;border-radius:4px;background:#E2E8F0;color:#111827;font:600 13px/1.4 system-ui,"Segoe UI",sans-serif;cursor:pointer}
-    .mm-step:hover{background:#CBD5E1} .mm-step:disabled{opacity:.45;cursor:default;background:#E2E8F0}
+    .mm-step:hover:enabled{background:#CBD5E1} .mm-step:disabled{opacity:.45;cursor:default}
+    [data-mantine-color-scheme=dark] .mm-step{background:#374151;color:#F9FAFB} [data-mantine-color-scheme=dark] .mm-step:hover:enabled{background:#4B5563}
     .mm-step:focus-visible{outline:2px solid #0072B2;outline-offset:1px}
     .mm-history{max-height:230px;overflow:auto;margin:2px 10px 8px;border:1px solid #9CA3AF55;border-radius:6px}
     .mm-entry{display:flex;gap:7px;align-items:baseline;width:100%;padding:3px 8px;border:0;background:none;color:inherit;font:12.5px/1.4 system-ui,"Segoe UI",sans-serif;text-align:left;cursor:pointer}

@@ -1,4 +1,4 @@
-// Keys for what the buttons do, and one place that lists all keys of the page: press "?".
+// Keys for what the buttons do, folders that open by keys, and one list of all keys of the page: press "?".
 (() => {
   const S = window.mapmeld;
   if (S.keys) return;
@@ -68,6 +68,23 @@
     if (button) { e.preventDefault(); button.click(); }
   }, true);
 
+  // viser's folders open by the mouse alone: their heads become buttons, those that appear later, too
+  const HEAD = ".mantine-Paper-root:has(> svg[class*=tabler-icon-chevron])";
+  function heads() {
+    for (const head of document.querySelectorAll(HEAD)) {
+      const open = String(head.nextElementSibling?.getAttribute("aria-hidden") !== "true");
+      if (head.getAttribute("aria-expanded") !== open) head.setAttribute("aria-expanded", open);
+      if (head.tabIndex === 0) continue;
+      head.tabIndex = 0; head.setAttribute("role", "button");
+    }
+  }
+  setInterval(heads, 150);
+  document.addEventListener("keydown", (e) => {
+    if ((e.key !== "Enter" && e.key !== " ") || e.ctrlKey || e.metaKey || e.altKey || !e.target.matches?.(HEAD)) return;
+    e.preventDefault(); e.stopPropagation(); // a space would scroll
+    if (!e.repeat) { e.target.click(); setTimeout(heads); }
+  }, true);
+
   function adopt(hud) {
     const group = element("span"), button = element("button", "?");
     button.type = "button"; button.title = "All keys of this page. Press ?"; button.setAttribute("aria-label", "Keys");
@@ -81,13 +98,15 @@
   const style = document.createElement("style");
   style.textContent = `
     .mm-tools .mm-help{order:9}
+    ${HEAD}:focus-visible{outline:2px solid #0072B2;outline-offset:2px;border-radius:3px}
+    [data-mantine-color-scheme=dark] ${HEAD}:focus-visible{outline-color:#56B4E9}
     .mm-keys{border:0;border-radius:10px;padding:16px 20px 18px;max-width:min(720px,94vw);color:#111827;background:#fff;font:13px/1.4 system-ui,"Segoe UI",sans-serif;box-shadow:0 10px 40px rgba(17,24,39,.35)}
     .mm-keys::backdrop{background:rgba(17,24,39,.35)}
     .mm-keys header{display:flex;justify-content:space-between;align-items:center;margin-bottom:6px}
     .mm-keys h2{font-size:16px;margin:0} .mm-keys h3{font-size:12px;margin:8px 0 4px;color:#0072B2;letter-spacing:.02em}
     .mm-keys header button{font:inherit;padding:3px 12px;border:1px solid #CBD5E1;border-radius:6px;background:none;color:inherit;cursor:pointer}
     .mm-grid{columns:2;column-gap:32px} .mm-grid section{break-inside:avoid;margin-bottom:10px}
-    .mm-keys dl{display:grid;grid-template-columns:72px 1fr;gap:4px 12px;margin:0;align-items:baseline}
+    .mm-keys dl{display:grid;grid-template-columns:minmax(72px,max-content) 1fr;gap:4px 12px;margin:0;align-items:baseline}
     .mm-keys dt{display:flex;gap:3px;align-items:baseline;white-space:nowrap} .mm-keys dd{margin:0}
     .mm-keys kbd{display:inline-block;min-width:20px;padding:0 5px;border:1px solid #9CA3AF;border-bottom-width:2px;border-radius:4px;font:600 11.5px/18px system-ui,"Segoe UI",sans-serif;text-align:center;box-sizing:border-box}
     .mm-keys dt span{color:#6B7280}

@@ -138,6 +138,7 @@
     .mm-publish code{display:block;font:11.5px/1.45 ui-monospace,"DejaVu Sans Mono",monospace;padding:6px 8px;border-radius:4px 4px 0 0;background:rgba(107,114,128,.12);overflow-wrap:anywhere}
     .mm-publish button{display:block;width:100%;border:0;border-radius:0 0 4px 4px;padding:5px;font:600 12.5px/1.4 system-ui,"Segoe UI",sans-serif;color:#111827;background:#E2E8F0;cursor:pointer}
     .mm-publish button:hover:not(:disabled){background:#CBD5E1} .mm-publish button:disabled{cursor:default}
+    [data-mantine-color-scheme=dark] .mm-publish button{background:#374151;color:#F9FAFB} [data-mantine-color-scheme=dark] .mm-publish button:hover:not(:disabled){background:#4B5563}
     .mm-publish button:focus-visible{outline:2px solid #0072B2;outline-offset:1px}`;
   document.head.append(style);
 })();

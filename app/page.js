@@ -194,6 +194,7 @@
   style.textContent = `
     #mapmeld-hud{position:absolute;inset:0;pointer-events:none;z-index:2;font:13px/1.35 system-ui,"Segoe UI",sans-serif;color:#111827}
     button.mantine-Button-root[aria-pressed=true]{background:#0072B2!important;color:#fff!important;border-color:#0072B2!important}
+    [data-mantine-color-scheme=dark] .mantine-Button-root[style*="--button-bg: #e2e8f0"]{--button-bg:#374151!important;--button-hover:#4B5563!important;--button-color:#F9FAFB!important} /* palette.QUIET, in the dark */
     button.mantine-Button-root[aria-pressed]{padding-left:3px!important;padding-right:3px!important;min-width:0}
     *:has(> p > label:empty){display:none}
     .mantine-Notifications-root{top:auto!important;bottom:84px!important}
