@@ -53,6 +53,7 @@ class WireTab:
         self.words: dict[str, Any] = {}
         self.key = key
         self.bytes = 0
+        self._notices: list[str] = []
         self.files: dict[str, bytes] = {}  # that were sent whole
         self._coming: dict[str, tuple[str, int, dict[int, bytes]]] = {}
         self._said = 0
@@ -102,6 +103,8 @@ class WireTab:
                 self.props.setdefault(message["uuid"], {}).update(message["updates"])
             elif kind == "GuiRemoveMessage":
                 self.props.pop(message["uuid"], None)
+            elif kind == "NotificationShowMessage":
+                self._notices.append(message["props"]["title"])
             elif kind == "FileTransferStartDownload":
                 self._coming[message["transfer_uuid"]] = (message["filename"], message["part_count"], {})
             elif kind == "FileTransferPart":
@@ -118,6 +121,10 @@ class WireTab:
         parts[message["part_index"]] = message["content"]
         if len(parts) == count:
             self.files[name] = b"".join(parts[k] for k in range(count))
+
+    def notices(self, title: str) -> int:
+        """How often a notice of this title has been shown."""
+        return self._notices.count(title)
 
     def stop_reading(self) -> None:
         """From now on nothing is taken any more, as of a tab that hangs."""
