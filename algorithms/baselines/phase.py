@@ -1,9 +1,9 @@
 """Phase correlation: the turn from the amplitudes of the spectra (Reddy and Chatterji 1996), then the shift.
 
 The resolutions give the scale, so the amplitudes are looked up in polar coordinates, not log-polar ones. They
-have period π: each turn is tried with its twin. It does not use the observation. Of 14 pairs of real maps and
-8 simulated ones 10 and 7 come out right with amplitudes up to half of the highest frequency (side 400); with
-all of them, which hold the raster's own axes, 8 and 7; without whitening of the shift's spectrum 8 and 3.
+have period π: each turn is tried with its twin. It does not use the observation. Of 28 pairs of real maps and
+16 simulated ones 23 and 13 come out right. Of half of them 9 and 7 with amplitudes up to half of the highest
+frequency, with all of them 8 and 7, without whitening of the shift's spectrum 8 and 3.
 """
 
 from __future__ import annotations
