@@ -55,7 +55,10 @@ def planned(
 def _axis(setting: Setting, wanted: Wanted) -> Axis:
     if setting.bounds is None:
         return Axis(setting.path, tuple(setting.choices.values()) if setting.choices else (False, True))
-    values = axes.spaced(setting, wanted.low, wanted.high, wanted.count, wanted.by_factor)
+    try:
+        values = axes.spaced(setting, wanted.low, wanted.high, wanted.count, wanted.by_factor)
+    except SettingError as error:  # by the name of its flag; here it has another
+        raise SettingError(str(error).replace(".".join(setting.path), setting.label)) from error
     return Axis(setting.path, values)
 
 

@@ -33,7 +33,7 @@ SAMPLE = "office_r2_r1"
 ALIKE = "corridor_r3_r2"  # two places that look alike when turned
 SHOWN = (
     "swarm", "merged", "proof", "rival", "curtain", "by_hand", "place", "plain_image", "lesson_hough",
-    "lesson_swarm", "museum",
+    "lesson_swarm", "museum", "compared", "swept",
 )  # fmt: skip
 
 Keep = Callable[[str], None]
@@ -222,6 +222,39 @@ def a_museum(tab: Tab, keep: Keep) -> None:
     keep("museum")
 
 
+def a_contest(tab: Tab, keep: Keep) -> None:
+    """Methods compared, and one of them looked at."""
+    tab.page.get_by_role("tab", name="Compare").click()
+    tab.press("None")
+    settle(lambda: tab.page.get_by_role("button", name="Compare methods").count(), "no method")
+    for method in ("spectra-proven", "paper-argmax", "sift", "orb"):
+        tab.page.locator(f"[data-mm-pick={method}]").check()
+    tab.press("Compare 4 methods")
+    settle(lambda: "It took" in tab.text, "all of them")
+    tab.page.locator("[data-mm-show=paper-argmax]").click()
+    tab.page.wait_for_timeout(1800)
+    tab.page.locator("[data-mm-show=spectra-proven]").scroll_into_view_if_needed()
+    tab.page.mouse.move(640, 700)
+    tab.page.wait_for_timeout(400)
+    keep("compared")
+
+
+def a_sweep(tab: Tab, keep: Keep) -> None:
+    """Two settings swept, and a point of theirs taken."""
+    tab.page.get_by_role("tab", name="Sweep").click()
+    tab.choose("Method", "Spectra and window, no swarm")
+    settle(lambda: tab.page.get_by_text("Spectra and window, no swarm").count() > 1, "its settings")
+    tab.choose("second", "window kind")
+    tab.page.get_by_role("button", name="Merge", exact=True).scroll_into_view_if_needed()
+    tab.press("Run the sweep")
+    settle(lambda: "It took" in tab.text, "all points")
+    tab.page.locator("rect[data-mm-point]").nth(3).click()
+    settle(lambda: "up to date" in tab.state, "its settings")
+    tab.page.mouse.move(640, 700)
+    tab.page.wait_for_timeout(1200)
+    keep("swept")
+
+
 # what each scene is played for; the steps of the lesson that are not shown anywhere have their numbers
 SCENES: dict[Callable[[Tab, Keep], None], tuple[str, ...]] = {
     a_merge: (
@@ -235,6 +268,8 @@ SCENES: dict[Callable[[Tab, Keep], None], tuple[str, ...]] = {
     a_placement: ("place",),
     a_lesson: ("lesson_hough", "lesson_swarm"),
     a_museum: ("museum",),
+    a_contest: ("compared",),
+    a_sweep: ("swept",),
 }  # fmt: skip
 
 
