@@ -3,8 +3,8 @@
 The paper compares with "MSE based image registration" and does not say more. A descent from where the maps
 happen to lie finds nothing, so this one looks everywhere. It does not use the observation. Of 28 pairs of
 real maps and 16 simulated ones 24 and 16 come out right. The coarse search alone finds 24 and 16 roughly at a
-least overlap of 20 %, 18 and 16 at 10 %; of half of them 11 and 4 at 30 %, 9 and 2 at 50 %. With blurred walls
-in place of distances it finds 12 and 9 at 15 %.
+least overlap of 20 %, 18 and 16 at 10 %; of half of them 11 and 4 at 30 %, 9 and 2 at 50 %. With blurred
+walls in place of distances it finds 12 and 9 at 15 %.
 """
 
 from __future__ import annotations
