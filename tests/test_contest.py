@@ -1,5 +1,6 @@
 """Several methods on the same pairs: what counts as right and wrong, and that none costs another."""
 
+import warnings
 from dataclasses import replace
 
 import pytest
@@ -85,6 +86,14 @@ def test_a_truth_that_puts_the_maps_a_thousand_miles_apart_costs_no_other_case(s
     told = outcomes([("far", far), ("flat", small_case)])
     assert "the limit is" in told["far", QUICK].reason
     assert told["flat", QUICK].right
+
+
+@pytest.mark.parametrize("method", ["harris", "surf", "orb"])
+def test_a_rival_that_finds_nothing_says_so_and_warns_of_nothing_on_the_terminal(strangers, method):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        trial = outcomes([("neg", strangers)], (method,))["neg", method]
+    assert trial.reason.startswith("Refused: ")
 
 
 def test_a_bug_in_a_method_is_told_as_one(small_case, monkeypatch):

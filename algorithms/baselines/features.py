@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Annotated
+from warnings import catch_warnings, filterwarnings
 
 import numpy as np
 from skimage.feature import match_descriptors
@@ -106,16 +107,18 @@ def _agree(matches: MatchesDetail, config: MatchConfig, seed: int) -> Iterator[D
     """The transform that most matches agree on."""
     T, ref, mov = None, matches.ref, matches.mov
     if len(ref) >= max(LEAST, config.least):
-        model, _ = ransac(
-            (mov, ref),
-            EuclideanTransform,
-            min_samples=LEAST,
-            residual_threshold=config.tolerance,
-            is_data_valid=lambda a, b: _rigid(a, b, config.tolerance),
-            max_trials=config.trials,
-            stop_probability=0.9999,
-            rng=seed,
-        )
+        with catch_warnings():
+            filterwarnings("ignore", "No inliers found")  # an answer, too, and told below
+            model, _ = ransac(
+                (mov, ref),
+                EuclideanTransform,
+                min_samples=LEAST,
+                residual_threshold=config.tolerance,
+                is_data_valid=lambda a, b: _rigid(a, b, config.tolerance),
+                max_trials=config.trials,
+                stop_probability=0.9999,
+                rng=seed,
+            )
         T = Pose2.from_matrix(model.params) if model else None
     told = matches if T is None else agreeing(matches, T, config.tolerance)
     yield told
