@@ -224,13 +224,11 @@ class Page(Telling, Handling, Learning, Researching):
             if desk.outcome is not None and desk.result is not None:
                 self._answered(desk.outcome, desk.result, desk.config, live=False)
                 self._stage.flush()
-                if desk.guest is not None:
-                    self._welcome(desk.guest)
-            elif desk.guest is not None:
-                self._welcome(desk.guest)
+            if desk.guest is not None:
+                self._welcome(desk.guest, *self._merged_by(desk.guest))
             elif desk.held:
                 self._hand.begin(desk.hand)
-            elif desk.goal is not None:
+            elif desk.goal is not None and desk.result is None:
                 job = self._job(goal=desk.goal)
                 if job is not None:
                     self.session.request(job)

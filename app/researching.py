@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from threading import RLock
 from typing import Any, Literal
 
 import viser
 
-from algorithms.conflicts import find_conflicts
+from algorithms.conflicts import Conflicts, find_conflicts
 from algorithms.errors import MapMergeError
 from algorithms.fuse import Fusion
 from algorithms.methods import METHODS
@@ -18,6 +19,7 @@ from app.byhand import ByHand
 from app.channel import Channel
 from app.comparison import Comparison
 from app.desk import Desk
+from app.errand import Errand, Left
 from app.inputs import Inputs
 from app.lesson.mode import Lesson
 from app.palette import Palette
@@ -50,6 +52,7 @@ class Researching(ABC):
     _tuning: TuningPanel
     _export: ExportPanel
     _timeline: Timeline
+    _errand: Errand
     _lesson: Lesson
     _hand: ByHand
     _palette: Palette
@@ -138,17 +141,11 @@ class Researching(ABC):
 
     def save(self, name: str, make: Callable[[], bytes]) -> None:
         """Send a file, once it is made."""
-        with TAKEAWAY.making() as begun:
-            if not begun:
-                return
-            notice = self._client.add_notification(
-                "Making the files", "Tables and pictures.", loading=True, with_close_button=False
-            )
-            try:
-                content = make()
-            finally:
-                notice.remove()
-            TAKEAWAY.send(self._client, name, content)
+        with TAKEAWAY.making() as begun, suppress(Left):  # left: there is no file, and that is all
+            if begun:
+                with self._errand("Making the files: tables and pictures.", aside=True):
+                    content = make()
+                TAKEAWAY.send(self._client, name, content)
 
     # --- another method's transform over map 1 ----------------------------------------------------
 
@@ -156,13 +153,22 @@ class Researching(ABC):
         """Show what a method has found, in place of one's own result; undo goes back."""
         self._lesson.leave()
         self.session.stop()
+        try:
+            with self._errand(f"Laying it over map 1: {guest.title}.") as check:
+                seen = self._merged_by(guest)
+                check()
+        except Left:
+            return
+        except MapMergeError as error:  # it throws the maps too far apart
+            self._report(error)
+            return
         with self.session.drawing:
             self._hand.end()
             self._placing_done()
             desk = self._timeline.desk
-            if desk is not None and self._welcome(guest):
-                label = f"look at {guest.title}"
-                self._timeline.note(replace(desk, guest=guest), label)
+            if desk is not None:
+                self._timeline.note(replace(desk, guest=guest), f"look at {guest.title}")
+                self._welcome(guest, *seen)
 
     def back(self) -> None:
         """Show one's own result again, or the maps as they were."""
@@ -173,19 +179,18 @@ class Researching(ABC):
                 self._timeline.note(own, "back to one's own")
                 self._restore(own)
 
-    def _welcome(self, guest: Guest) -> bool:
-        """Draw it; whether it can be drawn. Whoever calls is drawing."""
+    def _merged_by(self, guest: Guest) -> tuple[Story, Conflicts]:
+        """What it would have told, and where the maps then contradict each other; raises TooLargeError."""
         i = self._inputs
-        if i.ref is None or i.mov is None:
-            return False
-        try:
-            story = guest.story(i.ref, i.mov, i.observations, self._story)
-        except MapMergeError as error:  # it throws the maps too far apart
-            self._report(error)
-            return False
+        assert i.ref is not None
+        assert i.mov is not None
+        story = guest.story(i.ref, i.mov, i.observations, self._story)
         fusion = story.get(Fusion)
         assert fusion is not None
-        found = find_conflicts(fusion)
+        return story, find_conflicts(fusion)
+
+    def _welcome(self, guest: Guest, story: Story, found: Conflicts) -> None:
+        """Draw it. Whoever calls is drawing."""
         self._story, self._guest = story, guest
         if self._run.view != MAP:
             self._run.view = MAP
@@ -200,7 +205,6 @@ class Researching(ABC):
             self._tell_legend()
             self._stage.flush()
         self._compare_tab.shown(guest)
-        return True
 
     def _farewell(self) -> bool:
         """Something else is shown from now on; whether a guest was. Whoever calls is drawing."""

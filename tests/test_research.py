@@ -1,5 +1,6 @@
 """Comparisons and sweeps beside the page: background work, words, numbers of curves, what fields ask for."""
 
+import os
 from collections.abc import Iterator
 from dataclasses import replace
 from threading import Event, RLock
@@ -16,6 +17,7 @@ from algorithms.errors import SettingError
 from algorithms.methods import METHODS
 from algorithms.pose import Pose2
 from app.controls import settings_of, with_value
+from app.executor import Task
 from app.palette import DARK, LIGHT
 from app.panels.compare import Card, card_html
 from app.pictures.heat import heat_svg
@@ -23,7 +25,7 @@ from app.pictures.thumbnail import thumbnail
 from app.research import background, curves
 from app.research.archive import contest_archive
 from app.research.asked import MOST_POINTS, Wanted, labelled, planned, suggestion
-from app.research.background import Background
+from app.research.background import Background, beside_the_page
 from app.research.guest import Guest
 from app.research.outcome import outcome_of
 from app.story import Story
@@ -125,6 +127,15 @@ def test_only_so_many_work_at_once_and_one_that_waits_can_be_stopped(work, monke
     turns.release()
     settled(lambda: not found.busy, "its end")
     assert heard[-3:] == ["begins", 2, ("over", "")]
+
+
+def niceness(_, order):
+    return os.nice(0)
+
+
+def test_work_beside_the_page_gives_way_to_it():
+    ((_, nice),) = beside_the_page(1).run(niceness, [Task(0)])
+    assert nice > os.nice(0)
 
 
 # ---- what came of a method

@@ -239,7 +239,9 @@ class SweepPanel:
 
     def heat(self, svg: str) -> None:
         """Show a field of colours."""
-        self._heat.content = f'<div class="mm-heat">{svg}</div>'
+        html = f'<div class="mm-heat">{svg}</div>'
+        if self._heat.content != html:
+            self._heat.content = html
         if self._curve.visible:
             self._curve.visible = False
 

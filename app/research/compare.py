@@ -154,10 +154,11 @@ class Compare:
             case = Case(i.name or "your maps", i.ref, i.mov, i.observations, "", i.truth)
             configs = {name: self._host.settings_for(name) for name in self._asked}
 
-            def work(stop: Event) -> Iterator[Guest]:
+            def work(stop: Event) -> Iterator[tuple[Guest, str]]:
                 pairs = [(case.name, case)]
                 for score in contest(pairs, configs, self._executor(1), seed, stop):
-                    yield Guest(score.method, configs[score.method], seed, score.trial)
+                    guest = Guest(score.method, configs[score.method], seed, score.trial)
+                    yield guest, self._painted(guest, i)  # here nobody waits for it
 
             self._work.start(work)
             self._panel.say("Starting.", 0.0)
@@ -201,10 +202,11 @@ class Compare:
         self._began = perf_counter()
         self._panel.say("Starting.", 0.0)
 
-    def told(self, part: Guest) -> None:
+    def told(self, part: tuple[Guest, str]) -> None:
         """A method has ended."""
-        self._found[part.method] = part
-        self._waiting.remove(part.method)
+        guest, picture = part
+        self._found[guest.method], self._pictures[guest.method] = guest, picture
+        self._waiting.remove(guest.method)
         self._panel.say(self._count(), 1 - len(self._waiting) / len(self._asked))
         self._draw()
 
@@ -245,12 +247,14 @@ class Compare:
 
     def _picture(self, guest: Guest) -> str:
         """The merged map as a data URI; made once in the colours of the page."""
-        i, pose = self._pair, guest.trial.pose
+        if guest.method not in self._pictures:
+            self._pictures[guest.method] = self._painted(guest, self._pair)
+        return self._pictures[guest.method]
+
+    def _painted(self, guest: Guest, i: Inputs) -> str:
+        pose = guest.trial.pose
         if pose is None or i.ref is None or i.mov is None:
             return ""
-        if guest.method not in self._pictures:
-            pixels = thumbnail(i.ref, i.mov, pose, self._host.palette)
-            opaque = np.full((*pixels.shape[:2], 1), 255, dtype=np.uint8)
-            packed = png_base64(np.concatenate([pixels, opaque], axis=2))
-            self._pictures[guest.method] = f"data:image/png;base64,{packed}"
-        return self._pictures[guest.method]
+        pixels = thumbnail(i.ref, i.mov, pose, self._host.palette)
+        opaque = np.full((*pixels.shape[:2], 1), 255, dtype=np.uint8)
+        return f"data:image/png;base64,{png_base64(np.concatenate([pixels, opaque], axis=2))}"
