@@ -29,7 +29,7 @@ from app.figures.sweep import sweep_figure  # noqa: E402
 from app.journal import Journal  # noqa: E402
 from app.machine import machine  # noqa: E402
 from app.progress import bar  # noqa: E402
-from app.sweep import Plan, point_keys, sweep  # noqa: E402
+from app.sweep import Plan, in_order, point_keys, sweep  # noqa: E402
 from app.sweep_files import points_csv, runs_csv, times_csv  # noqa: E402
 from app.tables import markdown  # noqa: E402
 
@@ -105,6 +105,7 @@ def swept(
     """A sweep of one pair, its tables and its figure."""
     told = sweep(case, plan, executor, journal)
     points = list(bar(iterable=told, total=len(plan.places()), desc=f"{figure} {case.name}", unit="point"))
+    points = in_order(plan, points)
     drawn = sweep_figure(plan, points, f"{case.name}: {METHODS[METHOD].title}", case.ref.resolution)
     files |= {f"{figure}_{case.name}{suffix}": data for suffix, data in drawn.items()}
     files[f"{figure}_{case.name}.csv"] = points_csv(plan, points)
