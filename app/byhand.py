@@ -43,6 +43,10 @@ class Host(Protocol):
     def on_map(self) -> bool:
         """Whether the map is looked at."""
 
+    @property
+    def follows(self) -> bool:
+        """Whether the camera is to go along."""
+
     def hand_asked(self) -> None:
         """A person wants map 2 in their hand: whatever else is going on ends."""
 
@@ -89,7 +93,7 @@ class ByHand:
         self._work = Newest(self._weigh, "mapmeld-hand")
         where = {"x": float, "y": float, "theta": float}
         channel.on("carry", lambda **at: self._carry(Pose2(**at)), latest=True, **where)
-        channel.on("put", lambda **at: self._put(Pose2(**at)), **where)
+        channel.on("put", lambda stepped, **at: self._put(Pose2(**at), stepped), stepped=bool, **where)
 
     def close(self) -> None:
         """The tab is gone."""
@@ -157,15 +161,21 @@ class ByHand:
             if self.active:
                 self._at = at
                 self._maps.carried(at)
+                self.panel.show(self._maps.layout.transform(at))
                 self._work.ask((at, False))
 
-    def _put(self, at: Pose2) -> None:
+    def _put(self, at: Pose2, stepped: bool) -> None:
+        """Map 2 was put down by the hand, or stepped by a key: then the camera takes it in."""
         with self._turn:
             if self.active:
                 self._at = at
                 self._maps.carried(at)
                 T = self._maps.layout.transform(at)
                 self.panel.show(T)
+                if stepped and self._host.follows:
+                    with self._drawing:
+                        self._stage.look_down(self._maps.extent(), need=True)
+                        self._stage.flush()
                 self._work.ask((at, True))
                 self._host.hand_moved(T)
 
@@ -183,6 +193,8 @@ class ByHand:
             with self._drawing:
                 self._maps.carried(self._at)
                 self._stage.place_mov(self._at, GLIDE)
+                if self._host.follows:
+                    self._stage.look_down(self._maps.extent(), need=True)
                 self._stage.flush()
             self.panel.show(T_ref_mov)
             self._work.ask((self._at, True))

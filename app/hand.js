@@ -88,7 +88,8 @@
     if (!last && now - said < EVERY) { late = setTimeout(() => report(false), EVERY - (now - said)); return; }
     said = now;
     if (!hold || hold.kind === "carry" || hold.kind === "turn") {
-      S.tell(last ? "put" : "carry", { x: round(S.mov.x), y: round(S.mov.y), theta: round(wrap(S.mov.theta)) });
+      const at = { x: round(S.mov.x), y: round(S.mov.y), theta: round(wrap(S.mov.theta)) };
+      if (last) S.tell("put", { ...at, stepped: !hold }); else S.tell("carry", at);
     } else {
       const known = hold.a !== null && hold.a !== undefined && !(hold.vague && hold.kind === "body");
       S.tell(last ? "drop" : "drag", { id: hold.id, at: hold.p.map(round), heading: known ? [round(wrap(hold.a))] : [] });

@@ -193,6 +193,11 @@ class Handling(ABC):
         """Whether the map is looked at."""
         return self._run.view == MAP
 
+    @property
+    def follows(self) -> bool:
+        """Whether the camera is to go along."""
+        return self._run.follow
+
     def hand_asked(self) -> None:
         """A person wants map 2 in their hand: whatever else is going on ends."""
         self._lesson.leave()

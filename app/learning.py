@@ -13,6 +13,7 @@ import viser
 from algorithms.errors import MapMergeError
 from algorithms.steps import AugmentDetail
 from app.byhand import ByHand
+from app.channel import Channel
 from app.comparison import Comparison
 from app.desk import Desk
 from app.inputs import Files, Inputs
@@ -38,6 +39,7 @@ class Learning(ABC):
 
     session: Session
     _client: viser.ClientHandle
+    _channel: Channel
     _stage: Stage
     _maps: MapView
     _plots: PlotDock
@@ -57,6 +59,12 @@ class Learning(ABC):
         """Add both to the page; ``lesson`` is the folder of its texts, None for those that come along."""
         self._lesson = Lesson(self, gui, self._tuning, self._turn, lesson or lesson_folder())
         self._museum = Museum(self, gui, self._turn, museum_folder())
+        self._channel.on("left", self._left)
+
+    def _left(self) -> None:
+        """The lesson's dock is gone: that of the plots, which came beside it, gets its width."""
+        if not self._lesson.open:
+            self._plots.visible(True)
 
     def _learn(self, what: str) -> None:
         """Open or close the one or the other."""
@@ -83,6 +91,10 @@ class Learning(ABC):
     @abstractmethod
     def _turn_view(self) -> None:
         """Show the chosen view."""
+
+    @abstractmethod
+    def _forget_place(self) -> None:
+        """What was read out at a click goes."""
 
     @abstractmethod
     def _merge(self) -> None:
@@ -138,6 +150,7 @@ class Learning(ABC):
         self._run.open(LESSON, open_)
         self._plots.visible(not open_)
         self._comparison.clear()
+        self._forget_place()
         self._stage.layer("lesson", None)
         if open_ and self._run.view != MAP:
             self._run.view = MAP

@@ -101,5 +101,8 @@ def legend(
         return [*maps, _chip("diamond", palette.particle, "robot 2 under a candidate")]
     if isinstance(detail, (AugmentDetail, HoughDetail, CandidatesDetail)) and augmented:
         first = _chip("diamond", palette.best, "robot 2 under the best candidate")
-        return [*maps, first] if isinstance(detail, CandidatesDetail) else [level_scale(augmented)]
+        if not isinstance(detail, CandidatesDetail):
+            return [level_scale(augmented)]
+        others = [_chip("diamond", palette.particle, "under another")] if len(detail.candidates) > 1 else []
+        return [*maps, first, *others]
     return maps

@@ -30,6 +30,7 @@
   setInterval(() => { // a new step is read from its top
     const step = document.querySelector(".mm-lesson"), now = step ? step.dataset.step : "";
     if (now === seen) return;
+    if (seen && !now) window.mapmeld.tell("left"); // only now does the dock that took its place keep a width of its own
     seen = now;
     const view = step && step.closest(".mantine-ScrollArea-viewport");
     if (!view) return;

@@ -58,6 +58,11 @@
         z + distance * Math.sin(p) * Math.cos(a), x, y, z, false);
     }
   }
+  function within([x0, y0, x1, y1]) { // whether a rectangle can be seen whole, between the words
+    const box = canvas.getBoundingClientRect();
+    const [left, low] = S.ground(box.left, box.bottom - 20), [right, top] = S.ground(box.right, box.top + 70);
+    return x0 >= left && y0 >= low && x1 <= right && y1 <= top;
+  }
   function clip(camera) { // near and far follow the distance, so that the layers never fight for depth
     const k = viewer().cameraControl, near = k.distance * 0.3, far = k.distance * 3;
     if (Math.abs(camera.near / near - 1) > 0.01 || Math.abs(camera.fov - 4) > 1e-6) {
@@ -97,6 +102,7 @@
     project: (frame, p) => project(camera, frame, p),
     mov: S.mov, metre: metre(camera), wide: ink.clientWidth, high: ink.clientHeight, dark: S.dark,
   });
+  const mapped = () => (S.hud.frames || []).some(Boolean); // an empty page has nothing to measure or to explain
   function readings(g, view, camera, colour) { // what a click and the pointer read off the map
     const x = 18, y = view.high - 22;
     if (S.hud.readout) words(g, view, S.hud.readout, x, y - 62, colour, 12);
@@ -129,6 +135,7 @@
       ink.width = frame.width * devicePixelRatio; ink.height = frame.height * devicePixelRatio;
       ink.style.width = frame.width + "px"; ink.style.height = frame.height + "px";
       if (S.follow) aim(false);
+      if (S.hud.readout) { S.hud.readout = ""; S.tell("resized"); } // a click of another view
       S.dirty = true;
     }
     const eye = camera.matrixWorldInverse.elements.join() + camera.projectionMatrix.elements.join();
@@ -141,7 +148,7 @@
     g.clearRect(0, 0, ink.clientWidth, ink.clientHeight);
     const view = viewOf(camera);
     if (layers(g, view, S.layers, time)) S.dirty = true;
-    if (S.view === "map") readings(g, view, camera, scaleBar(g, view));
+    if (S.view === "map" && mapped()) readings(g, view, camera, scaleBar(g, view));
     each("paint", g, view);
   }
 
@@ -173,11 +180,11 @@
     const bar = hud.querySelector(".mm-bar");
     bar.style.visibility = h.progress === null || h.progress === undefined ? "hidden" : "visible";
     bar.firstChild.style.width = `${100 * (h.progress || 0)}%`;
-    const key = JSON.stringify([h.legend, S.dark]);
+    const entries = (mapped() && h.legend) || [], key = JSON.stringify([entries, S.dark]);
     const legend = hud.querySelector(".mm-legend");
     if (legend.dataset.key === key) return;
     legend.dataset.key = key;
-    legend.replaceChildren(...(h.legend || []).map((entry) => {
+    legend.replaceChildren(...entries.map((entry) => {
       const chip = document.createElement("span"), swatch = document.createElement("i");
       swatch.className = "mm-" + entry.s;
       if (entry.s === "scale") {
@@ -289,7 +296,7 @@
     if (message.look) {
       const turning = S.look && S.look.view !== message.look.view;
       S.look = message.look;
-      if (S.follow || turning) aim(true);
+      if ((S.follow || turning) && !(S.look.need && !turning && hooked && canvas && within(S.look.box))) aim(true);
     }
     if (message.channel) S.channel = message.channel;
     if (message.background && viewer() && viewer().canvas) viewer().canvas.style.background = message.background;

@@ -164,6 +164,7 @@ class Page(Telling, Handling, Learning, Researching):
         self._plots = PlotDock(client, self._press)
         self._research_with(gui)
         client.scene.on_click()(self._read_out)
+        self._channel.on("resized", self._forget_place)
 
     def _theme(self) -> None:
         self._client.gui.configure_theme(
@@ -363,6 +364,12 @@ class Page(Telling, Handling, Learning, Researching):
         place = np.array([-x, y])
         self._stage.hud(readout=self._maps.read_out(place, self._story))
         self._stage.layer("readout", [mark("cross", place, self._palette.text, r=6)])
+        self._stage.flush()
+
+    def _forget_place(self) -> None:
+        """What was read out at a click goes: the view is another."""
+        self._stage.hud(readout="")
+        self._stage.layer("readout", None)
         self._stage.flush()
 
     def _fit(self) -> None:

@@ -72,13 +72,14 @@ class Stage(ABC):
         with self._lock:
             self._pending["mov"] = {"x": at.x, "y": at.y, "theta": at.theta, "ms": milliseconds}
 
-    def look_down(self, rect: Rect, follow: bool = False) -> None:
+    def look_down(self, rect: Rect, follow: bool = False, need: bool = False) -> None:
         """Show a rectangle of the map from above, north up.
 
         follow : also where the person has moved the camera since the last time
+        need   : only where a part of it cannot be seen
         """
         with self._lock:
-            self._pending["look"] = {"view": "map", "box": list(rect)}
+            self._pending["look"] = {"view": "map", "box": list(rect), **({"need": True} if need else {})}
             self._pending["follow"] = follow or self._pending.get("follow", False)
 
     def look_at(self, view: str, centre: FloatArray, radius: float, polar: float, azimuth: float) -> None:

@@ -10,7 +10,7 @@ from algorithms.errors import InputFileError
 from algorithms.methods import METHODS, merge
 from algorithms.pose import pose_error
 from algorithms.steps import MergeResult
-from app.lesson.museum import rows
+from app.lesson.museum import changes, rows
 from app.lesson.texts import Exhibit, exhibit_case, files, museum_folder, read_exhibit, with_settings
 
 GOOD = """\
@@ -72,6 +72,18 @@ def test_what_is_set_for_an_exhibit_is_told_in_the_words_of_the_panel(tmp_path):
         ("method", METHODS["spectra-swarm"].title),
         ("twins", "off"),
     ]
+
+
+@pytest.mark.parametrize("path", files(museum_folder()), ids=lambda path: path.stem)
+def test_what_a_cure_changes_is_told_with_what_it_was_before(path):
+    read = read_exhibit(path)
+    failing = with_settings(METHODS[read.method].defaults, read.settings)
+    cured = with_settings(METHODS[read.cure_method].defaults, (*read.settings, *read.cure_settings))
+    before, after = dict(rows(read, failing)), dict(changes(read, failing, cured))
+    assert before.keys() <= after.keys()
+    assert any("→" in words for words in after.values())
+    for name, words in before.items():
+        assert after[name].split(" → ")[0] == words
 
 
 def exhibit_of(folder: Path, text: str) -> Exhibit:

@@ -77,7 +77,8 @@ class Museum:
                 return
             self._exhibit = exhibit
             method, config = self._failing(exhibit)
-            self._panel.exhibit(index, exhibit.body, rows(exhibit, config))
+            self._panel.exhibit(index, exhibit.body)
+            self._panel.settings(rows(exhibit, config))
             self._hall.hang(self._inputs, method, config, f"exhibit: {exhibit.title}")
 
     def cure(self) -> None:
@@ -86,6 +87,7 @@ class Museum:
             if self.open and self._exhibit is not None:
                 if self._hall.desk is None or self._hall.desk.inputs is not self._inputs:
                     self.pick(self._index)
+                self._panel.settings(self._changes(self._exhibit))
                 self._hall.treat(*self._cured(self._exhibit))
 
     def _again(self) -> None:
@@ -102,8 +104,10 @@ class Museum:
         where = apart_by(distance, angle)
         if (method, config) == self._failing(exhibit) and not right:
             noticed = "The verdict saw it." if verdict == "refused" else "The verdict did not see it."
+            self._panel.settings(rows(exhibit, config))
             self._panel.failed(exhibit.why, f"Wrong: {where} from the truth. {noticed}", exhibit.cure)
         elif (method, config) == self._cured(exhibit) and right:
+            self._panel.settings(self._changes(exhibit))
             self._panel.cured(exhibit.cured, f"Cured: {where} from the truth, and {verdict}.")
 
     def _failing(self, exhibit: Exhibit) -> tuple[str, Any]:
@@ -112,6 +116,9 @@ class Museum:
     def _cured(self, exhibit: Exhibit) -> tuple[str, Any]:
         both = (*exhibit.settings, *exhibit.cure_settings)
         return exhibit.cure_method, with_settings(METHODS[exhibit.cure_method].defaults, both)
+
+    def _changes(self, exhibit: Exhibit) -> list[tuple[str, ...]]:
+        return changes(exhibit, self._failing(exhibit)[1], self._cured(exhibit)[1])
 
     def _title(self, path: Path) -> str:
         try:
@@ -127,10 +134,26 @@ def rows(exhibit: Exhibit, config: Any) -> list[tuple[str, ...]]:
     return told + _settings(exhibit.settings, config)
 
 
+def changes(exhibit: Exhibit, failing: Any, cured: Any) -> list[tuple[str, ...]]:
+    """The same once the cure is applied: what it has changed with what it was before."""
+    titles = [METHODS[method].title for method in (exhibit.method, exhibit.cure_method)]
+    touched = tuple(dict((*exhibit.settings, *exhibit.cure_settings)).items())
+    before, after = dict(_settings(touched, failing)), _settings(touched, cured)
+    told = [("method", _change(*titles))]
+    told += [(label, _change(before.get(label, words), words)) for label, words in after]
+    return [rows(exhibit, failing)[0], *told]
+
+
+def _change(old: str, new: str) -> str:
+    return new if old == new else f"{old} → {new}"
+
+
 def _settings(settings: Settings, config: Any) -> list[tuple[str, ...]]:
     known = {setting.path: setting for setting in settings_of(config)}
     out: list[tuple[str, ...]] = []
     for path, _ in settings:
+        if path not in known:  # of another method
+            continue
         setting, value = known[path], value_at(config, path)
         if setting.choices is not None:
             words = word_for(setting, value)

@@ -64,19 +64,22 @@ class MuseumPanel:
         if tuple(self._exhibit.options) != self._titles:
             self._exhibit.options = self._titles
 
-    def exhibit(self, index: int, body: str, settings: Sequence[Row]) -> None:
+    def exhibit(self, index: int, body: str) -> None:
         """Show an exhibit before its merge."""
         if self._exhibit.value != self._titles[index]:
             self._exhibit.value = self._titles[index]
         self._body.content = body
-        self._settings.content = table(settings, ("set for this exhibit", ""))
+        self._settings.content = ""
         self._told.content = ""
         self._buttons(cure="", again=False)
 
+    def settings(self, settings: Sequence[Row]) -> None:
+        """Show what is set for the exhibit, or by its cure."""
+        self._settings.content = table(settings, ("set for this exhibit", ""))
+
     def broken(self, index: int, what: str) -> None:
         """Tell what is wrong with the text of an exhibit."""
-        self.exhibit(index, "", ())
-        self._settings.content = ""
+        self.exhibit(index, "")
         self._told.content = box(f"This text cannot be read. {what}", "refused")
 
     def failed(self, why: str, numbers: str, cure: str) -> None:

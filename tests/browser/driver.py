@@ -122,7 +122,8 @@ class Tab:
 
     def press(self, name: str) -> None:
         """Press a button by its name."""
-        self.page.get_by_role("button", name=name, exact=True).click()
+        button = self.page.get_by_role("button", name=name, exact=True)
+        button.and_(self.page.locator("button")).click()  # a folder's head may be called the same
 
     def wait_for(self, mood: str) -> None:
         """Wait until the run has come to this."""

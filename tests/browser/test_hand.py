@@ -150,6 +150,7 @@ def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(ta
     tab.page.mouse.down()
     tab.page.mouse.move(start[0] + 60, start[1] - 30, steps=6)
     settle(lambda: tab.state.startswith("By hand, would be refused: "), "a verdict before the hand lets go")
+    settle(lambda: field(tab, "T: Δx (m)") > x + 1, "a number before the hand lets go")
     tab.page.mouse.up()
     scale = tab.page.evaluate("() => mapmeld.pixel([1, 0])[0] - mapmeld.pixel([0, 0])[0]")  # px per metre
     settle(lambda: field(tab, "T: Δx (m)") == pytest.approx(x + 60 / scale, abs=0.05), "Δx of the drag")
@@ -171,6 +172,15 @@ def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(ta
     settle(lambda: at_mov(tab, (0.0, 0.0))[0] > before[0] + 20, "the empty ground to pan")
     settle(lambda: field(tab, "T: Δθ (°)") == pytest.approx(turn, abs=0.01), "the number")
 
+    tab.press("Show everything")
+    width = tab.page.locator("#mapmeld-ink").bounding_box()["width"]
+    far = tab.page.get_by_label("T: Δx (m)", exact=True)
+    far.fill(f"{x + 60:.2f}")
+    far.press("Enter")
+    settle(
+        lambda: ink["x"] < tab.page.evaluate("() => mapmeld.pixel([0, 0], 'mov')[0]") < ink["x"] + width,
+        "the camera to take in a map that was typed out of the picture",
+    )
     for label, value in (("T: Δx (m)", x), ("T: Δy (m)", y)):
         box = tab.page.get_by_label(label, exact=True)
         box.fill(f"{value:.2f}")

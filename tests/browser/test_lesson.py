@@ -59,8 +59,11 @@ def test_every_step_is_shown_on_a_sample_and_leaving_puts_everything_back(tab):
     first = settle(lambda: tab.number(row), "the agreement")
     tab.move("spread", 3)
     value = settle(lambda: (now := tab.number(row)) not in ("", first) and now, "another answer")
-    before = tab.state
+    before, dock = tab.state, tab.page.locator("#mapmeld-ink").bounding_box()["x"]
+    tab.page.mouse.click(dock + 100, 400)
+    settle(lambda: tab.layer("readout"), "what is known of a place")
     enter(tab)
+    assert tab.layer("readout") == []
     for number in range(1, len(STEPS) + 1):
         at_step(tab, number)
         shows_what_it_should(tab)
@@ -76,6 +79,7 @@ def test_every_step_is_shown_on_a_sample_and_leaving_puts_everything_back(tab):
     tab.press("Result")
     settle(lambda: tab.number(row) == value, "the numbers of before")
     assert tab.layer("lesson") == []
+    settle(lambda: tab.page.locator("#mapmeld-ink").bounding_box()["x"] == dock, "the dock's width of before")
 
 
 def test_a_thing_to_try_moves_the_real_slider_and_is_put_back(tab):
@@ -213,6 +217,7 @@ def test_an_exhibit_fails_as_told_and_its_cure_merges(tab):
     assert "an aisle too far" in tab.text
     tab.press("Cure: Use the coupled window")
     settle(lambda: "Cured: " in tab.text, "the cure")
+    assert tab.number("window kind") == "Origin → Coupled"
     assert tab.mood == "accepted"
     tab.press("Once more, uncured")
     settle(lambda: tab.state == "Ready. Press Merge.", "the exhibit again")

@@ -204,6 +204,7 @@ def test_forgotten_uploads_are_gone_from_the_page(tab, tmp_path, sample: Case):
     tab.press("Forget uploads")
     settle(lambda: tab.state.startswith("Choose a sample"), "the empty page")
     assert tab.page.get_by_role("button", name="Merge", exact=True).is_disabled()
+    settle(lambda: not tab.page.locator(".mm-legend span").count(), "no legend where there is no map")
 
 
 def test_a_file_name_is_shown_as_words_and_never_run(tab, tmp_path):
