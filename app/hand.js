@@ -160,10 +160,11 @@
     const step = STEPS[e.key], way = TURNS[e.key];
     if (!step && !way) return;
     stop(e);
+    const at = S.tween ? S.tween.to : S.mov; // on its way it is stepped from where it is going
     const cell = S.hand.mov.cell, length = e.shiftKey ? Math.min(0.01, cell) : cell, degrees = e.shiftKey ? 0.1 : 0.5;
     S.carry({
-      x: S.mov.x + (step ? step[0] * length : 0), y: S.mov.y + (step ? step[1] * length : 0),
-      theta: S.mov.theta + (way ? way * degrees * Math.PI / 180 : 0),
+      x: at.x + (step ? step[0] * length : 0), y: at.y + (step ? step[1] * length : 0),
+      theta: at.theta + (way ? way * degrees * Math.PI / 180 : 0),
     });
     report(true);
   }, true);

@@ -97,7 +97,7 @@ def test_a_run_saved_from_the_page_plays_as_a_file_without_a_network(tab, browse
     settle(lambda: tab.state.startswith("Merged") and save.is_enabled(), "the offer of the new run")
 
     replay = Replay(browser, saved)
-    assert replay.caption == "Two robots, two maps, no common frame."
+    settle(lambda: replay.caption == "Two robots, two maps, no common frame.", "the first picture")
     assert "office_r2_r1" in replay.page.locator(".title").inner_text()
     replay.page.keyboard.press("Space")
     settle(lambda: replay.time > 1.3 and replay.step != "Maps", "the clock to run")
