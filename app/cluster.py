@@ -7,7 +7,7 @@ import asyncio
 import logging
 from collections import OrderedDict
 from collections.abc import Iterable, Iterator
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from threading import Event
 from typing import TYPE_CHECKING, Any
 
@@ -97,7 +97,8 @@ class Cluster(Executor):
             logging.getLogger(name).setLevel(logging.CRITICAL)  # it is said by us, once and in words
         try:
             # a Client that nobody answers leaves threads behind that complain later
-            asyncio.run(_knock(self._address, PATIENCE_S))
+            with ThreadPoolExecutor(1) as apart:  # this thread may have a loop already, as in a notebook
+                apart.submit(lambda: asyncio.run(_knock(self._address, PATIENCE_S))).result()
             return Client(self._address, timeout=PATIENCE_S, set_as_default=False)
         except Exception as error:  # whatever may answer at any address that a person can type
             raise SettingError(

@@ -24,7 +24,7 @@ from algorithms.window import BoxConfig
 
 REF, MOV, SEEN, T = flat_pair()
 DEFAULT = METHODS["spectra-proven"].defaults
-SHIPPED = sorted((Path(__file__).parents[1] / "sample_maps").glob("*/"))
+SHIPPED = sorted(path.parent for path in (Path(__file__).parents[1] / "sample_maps").glob("*/map1.yaml"))
 NO_SWARM = SwarmConfig(particles=10, iterations=1)  # what the swarm finds has no influence on the answer
 
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
 from driver import settle
 
 from algorithms.errors import NoAnswerError
 from algorithms.methods import METHODS
 from app.palette import LIGHT, css
+
+pytestmark = pytest.mark.browser
 
 
 def test_matched_features_are_drawn_and_those_that_agree_run_side_by_side(tab):
