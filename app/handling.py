@@ -2,70 +2,30 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import replace
-from threading import RLock
-from typing import Any
 
 import viser
 
 from algorithms.casefiles import OBSERVATION_FILE, observations_to_bytes
-from algorithms.conflicts import Conflicts
 from algorithms.errors import MapMergeError
 from algorithms.handmade import Scales, known_answers, refine
 from algorithms.observation import Observation
 from algorithms.pose import Pose2
 from algorithms.steps import MergeResult, ObservationDetail, Step
 from app.byhand import ByHand
-from app.channel import Channel
-from app.comparison import Comparison
 from app.desk import Desk
-from app.inputs import Inputs
 from app.layout import Layout
 from app.legend import legend
-from app.lesson.mode import Lesson
-from app.palette import Palette
-from app.panels.export import ExportPanel
-from app.panels.observation import ObservationPanel
 from app.panels.result import result_html
-from app.panels.run import MAP, RunPanel
-from app.panels.tuning import TuningPanel
+from app.panels.run import MAP
+from app.part import Part
 from app.placing import Placing
-from app.session import Job, Session
-from app.stage import Stage
 from app.story import Story
-from app.timeline import Timeline
-from app.views.maps import MapView
-from app.views.plots import PlotDock
 
 
-class Handling(ABC):
-    """Half of a Page; the attributes below are the other half's."""
+class Handling(Part):
+    """The part of a Page that is done by hand."""
 
-    session: Session
-    _channel: Channel
-    _stage: Stage
-    _maps: MapView
-    _plots: PlotDock
-    _comparison: Comparison
-    _run: RunPanel
-    _tuning: TuningPanel
-    _observation: ObservationPanel
-    _export: ExportPanel
-    _timeline: Timeline
-    _lesson: Lesson
-    _palette: Palette
-    _inputs: Inputs
-    _story: Story
-    _result: MergeResult | None
-    _config: Any
-    _conflicts: Conflicts | None
-    _merged: bool
-    _asked: bool
-    _turn: RLock
-    _farewell: Callable[[], bool]  # app/researching.py
-    _research_changes: Callable[[], None]
     _method: Story | None = None  # of the last run whose answer was not made by hand
     _refining: tuple[Scales, Pose2] | None = None  # where map 2 was when its refinement began
 
@@ -74,44 +34,6 @@ class Handling(ABC):
         both = self._turn, self.session.drawing
         self._hand = ByHand(gui, self._channel, self._stage, self._maps, *both, self)
         self._placing = Placing(self._observation, self._channel, self._stage, self._maps, *both, self)
-
-    # --- what the other half does -----------------------------------------------------------------
-
-    @abstractmethod
-    def _turn_view(self) -> None:
-        """Show the chosen view."""
-
-    @abstractmethod
-    def _tell_legend(self) -> None:
-        """Say what the colours of the picture mean."""
-
-    @abstractmethod
-    def _report(self, error: MapMergeError) -> None:
-        """Tell the person what is wrong."""
-
-    @abstractmethod
-    def _show_inputs(self, inputs: Inputs) -> bool:
-        """Show these inputs in place of everything there was."""
-
-    @abstractmethod
-    def _desk(self) -> Desk:
-        """What is on the page."""
-
-    @abstractmethod
-    def _restore(self, desk: Desk) -> None:
-        """Put a desk back."""
-
-    @abstractmethod
-    def _job(self, **how: Any) -> Job | None:
-        """What a run would do now."""
-
-    @abstractmethod
-    def _answered(self, story: Story, result: MergeResult, config: Any, live: bool) -> None:
-        """Show an answer."""
-
-    @abstractmethod
-    def _save(self, name: str, content: bytes) -> None:
-        """Send a file."""
 
     def _fade(self) -> None:
         """What was found is out of date."""
@@ -137,7 +59,7 @@ class Handling(ABC):
             self._run.view = MAP
             self._turn_view()
         self._maps.load(replace(self._inputs, observations=()), layout, self._palette)
-        shown = {"anchor": layout.anchor_ref.tolist(), "legend": legend(self._palette, MAP, Story())}
+        shown = {"frames": layout.frames(), "legend": legend(self._palette, MAP, Story())}
         self._stage.hud(mood="idle", progress=None, readout="", **shown)
         self._stage.layer("readout", None)
 

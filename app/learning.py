@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable
 from pathlib import Path
-from threading import RLock
 from typing import Any
 
 import viser
 
 from algorithms.errors import MapMergeError
 from algorithms.steps import AugmentDetail
-from app.byhand import ByHand
-from app.channel import Channel
-from app.comparison import Comparison
 from app.desk import Desk
 from app.inputs import Files, Inputs
 from app.layout import Layout
@@ -23,37 +17,14 @@ from app.lesson.mode import Lesson
 from app.lesson.museum import Museum
 from app.lesson.texts import lesson_folder, museum_folder
 from app.palette import Palette
-from app.panels.files import FilesPanel
-from app.panels.run import LESSON, MAP, MUSEUM, RunPanel
-from app.panels.tuning import TuningPanel
-from app.session import Session
-from app.stage import Item, Stage
+from app.panels.run import LESSON, MAP, MUSEUM
+from app.part import Part
+from app.stage import Item
 from app.story import Story
-from app.timeline import Timeline
-from app.views.maps import MapView
-from app.views.plots import PlotDock
 
 
-class Learning(ABC):
-    """Half of a Page; the attributes below are the other half's."""
-
-    session: Session
-    _client: viser.ClientHandle
-    _channel: Channel
-    _stage: Stage
-    _maps: MapView
-    _plots: PlotDock
-    _comparison: Comparison
-    _run: RunPanel
-    _tuning: TuningPanel
-    _files: FilesPanel
-    _timeline: Timeline
-    _palette: Palette
-    _inputs: Inputs
-    _story: Story
-    _turn: RLock
-    _farewell: Callable[[], bool]  # app/researching.py
-    _hand: ByHand
+class Learning(Part):
+    """The part of a Page that teaches."""
 
     def _learn_with(self, gui: viser.GuiApi, lesson: Path | None) -> None:
         """Add both to the page; ``lesson`` is the folder of its texts, None for those that come along."""
@@ -77,48 +48,6 @@ class Learning(ABC):
         else:
             self._lesson.leave()
             self._museum.enter()
-
-    # --- what the other half does -----------------------------------------------------------------
-
-    @abstractmethod
-    def _placing_done(self) -> None:
-        """The robots are no longer being placed."""
-
-    @abstractmethod
-    def _press(self) -> None:
-        """Show which buttons are the chosen ones."""
-
-    @abstractmethod
-    def _turn_view(self) -> None:
-        """Show the chosen view."""
-
-    @abstractmethod
-    def _forget_place(self) -> None:
-        """What was read out at a click goes."""
-
-    @abstractmethod
-    def _merge(self) -> None:
-        """Merge what is loaded as it is set."""
-
-    @abstractmethod
-    def _restore(self, desk: Desk) -> None:
-        """Put a desk back."""
-
-    @abstractmethod
-    def _desk(self) -> Desk:
-        """What is on the page."""
-
-    @abstractmethod
-    def _show_inputs(self, inputs: Inputs) -> bool:
-        """Show these in place of everything there was."""
-
-    @abstractmethod
-    def _report(self, error: MapMergeError) -> None:
-        """Tell the person what is wrong."""
-
-    @abstractmethod
-    def _draw(self, story: Story, live: bool, look: bool = False) -> None:
-        """Draw a story in the chosen view."""
 
     # --- the lesson -------------------------------------------------------------------------------
 

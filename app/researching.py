@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
-from threading import RLock
-from typing import Any, Literal
+from typing import Any
 
 import viser
 
@@ -15,50 +13,21 @@ from algorithms.conflicts import Conflicts, find_conflicts
 from algorithms.errors import MapMergeError
 from algorithms.fuse import Fusion
 from algorithms.methods import METHODS
-from app.byhand import ByHand
-from app.channel import Channel
-from app.comparison import Comparison
-from app.desk import Desk
-from app.errand import Errand, Left
+from app.errand import Left
 from app.inputs import Inputs
-from app.lesson.mode import Lesson
 from app.palette import Palette
-from app.panels.export import ExportPanel
-from app.panels.run import MAP, RunPanel
-from app.panels.tuning import TuningPanel
+from app.panels.run import MAP
+from app.part import Part
 from app.research.compare import Compare
 from app.research.guest import NOT_YOURS, Guest
 from app.research.sweep import Sweep
-from app.session import Session
-from app.stage import Stage
 from app.story import Story
 from app.takeaway import TAKEAWAY
-from app.timeline import Timeline
-from app.views.maps import MapView
-from app.views.plots import PlotDock
 
 
-class Researching(ABC):
-    """Half of a Page; the attributes below are the other half's."""
+class Researching(Part):
+    """The part of a Page that compares and sweeps."""
 
-    session: Session
-    _client: viser.ClientHandle
-    _channel: Channel
-    _stage: Stage
-    _maps: MapView
-    _plots: PlotDock
-    _comparison: Comparison
-    _run: RunPanel
-    _tuning: TuningPanel
-    _export: ExportPanel
-    _timeline: Timeline
-    _errand: Errand
-    _lesson: Lesson
-    _hand: ByHand
-    _palette: Palette
-    _inputs: Inputs
-    _story: Story
-    _turn: RLock
     _guest: Guest | None = None  # who is looked at in place of one's own result
 
     def _research_with(self, gui: viser.GuiApi) -> None:
@@ -69,36 +38,6 @@ class Researching(ABC):
         with self._plots.add_tab("Sweep", viser.Icon.CHART_DOTS):
             self._sweep_tab = Sweep(gui, self._channel, *both, self)
         self._channel.on("back", self.back)
-
-    # --- what the other half does -----------------------------------------------------------------
-
-    @abstractmethod
-    def _restore(self, desk: Desk) -> None:
-        """Put a desk back."""
-
-    @abstractmethod
-    def _changed(self) -> None:
-        """A setting was moved."""
-
-    @abstractmethod
-    def _turn_view(self) -> None:
-        """Show the chosen view."""
-
-    @abstractmethod
-    def _tell_legend(self) -> None:
-        """Say what the colours of the picture mean."""
-
-    @abstractmethod
-    def _placing_done(self) -> None:
-        """The robots are no longer being placed."""
-
-    @abstractmethod
-    def _report(self, error: MapMergeError) -> None:
-        """Tell the person what is wrong."""
-
-    @abstractmethod
-    def _notify(self, title: str, text: str, colour: Literal["orange", "red"]) -> None:
-        """Show a notice."""
 
     # --- what the tabs ask ------------------------------------------------------------------------
 

@@ -2,77 +2,30 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable
 from functools import partial
-from typing import Any, Literal
-
-import viser
+from typing import Any
 
 from algorithms.conflicts import Conflicts, find_conflicts
 from algorithms.errors import MapMergeError, NoAnswerError
 from algorithms.handmade import BY_HAND
 from algorithms.steps import AugmentDetail, MergeResult
 from app import mishap, words
-from app.byhand import ByHand
-from app.comparison import Comparison
 from app.export import Harvest
 from app.inputs import Inputs
 from app.legend import in_hand, legend
-from app.lesson.museum import Museum
-from app.palette import Palette
-from app.panels.export import ExportPanel
 from app.panels.result import result_html
-from app.panels.run import HEIGHTS, MAP, SWARM, RunPanel
+from app.panels.run import HEIGHTS, MAP, SWARM
 from app.panels.tables import box
-from app.panels.tuning import TuningPanel
-from app.placing import Placing
+from app.part import Part
 from app.replay import replay_of
-from app.session import Job, Session
-from app.stage import Stage
+from app.session import Job
 from app.story import Story
-from app.timeline import Timeline
-from app.views.heights import HeightsView
-from app.views.maps import MapView
-from app.views.plots import PlotDock
-from app.views.swarm_space import SwarmSpaceView
 
 
-class Telling(ABC):
-    """Half of a Page, the session's listener; the attributes below are the other half's."""
+class Telling(Part):
+    """The part of a Page that listens to its session."""
 
-    session: Session
-    _client: viser.ClientHandle
-    _stage: Stage
-    _maps: MapView
-    _heights: HeightsView
-    _swarm: SwarmSpaceView
-    _plots: PlotDock
-    _comparison: Comparison
-    _run: RunPanel
-    _tuning: TuningPanel
-    _export: ExportPanel
-    _timeline: Timeline
-    _museum: Museum
-    _palette: Palette
-    _inputs: Inputs
-    _story: Story
-    _result: MergeResult | None
-    _config: Any
-    _conflicts: Conflicts | None
     _weighed: tuple[tuple[MergeResult, Inputs, Any], tuple[Conflicts, str]] | None = None
-    _method: Story | None
-    _hand: ByHand
-    _placing: Placing
-    _refining: Any  # what the hand had refined, and the callback for it: app/handling.py
-    _farewell: Callable[[], bool]  # whoever else was looked at is not any more: app/researching.py
-    _refined: Callable[[Story, MergeResult], None]
-
-    @abstractmethod
-    def _report(self, error: MapMergeError) -> None: ...
-
-    @abstractmethod
-    def _notify(self, title: str, text: str, colour: Literal["orange", "red"]) -> None: ...
 
     # --- what the session tells -------------------------------------------------------------------
 

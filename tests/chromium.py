@@ -74,7 +74,7 @@ def candidates() -> Iterator[str]:
 
 
 def starts(path: str) -> bool:
-    """Whether it tells its version: Ubuntu's package is a stub that only asks for another one."""
+    """Whether it tells its version: Ubuntu's package holds none, and only asks for another one."""
     try:
         told = subprocess.run([path, "--version"], capture_output=True, text=True, timeout=60)
     except (OSError, subprocess.TimeoutExpired):

@@ -327,6 +327,9 @@ def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab
                 ),
                 "floor under walls",
             )
+        # what the pointer reads off the maps goes by where they lie now
+        frames = tab.page.evaluate("() => mapmeld.hud.frames")
+        assert frames == [pytest.approx(frame) for frame in layout.frames()]
         tab.press("Done")
         settle(lambda: tab.state == "Ready. Press Merge.", "the end of it again")
         tab.press("Instant")

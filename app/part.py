@@ -1,0 +1,150 @@
+"""What the parts of a page have in common: its attributes, and what each part may ask of the others."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from threading import RLock
+from typing import Any, Literal
+
+import viser
+
+from algorithms.conflicts import Conflicts
+from algorithms.errors import MapMergeError
+from algorithms.handmade import Scales
+from algorithms.pose import Pose2
+from algorithms.steps import MergeResult
+from app.byhand import ByHand
+from app.channel import Channel
+from app.comparison import Comparison
+from app.desk import Desk
+from app.errand import Errand
+from app.inputs import Inputs
+from app.lesson.mode import Lesson
+from app.lesson.museum import Museum
+from app.palette import Palette
+from app.panels.export import ExportPanel
+from app.panels.files import FilesPanel
+from app.panels.observation import ObservationPanel
+from app.panels.run import RunPanel
+from app.panels.tuning import TuningPanel
+from app.placing import Placing
+from app.session import Job, Session
+from app.stage import Stage
+from app.story import Story
+from app.timeline import Timeline
+from app.views.heights import HeightsView
+from app.views.maps import MapView
+from app.views.plots import PlotDock
+from app.views.swarm_space import SwarmSpaceView
+
+
+class Part(ABC):
+    """One concern of a Page, which is made of several: each is the others' only through these names."""
+
+    session: Session
+    _client: viser.ClientHandle
+    _stage: Stage
+    _maps: MapView
+    _heights: HeightsView
+    _swarm: SwarmSpaceView
+    _plots: PlotDock
+    _comparison: Comparison
+    _run: RunPanel
+    _tuning: TuningPanel
+    _export: ExportPanel
+    _timeline: Timeline
+    _museum: Museum
+    _palette: Palette
+    _inputs: Inputs
+    _story: Story
+    _result: MergeResult | None
+    _config: Any
+    _conflicts: Conflicts | None
+    _method: Story | None
+    _hand: ByHand
+    _placing: Placing
+    _channel: Channel
+    _observation: ObservationPanel
+    _lesson: Lesson
+    _merged: bool
+    _asked: bool
+    _turn: RLock
+    _files: FilesPanel
+    _errand: Errand
+    _refining: tuple[Scales, Pose2] | None
+
+    @abstractmethod
+    def _report(self, error: MapMergeError) -> None:
+        """Tell the person what is wrong."""
+
+    @abstractmethod
+    def _notify(self, title: str, text: str, colour: Literal["orange", "red"]) -> None:
+        """Show a notice."""
+
+    @abstractmethod
+    def _turn_view(self) -> None:
+        """Show the chosen view."""
+
+    @abstractmethod
+    def _tell_legend(self) -> None:
+        """Say what the colours of the picture mean."""
+
+    @abstractmethod
+    def _show_inputs(self, inputs: Inputs) -> bool:
+        """Show these inputs in place of everything there was."""
+
+    @abstractmethod
+    def _desk(self) -> Desk:
+        """What is on the page."""
+
+    @abstractmethod
+    def _restore(self, desk: Desk) -> None:
+        """Put a desk back."""
+
+    @abstractmethod
+    def _job(self, **how: Any) -> Job | None:
+        """What a run would do now."""
+
+    @abstractmethod
+    def _answered(self, story: Story, result: MergeResult, config: Any, live: bool) -> None:
+        """Show an answer."""
+
+    @abstractmethod
+    def _save(self, name: str, content: bytes) -> None:
+        """Send a file."""
+
+    @abstractmethod
+    def _placing_done(self) -> None:
+        """The robots are no longer being placed."""
+
+    @abstractmethod
+    def _press(self) -> None:
+        """Show which buttons are the chosen ones."""
+
+    @abstractmethod
+    def _forget_place(self) -> None:
+        """What was read out at a click goes."""
+
+    @abstractmethod
+    def _merge(self) -> None:
+        """Merge what is loaded as it is set."""
+
+    @abstractmethod
+    def _draw(self, story: Story, live: bool, look: bool = False) -> None:
+        """Draw a story in the chosen view."""
+
+    @abstractmethod
+    def _changed(self) -> None:
+        """A setting was moved."""
+
+    @abstractmethod
+    def _farewell(self) -> bool:
+        """Whoever else was looked at is not any more; whether there was anyone."""
+
+    @abstractmethod
+    def _refined(self, story: Story, result: MergeResult) -> None:
+        """What the hand had refined has come out."""
+
+    @abstractmethod
+    def _research_changes(self) -> None:
+        """A setting, the method or the seed is another."""
