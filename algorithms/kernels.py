@@ -8,24 +8,66 @@ many threads there are.
 
 from __future__ import annotations
 
+import logging
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from functools import cache
 from itertools import pairwise
-from typing import ParamSpec, TypeVar, cast
+from pickle import UnpicklingError
+from typing import Any, ParamSpec, TypeVar, cast
 
 from numba import njit
+
+log = logging.getLogger(__name__)
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
 
+_UNREADABLE = (OSError, EOFError, UnpicklingError)
+
+
+class _Kept:
+    """numba's store of compiled code; what cannot be read or kept costs the next start time, no merge."""
+
+    def __init__(self, store: Any) -> None:
+        self._store = store
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._store, name)
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        """The compiled code of an earlier run, None where there is none."""
+        try:
+            return self._store.load_overload(signature, context)
+        except _UNREADABLE as error:  # another user's, or torn by a power cut
+            _say_once(f"compiled code of an earlier run cannot be used: {error}")
+            with suppress(OSError):
+                self._store.flush()  # begun anew, it can be
+            return None
+
+    def save_overload(self, signature: Any, compiled: Any) -> None:
+        """Keep compiled code, if the disk lets us."""
+        try:
+            self._store.save_overload(signature, compiled)
+        except _UNREADABLE as error:
+            _say_once(f"compiled code cannot be kept for the next start: {error}")
+
+
+@cache
+def _say_once(what: str) -> None:  # there are dozens of loops
+    log.warning(what)
+
+
 def _compiled(function: Callable[P, R], fastmath: set[str] | bool) -> Callable[P, R]:
     try:
-        return cast("Callable[P, R]", njit(nogil=True, cache=True, fastmath=fastmath)(function))
+        loop: Any = njit(nogil=True, cache=True, fastmath=fastmath)(function)
+        loop._cache = _Kept(loop._cache)
     except RuntimeError:  # nowhere to keep the compiled code: a read-only installation without a home
-        return cast("Callable[P, R]", njit(nogil=True, fastmath=fastmath)(function))
+        loop = njit(nogil=True, fastmath=fastmath)(function)
+    return cast("Callable[P, R]", loop)
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import traceback
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
+from io import UnsupportedOperation
 
 from algorithms.errors import MapMergeError, NoAnswerError
 from app.usage import Parser, did_you_mean
@@ -18,6 +21,19 @@ EXIT_REFUSED = 1
 EXIT_BAD_INPUT = 2
 EXIT_BUG = 70  # not 1, which means "refused"
 EXIT_INTERRUPTED = 130
+
+OF_THE_MACHINE = {
+    errno.EACCES,
+    errno.EDQUOT,
+    errno.EFBIG,
+    errno.EIO,
+    errno.ELOOP,
+    errno.ENAMETOOLONG,
+    errno.ENOSPC,
+    errno.EPERM,
+    errno.EROFS,
+}
+"""What the system may refuse at any time, whatever the program does."""
 
 COMMANDS = {
     "serve": "watch a merge in the browser",
@@ -54,7 +70,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; the exit status. Usage errors leave by SystemExit(2), ``--help`` by SystemExit(0)."""
     words = list(sys.argv[1:] if argv is None else argv)
     try:
-        return _run(words)
+        status = _run(words)
+        sys.stdout.flush()
+        return status
     except NoAnswerError as refusal:  # where a command has nothing of its own to say of it
         return _complain(str(refusal), EXIT_REFUSED)
     except MapMergeError as error:
@@ -64,11 +82,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return _complain("interrupted; nothing half-written is left", EXIT_INTERRUPTED)
     except BrokenPipeError:  # whoever read our stdout has gone: not our mistake, and not theirs
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _write_no_more()
         return EXIT_INTERRUPTED
-    except Exception:  # a bug of ours: told whole, and with a status that nobody takes for a refusal
-        traceback.print_exc()
-        return _complain("this is a bug of mapmeld; please report the lines above", EXIT_BUG)
+    except OSError as error:
+        if error.errno not in OF_THE_MACHINE:
+            return _a_bug()
+        return _complain(_fault(error), EXIT_BAD_INPUT)
+    except Exception:
+        return _a_bug()
 
 
 def entry() -> None:
@@ -99,9 +120,7 @@ def _run(words: list[str]) -> int:
         )
         rest = [_hyphened(word) for word in words[1:]]
         command.add_arguments(parser, rest)
-        status = command.run(parser.parse_args(rest), parser)
-        sys.stdout.flush()
-        return int(status)
+        return int(command.run(parser.parse_args(rest), parser))
     if top.parse_args(words).version:
         from app.version import version
 
@@ -117,6 +136,27 @@ def _hyphened(word: str) -> str:
         return word
     flag, equals, value = word.partition("=")
     return flag.replace("_", "-") + equals + value
+
+
+def _a_bug() -> int:
+    """One of ours: told whole, and with a status that nobody takes for a refusal."""
+    traceback.print_exc()
+    return _complain("this is a bug of mapmeld; please report the lines above", EXIT_BUG)
+
+
+def _fault(error: OSError) -> str:
+    """What the machine would not do, and what helps."""
+    if error.filename is None:
+        _write_no_more()
+        where = "where the output goes, and for temporary files ($TMPDIR)"
+        return f"the system says: {error.strerror}; see that there is room {where}"
+    return f"{error.filename}: {error.strerror}; check the path and who may use it"
+
+
+def _write_no_more() -> None:
+    """Let what is left for stdout go nowhere: Python would try it again at its end, and complain."""
+    with suppress(UnsupportedOperation):  # a stdout that is no file
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _complain(message: str, status: int) -> int:

@@ -56,6 +56,7 @@ class Journal:
                 stream.flush()
                 os.fsync(stream.fileno())
         except OSError as error:
+            self._torn = True  # half of it may be there
             raise OutputError(
                 self._path,
                 f"cannot be written ({error.strerror})",

@@ -8,6 +8,7 @@ from collections import OrderedDict
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain
 from multiprocessing import get_context
@@ -20,6 +21,7 @@ from typing import Any
 import cv2
 
 from algorithms import kernels
+from algorithms.errors import OutputError
 from app.executor import Executor, Lost, Shared, Task, Work, unpacked
 
 LOOK_S = 0.1  # how often it is looked whether all is to stop
@@ -61,14 +63,14 @@ class Processes(Executor):
     def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
         """As in Executor."""
         left = iter(enumerate(tasks))
-        with TemporaryDirectory(prefix="mapmeld-") as folder:
+        with _folder() as folder:
             while True:
-                stopped = yield from self._some(work, left, self._jobs, Path(folder), stop)
+                stopped = yield from self._some(work, left, self._jobs, folder, stop)
                 if stopped is None:
                     return
                 left = chain(stopped.untouched, left)
                 again = iter(stopped.suspects)  # who of them took its process down? Each alone shows it
-                while stopped := (yield from self._some(work, again, 1, Path(folder), stop)):
+                while stopped := (yield from self._some(work, again, 1, folder, stop)):
                     again = chain(stopped.untouched, again)
                     for number, _ in stopped.suspects:
                         yield number, Lost()
@@ -120,11 +122,33 @@ def _rescued(running: dict[Future[Any], Numbered]) -> Generator[tuple[int, Any],
     return lost
 
 
+@contextmanager
+def _folder() -> Iterator[Path]:
+    """A folder for what the processes share, gone afterwards."""
+    try:
+        folder = TemporaryDirectory(prefix="mapmeld-", ignore_cleanup_errors=True)
+    except OSError as error:
+        raise _no_room(error) from error
+    with folder as path:
+        yield Path(path)
+
+
 def _laid_down(shared: Shared, folder: Path) -> Path:
     path = folder / shared.key
     if not path.exists():
-        path.write_bytes(shared.data)
+        try:
+            path.write_bytes(shared.data)
+        except OSError as error:
+            raise _no_room(error) from error
     return path
+
+
+def _no_room(error: OSError) -> OutputError:
+    return OutputError(
+        "the folder for temporary files",
+        f"cannot be written to ({error.strerror})",
+        "make room in it, name another one in $TMPDIR, or give --jobs 1",
+    )
 
 
 # ---- what runs in the other process

@@ -350,12 +350,6 @@ def test_a_missing_file_ends_with_2_and_one_line_that_names_it(missing, case_fol
     assert not (tmp_path / "out").exists()
 
 
-def test_a_folder_that_cannot_be_written_ends_with_2(case_folder, tmp_path, capsys):
-    (tmp_path / "file").write_text("in the way")
-    assert main(["merge", *inputs(case_folder), "--out", str(tmp_path / "file")]) == 2
-    assert "file: is a file, not a folder; choose another --out" in capsys.readouterr().err
-
-
 def test_a_bug_is_told_apart_from_a_refusal(case_folder, tmp_path, monkeypatch, capsys):
     def broken(*_args, **_kwargs):
         raise ZeroDivisionError("oh no")

@@ -61,7 +61,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Run all, print the table, leave the files; 1 where no method could be run on a case."""
-    from algorithms.errors import OutputError
+    from algorithms.atomic import check_folder
     from app.contest import contest, defaults_of, pairs_in
     from app.contest_files import NOTES, remarks, table_rows
     from app.executor import executor_for
@@ -69,8 +69,8 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     from app.progress import bar
     from app.tables import aligned
 
-    if args.out is not None and args.out.exists() and not args.out.is_dir():
-        raise OutputError(args.out, "is a file, not a folder", "choose another --out")
+    if args.out is not None:
+        check_folder(args.out)
     root, configs = case_folder(args.cases, parser), defaults_of(args.methods)
     executor = executor_for(args.jobs, args.scheduler)
     n, pairs = pairs_in(root, args.rough)

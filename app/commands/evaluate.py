@@ -58,13 +58,15 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Run all cases, print the table; 1 where a case could not be run."""
-    from algorithms.atomic import write_file
+    from algorithms.atomic import check_file, write_file
     from algorithms.casefiles import case_folders
     from app.evaluate import OVERALL, Order, evaluate, evaluate_both, rough_folders, totals_of
     from app.executor import executor_for
     from app.flags import config_from
     from app.progress import bar
 
+    if args.json is not None:
+        check_file(args.json)
     executor = executor_for(args.jobs, args.scheduler)
     order = Order(args.folder, args.method, config_from(args), args.seed, args.rough)
     total = len(case_folders(args.folder)) + (len(rough_folders(args.folder)) if args.both else 0)
@@ -76,7 +78,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         file: totals_of([entry for entry in entries if entry["observation"] == file])
         for file in dict.fromkeys(entry["observation"] for entry in entries)
     }
-    if args.json:
+    if args.json is not None:
         answer = {"cases": entries, "totals": totals}
         if args.both:
             answer["totals_by_observation"] = by_observation

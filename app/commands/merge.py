@@ -177,11 +177,11 @@ def _leave(folder: Path, files: Mapping[str, bytes], stale: Sequence[str]) -> li
 
 def _check_folder(args: argparse.Namespace) -> None:
     """Raise OutputError where the result could not be left, or would take the place of an input."""
+    from algorithms.atomic import check_folder
     from algorithms.mapio import YAML_SUFFIXES, parse_meta, read_bytes
     from app.report import MERGED_FILES, OVERLAY_FILE, PAGE_FILE, REPORT_FILE, TRANSFORM_FILE
 
-    if args.out.exists() and not args.out.is_dir():
-        raise OutputError(args.out, "is a file, not a folder", "choose another --out")
+    check_folder(args.out)
     inputs = [args.map1, args.map2, args.observation]
     for path in (args.map1, args.map2):
         if path.suffix.lower() in YAML_SUFFIXES:

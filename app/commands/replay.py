@@ -50,7 +50,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, record, write; the exit status."""
     from algorithms import methods
-    from algorithms.atomic import write_file
+    from algorithms.atomic import check_file, write_file
     from app.flags import config_from
     from app.progress import with_bar
     from app.replay import About, record, replay_html
@@ -62,6 +62,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     if args.map2 is None and args.resolution is not None:
         parser.error("--resolution is for maps that are plain images: give MAP1 and MAP2")
     config, inputs = config_from(args), _inputs(args, parser)
+    check_file(args.out)
     assert inputs.ref is not None
     assert inputs.mov is not None
     steps = methods.run(args.method, inputs.ref, inputs.mov, inputs.observations, config, args.seed)

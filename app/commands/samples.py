@@ -52,6 +52,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Write the cases and name them."""
+    from algorithms.atomic import check_folder
     from algorithms.casefiles import MOST_OBSERVATIONS
     from algorithms.simulator.buildings import BUILDINGS
     from algorithms.simulator.samples import generate_cases, generate_wrong_pairs, regenerate
@@ -63,6 +64,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
                 "--seeds, --overlap, --sightings and --wrong-pairs need --building: "
                 "the shipped samples are what they are"
             )
+        check_folder(args.folder)
         for case in regenerate(args.folder):
             print(args.folder / case.name)
         return 0
@@ -77,9 +79,10 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         parser.error(f"--sightings is {sightings}; it must lie in [1, {MOST_OBSERVATIONS}]")
     seeds = seeds_of(args.seeds or "0", parser)
     buildings = len(kinds) * len(seeds)
+    if args.wrong_pairs and buildings < 2:
+        parser.error("--wrong-pairs needs two buildings at least: name more kinds or more seeds")
+    check_folder(args.folder)
     if args.wrong_pairs:
-        if buildings < 2:
-            parser.error("--wrong-pairs needs two buildings at least: name more kinds or more seeds")
         pairs = generate_wrong_pairs(kinds, seeds, args.folder, args.overlap, sightings)
         with bar(total=4 * buildings * (buildings - 1), unit="pair") as shown:
             for folder in pairs:

@@ -58,8 +58,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Sweep, write, tell; the exit status."""
-    from algorithms.atomic import write_files
-    from algorithms.errors import OutputError
+    from algorithms.atomic import check_folder, write_files
     from app.executor import executor_for
     from app.journal import Journal
     from app.progress import bar
@@ -70,8 +69,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         parser.error("--y is a second setting; give --x, too")
     case = _case(args, parser)
     out = args.out or Path(f"sweep_{case.name}")
-    if out.exists() and not out.is_dir():
-        raise OutputError(out, "is a file, not a folder", "choose another --out")
+    check_folder(out)
     plans = _plans(args, case)
     executor = executor_for(args.jobs, args.scheduler)
     journal = Journal(out / JOURNAL_FILE)
