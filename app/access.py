@@ -21,7 +21,10 @@ from algorithms.errors import InputFileError, SettingError
 
 LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
 TOKEN_VARIABLE = "MAPMELD_TOKEN"
-LEAST_TOKEN = 16  # characters; a generated one has 32
+TOKEN_BYTES = 24  # of chance in a generated one: 32 characters, 192 bits
+LEAST_TOKEN = 16  # characters of one that is given
+LEAST_DIFFERENT = 6  # of these: what has fewer was never drawn by lot
+MOST_TOKEN = 200  # it has to fit into a cookie
 PORTS = {"http": 80, "https": 443}
 
 # The page is one file with its scripts inside, and viser compiles some of them ("unsafe-eval"). What
@@ -141,7 +144,7 @@ def access_for(
     token = _given_token(token_file)
     local = is_local(host)
     if not token and (names or not local):
-        token = secrets.token_urlsafe(24)
+        token = secrets.token_urlsafe(TOKEN_BYTES)
     allowed = LOOPBACK | {host} | {_name(name) for name in names} if local else None
     return Access(allowed, token, _tls(certfile, keyfile))
 
@@ -161,10 +164,11 @@ def _given_token(token_file: Path | None) -> str:
             raise InputFileError(
                 token_file, f"cannot be read ({cause})", "give a file that holds the token alone"
             ) from error
-    if len(token) < LEAST_TOKEN or not set(token) <= _TOKEN_LETTERS:
+    known = set(token) <= _TOKEN_LETTERS and len(set(token)) >= LEAST_DIFFERENT
+    if not (LEAST_TOKEN <= len(token) <= MOST_TOKEN and known):
         raise SettingError(
-            f"{source}: this is no token; give at least {LEAST_TOKEN} letters, digits, - or _, "
-            f"such as {secrets.token_urlsafe(24)}"
+            f"{source}: this is no token; give {LEAST_TOKEN} to {MOST_TOKEN} letters, digits, - or _, "
+            f"{LEAST_DIFFERENT} different ones at least, such as {secrets.token_urlsafe(TOKEN_BYTES)}"
         )
     return token
 

@@ -33,6 +33,8 @@ CHUNK = 512 * 1024  # bytes of one part of an upload
 PATIENCE = 60.0  # seconds until a browser that reads nothing is given up
 RATE, BURST = 200.0, 400.0  # messages a second, and at once; a tab that is dragged over sends about 60
 
+TOLD_AT = frozenset(10**power for power in range(3, 10))  # how many things dropped make a line of the log
+
 # All that the page's own script ever sends
 HEARD: dict[str, type[messages.Message]] = {
     kind.__name__: kind
@@ -64,9 +66,11 @@ class Gate:
         self._clock = clock
 
     def drop(self, why: str) -> None:
-        """Count something that was not let through."""
+        """Count something that was not let through; who keeps trying is told of, seldom."""
         self.dropped[why] += 1
         log.debug("dropped: %s", why)
+        if self.dropped[why] in TOLD_AT:
+            log.warning("dropped %d times by now: %s", self.dropped[why], why)
 
     def guard(self, connection: Any) -> None:
         """Stand before a connection: its ``recv`` gives only what may pass, at a bearable rate.

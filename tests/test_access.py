@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import socket
 
 import pytest
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from algorithms.errors import InputFileError, MapMergeError, SettingError
 from app.access import LEAST_TOKEN, Access, Asked, access_for, is_local, same
 from app.commands.serve import address, reach
+from app.gate import Gate
 from app.server import PortError, make_server
 
 TOKEN = "a-token-that-nobody-guesses"
@@ -75,6 +77,38 @@ def test_a_server_for_this_machine_needs_no_token_and_any_other_has_one_of_its_o
     assert access_for("127.0.0.1", names=("robots.example",)).token != ""
 
 
+def test_a_token_of_ours_cannot_be_guessed_and_passes_as_a_given_one(monkeypatch):
+    drawn = [access_for("0.0.0.0").token for _ in range(200)]
+    assert len(set(drawn)) == 200
+    for token in drawn:
+        assert len(base64.urlsafe_b64decode(token)) == 24  # 192 bits, all of them drawn:
+    for at in range(32):
+        assert len({token[at] for token in drawn}) > 32  # of 64 letters, at every place
+    monkeypatch.setenv("MAPMELD_TOKEN", drawn[0])
+    assert access_for("127.0.0.1").token == drawn[0]
+
+
+@pytest.mark.parametrize("length", [16, 200])
+def test_a_given_token_may_be_as_short_and_as_long_as_is_said(length, monkeypatch):
+    monkeypatch.setenv("MAPMELD_TOKEN", ("a1b2c3d4-_" * 20)[:length])
+    assert len(access_for("127.0.0.1").token) == length
+
+
+def test_a_token_file_that_holds_more_than_a_token_is_refused_not_cut(tmp_path):
+    path = tmp_path / "token"
+    path.write_text("0123456789" * 10_000)
+    with pytest.raises(SettingError, match="token: this is no token"):
+        access_for("127.0.0.1", path)
+
+
+def test_who_tries_again_and_again_is_in_the_log_a_few_times_not_each_time(caplog):
+    gate = Gate()
+    for _ in range(20_000):
+        gate.drop("request, 401")
+    said = [record.getMessage() for record in caplog.records if record.levelname == "WARNING"]
+    assert said == ["dropped 1000 times by now: request, 401", "dropped 10000 times by now: request, 401"]
+
+
 def test_a_name_in_front_is_answered_to_besides_those_of_this_machine(monkeypatch):
     access = access_for("127.0.0.1", names=("robots.example",))
     cookie = f"{access.cookie}={access.token}"
@@ -93,11 +127,22 @@ def test_a_token_comes_from_a_file_before_the_environment(tmp_path, monkeypatch)
     assert access_for("0.0.0.0", path).token == "another-token-of-ours"
 
 
-@pytest.mark.parametrize("word", ["short", "x" * 15, "with a space in it, and long", "ä" * 20, "a;b" * 10])
+@pytest.mark.parametrize(
+    "word",
+    [
+        "short",
+        "short-by-one-ab",
+        "with a space in it, and long",
+        "äöüÄÖÜß-of-ours-and-long",
+        "a;b-of-ours-and-long",
+        "12345" * 5,  # long, and one of the first that anybody would try
+        "0123456789" * 21,  # more than a browser keeps
+    ],
+)
 def test_a_token_that_could_be_guessed_or_not_be_kept_is_refused(word, monkeypatch):
     monkeypatch.setenv("MAPMELD_TOKEN", word)
     with pytest.raises(
-        SettingError, match=r"\$MAPMELD_TOKEN: this is no token; give at least 16 letters"
+        SettingError, match=r"\$MAPMELD_TOKEN: this is no token; give 16 to 200 letters"
     ) as said:
         access_for("0.0.0.0")
     assert word not in str(said.value)
