@@ -8,7 +8,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help run test bench fuzz soak samples screenshots equations replays results clean
+.PHONY: help run test bench fuzz soak audit samples screenshots equations replays results clean
 
 help:
 	@echo "make run          open the tool on a sample, in the browser (ARGS=--no-browser: only serve it)"
@@ -16,6 +16,7 @@ help:
 	@echo "make bench        time the stages of a merge"
 	@echo "make fuzz         feed every reader of files with damaged ones (ARGS='--seconds 300')"
 	@echo "make soak         many tabs for ten minutes: memory, answers, leaks (ARGS='--minutes 2')"
+	@echo "make audit        ask pip-audit for known holes in what is installed (needs the network)"
 	@echo "make samples      simulate the maps in sample_maps again"
 	@echo "make screenshots  take the pictures of the README and the guides again"
 	@echo "make equations    typeset the equations in static/equations again"
@@ -43,6 +44,16 @@ fuzz: $(VENV)/ready-to-test
 
 soak: $(VENV)/ready-to-test
 	@$(BIN)/python tests/soak.py $(ARGS)
+
+# pip-audit in an environment of its own: what it brings is none of ours. --strict, or packages whose
+# state it cannot learn, all of them without a network, count as sound.
+audit: $(VENV)/ready
+	@test -x $(VENV)/audit/bin/python || $(BIN)/python -m venv $(VENV)/audit
+	@$(VENV)/audit/bin/python -m pip --disable-pip-version-check --quiet install pip-audit
+	@$(PIP) freeze --exclude-editable > $(VENV)/audit/versions.txt
+	@$(VENV)/audit/bin/pip-audit --strict --no-deps --disable-pip -r $(VENV)/audit/versions.txt $(ARGS) || { \
+	  echo "make audit: not clean. Either holes are named above, or pip-audit could not learn about a package"; \
+	  echo "(without a network: about any), and then this says nothing of it, good or bad."; exit 1; }
 
 samples: $(VENV)/ready
 	$(BIN)/mapmeld samples sample_maps
