@@ -6,12 +6,12 @@ A reader takes any bytes at all, and answers or raises a MapMergeError; nothing 
 from __future__ import annotations
 
 import contextlib
-import io
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from mapfiles import encoded
 from PIL import Image
 
 from algorithms.casefiles import observations_from_bytes, read_truth
@@ -37,12 +37,6 @@ TRUTH = (
     b"tolerance: {distance: 0.5, angle: 0.05}\nexpected: merge\noverlap: 0.4\n"
 )
 ROOT = Path(__file__).parent.parent / "static"
-
-
-def encoded(image: Image.Image, name: str, **how: object) -> bytes:
-    data = io.BytesIO()
-    image.save(data, name, **how)  # type: ignore[arg-type]
-    return data.getvalue()
 
 
 def _images() -> list[bytes]:

@@ -19,6 +19,7 @@ from pathlib import Path
 
 import pytest
 import trustme
+from commandline import ROOT, inputs
 
 from algorithms import atomic, kernels
 from algorithms.errors import OutputError
@@ -27,16 +28,11 @@ from app.executor import Shared, Task
 from app.journal import Journal
 from app.processes import Processes
 
-ROOT = Path(__file__).parent.parent
 QUICK = ["--swarm.iterations", "5", "--refine.candidates", "1", "--seeds", "1"]
 
 
-def merging(case, out):
-    return ["merge", f"{case}/map1.yaml", f"{case}/map2.yaml", f"--observation={case}/observation.yaml", out]
-
-
 COMMANDS = {
-    "merge": lambda case, place: merging(case, f"--out={place}"),
+    "merge": lambda case, place: ["merge", *inputs(case), "--out", place],
     "compare": lambda case, place: [
         "compare",
         case,
@@ -191,7 +187,7 @@ def test_a_disk_that_fills_up_costs_no_old_file_and_leaves_no_half_one(
 
 
 def test_a_merge_that_finds_no_room_leaves_the_earlier_one_whole(case_folder, tmp_path, capsys, fills_up):
-    words = merging(case_folder, f"--out={tmp_path}")
+    words = COMMANDS["merge"](case_folder, tmp_path)
     assert main(list(map(str, words))) == 0
     capsys.readouterr()
     before = lies_in(tmp_path)

@@ -6,25 +6,18 @@ import json
 import signal
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from commandline import ROOT, usage_error
 from test_executor import until
 
 from app.cli import main
 
-ROOT = Path(__file__).parent.parent
 SMALL = ["--swarm.iterations", "5", "--refine.candidates", "1", "--seeds", "2"]
 
 
 def table(path):
     return list(csv.DictReader(io.StringIO(path.read_text())))
-
-
-def usage_error(*words):
-    with pytest.raises(SystemExit) as left:
-        main(list(map(str, words)))
-    return left.value.code
 
 
 def test_a_sweep_that_is_killed_and_started_again_ends_with_the_same_files(case_folder, tmp_path, capsys):

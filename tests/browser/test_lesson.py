@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from driver import Tab, settle
-from test_page import write_case
+from rooms import write_case
 
 from algorithms.casefiles import Case
 from app.lesson.texts import files, lesson_folder

@@ -1,0 +1,30 @@
+"""The command line as tests call it: in this process, or in one of its own."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from app.cli import main
+
+ROOT = Path(__file__).parent.parent
+
+
+def inputs(folder):
+    """The maps and the observation of a case's folder, as ``merge`` takes them."""
+    return [str(folder / "map1.yaml"), str(folder / "map2.yaml"), f"--observation={folder}/observation.yaml"]
+
+
+def usage_error(*words):
+    """Exit status of words that the parser refuses."""
+    with pytest.raises(SystemExit) as left:
+        main(list(map(str, words)))
+    return left.value.code
+
+
+def in_a_process(*words, **kwargs):
+    """What the command ended with, and said."""
+    return subprocess.run(
+        [sys.executable, "-m", "app", *map(str, words)], capture_output=True, text=True, cwd=ROOT, **kwargs
+    )

@@ -1,0 +1,192 @@
+"""Map files that cannot be used: each is refused in words that name it, and nothing else happens."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import struct
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mapfiles import encoded, header, load, pgm
+from PIL import Image
+
+from algorithms.errors import InputFileError, MapMergeError, TooLargeError
+from algorithms.mapio import map_from_bytes, read_image, read_map
+
+
+def chunk(kind: bytes, body: bytes) -> bytes:
+    return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+
+def png_header(width: int, height: int, bits: int = 8, colour: int = 0) -> bytes:
+    body = struct.pack(">IIBBBBB", width, height, bits, colour, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", body)
+
+
+GOOD_PNG = encoded(Image.effect_noise((64, 64), 50), "PNG")
+SIXTEEN_BIT_RGB = png_header(1, 1, 16, 2) + chunk(b"IDAT", zlib.compress(bytes(7))) + chunk(b"IEND", b"")
+
+BAD_YAML = {
+    "empty": (b"", "is empty"),
+    "a list": (b"- 1\n- 2\n", "holds no keys"),
+    "a text": (b"hello", "holds no keys"),
+    "not YAML": (b"image: [1, 2\n", "not YAML"),
+    "tabs": (b"image:\n\t- x\n", "not YAML"),
+    "binary": (bytes(range(256)), "not YAML"),
+    "not UTF-8": (b"image: \xff\xfe.pgm\n", "not YAML"),
+    "an image": (pgm([[0]]), "m.yaml"),
+    "very deep": (b"[" * 20_000, "nested too deeply"),
+    "very long": (b"a: 1\n" * 50_000, "too long"),
+    "no image": (header(image=None), "image is missing"),
+    "no resolution": (header(resolution=None), "resolution is missing"),
+    "no origin": (header(origin=None), "origin is missing"),
+    "no negate": (header(negate=None), "negate is missing"),
+    "no occupied_thresh": (header(occupied_thresh=None), "occupied_thresh is missing"),
+    "no free_thresh": (header(free_thresh=None), "free_thresh is missing"),
+    "twice": (header() + b"resolution: 0.1\n", "resolution stands there twice"),
+    "image empty": (header(image=""), "image is empty"),
+    "image a list": (header(image=["m.pgm"]), "image is"),
+    "resolution 0": (header(resolution=0), "positive"),
+    "resolution negative": (header(resolution=-0.05), "positive"),
+    "resolution a word": (header(resolution="fine"), "resolution is 'fine'"),
+    "resolution with unit": (header(resolution="0.05 m"), "resolution"),
+    "resolution NaN": (header(resolution=math.nan), "resolution is '.nan', not a finite number"),
+    "resolution infinite": (header(resolution=math.inf), "not a finite number"),
+    "resolution huge": (header(resolution=None) + b"resolution: 1e999", "not a finite number"),
+    "resolution null": (header(resolution=None) + b"resolution:\n", "resolution is empty"),
+    "resolution a list": (header(resolution=[1]), "resolution"),
+    "origin short": (header(origin=[0, 0]), "origin is [0, 0], not 3"),
+    "origin long": (header(origin=[0, 0, 0, 0]), "not 3 finite numbers"),
+    "origin a number": (header(origin=0), "origin"),
+    "origin NaN": (header(origin=[0, 0, math.nan]), "origin"),
+    "origin of words": (header(origin=["a", "b", "c"]), "origin is [a, b, c]"),
+    "origin nested": (header(origin=[[0], 0, 0]), "origin"),
+    "negate a word": (header(negate="maybe"), "negate is 'maybe'"),
+    "negate a fraction": (header(negate=0.5), "negate"),
+    "mode unknown": (header(mode="ternary"), "trinary, scale, raw"),
+    "mode a number": (header(mode=3), "mode is '3'"),
+    "threshold NaN": (header(occupied_thresh=math.nan), "occupied_thresh"),
+    "threshold above 1": (header(occupied_thresh=65), "[0, 1]"),
+    "threshold below 0": (header(free_thresh=-0.1), "[0, 1]"),
+    "thresholds swapped": (header(occupied_thresh=0.196, free_thresh=0.65), "smaller"),
+    "thresholds equal": (header(occupied_thresh=0.5, free_thresh=0.5), "smaller"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_YAML)
+def test_a_bad_yaml_file_is_refused_in_words(case):
+    data, words = BAD_YAML[case]
+    with pytest.raises(InputFileError) as caught:
+        map_from_bytes("m.yaml", data, "m.pgm", pgm([[0]]))
+    message = str(caught.value)
+    assert message.startswith("m.yaml: ")
+    assert words in message
+    assert len(message.splitlines()) == 1
+    assert len(message) < 400
+    assert caught.value.remedy
+
+
+BAD_IMAGE = {
+    "empty": (b"", "is empty"),
+    "text": (b"hello, world", "not a PGM, PPM, PNG or BMP"),
+    "JPEG": (encoded(Image.new("L", (8, 8)), "JPEG"), "not a PGM, PPM, PNG or BMP"),
+    "GIF": (encoded(Image.new("L", (8, 8)), "GIF"), "not a PGM, PPM, PNG or BMP"),
+    "TIFF": (encoded(Image.new("CMYK", (8, 8)), "TIFF"), "not a PGM, PPM, PNG or BMP"),
+    "PGM head only": (b"P5\n", "decoded"),
+    "PGM cut in its head": (b"P5\n10 ", "decoded"),
+    "PGM cut": (pgm(np.zeros((9, 9)))[:-1], "cut off: 9 x 9"),
+    "PGM without width": (b"P5\n0 5\n255\n", "0 x 5 pixels"),
+    "PGM negative": (b"P5\n-3 5\n255\n" + bytes(15), "decoded"),
+    "PGM white 0": (b"P5\n1 1\n0\n\0", "white is 0"),
+    "PGM 16 bit": (b"P5\n1 1\n65535\n\0\0", "16 bits"),
+    "PGM 12 bit": (b"P5\n1 1\n4095\n\0\0", "16 bits"),
+    "PPM 16 bit": (b"P6\n1 1\n65535\n" + bytes(6), "16 bits"),
+    "ASCII PGM 16 bit": (b"P2\n1 1\n1000\n7\n", "16 bits"),
+    "ASCII PGM cut": (b"P2\n3 1\n255\n7 7", "cut off: 3 x 1"),
+    "ASCII PGM of words": (b"P2\n3 1\n255\n7 seven 7", "something else than numbers"),
+    "ASCII PGM of signs": (b"P2\n3 1\n255\n7 -7 7", "something else than numbers"),
+    "ASCII PGM above its white": (b"P2\n2 1\n100\n7 101", "a pixel of 101"),
+    "ASCII PGM too long": (b"P2\n4000 4000\n255\n" + b"0 " * 8_000_001, "16 MB of pixels written as text"),
+    "ASCII PPM cut": (b"P3\n2 1\n255\n1 2 3 4 5", "cut off: 2 x 1"),
+    "PPM cut": (b"P6\n9 9\n255\n" + bytes(9), "cut off: 9 x 9"),
+    "PFM": (b"Pf\n1 1\n-1.0\n" + bytes(4), "not a PGM"),
+    "PNG 16 bit": (encoded(Image.new("I;16", (2, 2)), "PNG"), "16 bits"),
+    "PNG 16 bit colour": (SIXTEEN_BIT_RGB, "16 bits"),
+    "PNG cut": (GOOD_PNG[: len(GOOD_PNG) // 2], "decoded"),
+    "PNG head only": (GOOD_PNG[:8], "decoded"),
+    "PNG damaged": (GOOD_PNG[:60] + bytes(40) + GOOD_PNG[100:], "decoded"),
+    "PNG without width": (png_header(0, 5), "m.png"),
+    "BMP cut": (encoded(Image.new("RGB", (9, 9)), "BMP")[:-40], "decoded"),
+    "BMP head only": (b"BM", "decoded"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_IMAGE)
+def test_a_bad_image_is_refused_in_words(case):
+    data, words = BAD_IMAGE[case]
+    with pytest.raises(InputFileError) as caught:
+        map_from_bytes("m.yaml", header(), "m.png", data)
+    message = str(caught.value)
+    assert message.startswith("m.png: ")
+    assert words in message
+    assert len(message.splitlines()) == 1
+    assert caught.value.remedy
+
+
+HUGE = {
+    "PGM": b"P5\n20000 20000\n255\n",
+    "ASCII PGM": b"P2\n20000 20000\n255\n",
+    "PNG": png_header(20000, 20000) + chunk(b"IDAT", b"") + chunk(b"IEND", b""),
+    "PNG at its format's limit": png_header(2**31 - 1, 2**31 - 1) + chunk(b"IDAT", b""),
+    "BMP": b"BM"
+    + struct.pack("<IHHI", 54, 0, 0, 54)
+    + struct.pack("<IiiHHIIiiII", 40, 20000, 20000, 1, 24, 0, 0, 0, 0, 0, 0),
+}
+
+
+@pytest.mark.parametrize("kind", HUGE)
+def test_a_huge_image_is_refused_by_its_header(kind):
+    with pytest.raises(TooLargeError, match=r"m.pgm .*limit"):
+        load(HUGE[kind])
+
+
+@given(data=st.binary(max_size=60), at=st.integers(0, len(GOOD_PNG) - 1))
+def test_a_damaged_png_loads_or_is_refused_and_nothing_else(data, at):
+    with contextlib.suppress(MapMergeError):
+        load(GOOD_PNG[:at] + data + GOOD_PNG[at + len(data) :])
+
+
+@given(data=st.binary(max_size=200))
+def test_any_bytes_for_a_yaml_file_are_refused_and_nothing_else(data):
+    with pytest.raises(InputFileError):
+        map_from_bytes("m.yaml", data, "m.pgm", pgm([[0]]))
+
+
+def test_a_message_stays_short_whatever_the_file_holds():
+    bomb = b"a: &a [x, x, x, x, x, x, x, x, x]\n"
+    for name, last in zip("bcdefghij", "abcdefghi", strict=True):
+        bomb += f"{name}: &{name} [{', '.join([f'*{last}'] * 9)}]\n".encode()
+    with pytest.raises(InputFileError) as caught:
+        map_from_bytes("m.yaml", header(origin=None) + bomb + b"origin: *j\n", "m.pgm", b"")
+    assert len(str(caught.value)) < 400
+
+
+def test_missing_files_and_folders_are_named(tmp_path):
+    with pytest.raises(InputFileError, match=r"none\.yaml: no such file"):
+        read_map(tmp_path / "none.yaml")
+    with pytest.raises(InputFileError, match=r"none\.pgm: no such file"):
+        read_map(tmp_path / "none.pgm")
+    with pytest.raises(InputFileError, match=r"none\.pgm: no such file"):
+        read_image(tmp_path / "none.pgm", 0.05)
+    with pytest.raises(InputFileError, match="is a folder"):
+        read_map(tmp_path)
+    with pytest.raises(InputFileError, match="cannot be read"):
+        read_map(Path("a\0b.yaml"))
+    (tmp_path / "m.yaml").write_bytes(header(image="gone.pgm"))
+    with pytest.raises(InputFileError, match=r"m\.yaml: its image gone\.pgm is not there"):
+        read_map(tmp_path / "m.yaml")

@@ -1,0 +1,240 @@
+"""``mapmeld merge``: what it takes, what it leaves, what it says and with which exit status."""
+
+import io
+import json
+import re
+import sys
+from dataclasses import replace
+
+import pytest
+import yaml
+from commandline import inputs
+
+from algorithms import methods
+from algorithms.casefiles import read_case, write_observations
+from algorithms.errors import NoAnswerError
+from algorithms.mapio import read_map
+from algorithms.methods import METHODS
+from algorithms.pose import Pose2
+from app.cli import main
+
+OF_A_REFUSAL = {"overlay.png", "report.html", "report.json"}
+ALL_FILES = {"merged.yaml", "merged.pgm", "transform.yaml"} | OF_A_REFUSAL
+
+
+def test_a_merge_leaves_its_files_and_ends_with_0(case_folder, tmp_path, capsys):
+    assert main(["merge", *inputs(case_folder), "--out", str(tmp_path / "new" / "out")]) == 0
+    out = tmp_path / "new" / "out"
+    assert {path.name for path in out.iterdir()} == ALL_FILES
+    report = json.loads((out / "report.json").read_text())
+    said = capsys.readouterr()
+    assert said.out.startswith(report["verdict"]["reason"])
+    assert said.err == ""  # no bar where nobody looks at it
+    assert yaml.safe_load((out / "transform.yaml").read_text())["T_ref_mov"] == report["T_ref_mov"]
+
+
+def test_a_merge_says_what_was_maximised_and_whether_a_better_place_is_ruled_out(
+    case_folder, tmp_path, capsys
+):
+    assert main(["merge", *inputs(case_folder), "--out", str(tmp_path)]) == 0
+    assert re.search(
+        r"^agreement \d+\.\d m, proven \([\d,]+ blocks bounded\)$", capsys.readouterr().out, re.M
+    )
+    main(["merge", *inputs(case_folder), "--out", str(tmp_path), "--method", "spectra-swarm"])
+    assert re.search(r"^Γ [\d.]+$", capsys.readouterr().out, re.M)
+
+
+def test_a_refusal_is_told_with_what_would_help(case_folder, tmp_path, capsys):
+    asked = ["merge", *inputs(case_folder), "--out", str(tmp_path)]
+    assert main([*asked, "--verdict.wall", "200"]) == 1
+    said = capsys.readouterr().out
+    assert "too little to tell right from wrong" in said
+    assert "Let one of the robots drive on" in said
+
+
+def test_the_merged_map_that_is_left_is_the_one_that_the_library_makes(case_folder, small_case, tmp_path):
+    main(["merge", *inputs(case_folder), "--out", str(tmp_path), "--seed", "3"])
+    left = read_map(tmp_path / "merged.yaml")
+    made = methods.merge(small_case.ref, small_case.mov, small_case.observations, seed=3).fusion.merged
+    assert (left.cells == made.cells).all()
+    assert (left.origin, left.resolution) == (made.origin, made.resolution)
+
+
+def test_with_json_stdout_is_the_report_alone(case_folder, tmp_path, capsys):
+    assert main(["merge", *inputs(case_folder), "--out", str(tmp_path), "--json"]) == 0
+    assert capsys.readouterr().out == (tmp_path / "report.json").read_text()
+
+
+def test_settings_and_seed_reach_the_method_in_either_spelling(case_folder, tmp_path):
+    words = ["--augment.spread=2.5", "--box.sigma_x", "0.5", "--no-candidates.twins", "--seed", "7"]
+    main(["merge", *inputs(case_folder), "--out", str(tmp_path), *words])
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["seed"] == 7
+    assert report["settings"]["augment"]["spread"] == 2.5
+    assert report["settings"]["box"]["sigma_x"] == 0.5
+    assert report["settings"]["candidates"]["twins"] is False
+
+
+def test_a_method_starts_from_its_own_defaults(case_folder, tmp_path):
+    main(["merge", *inputs(case_folder), "--out", str(tmp_path), "--method", "spectra-montecarlo"])
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["method"] == "spectra-montecarlo"
+    assert report["settings"]["refine"]["optimiser"] == "mco"
+
+
+def test_a_refused_merge_ends_with_1_and_leaves_no_map(strangers_folder, tmp_path, capsys):
+    assert main(["merge", *inputs(strangers_folder), "--out", str(tmp_path)]) == 1
+    assert {path.name for path in tmp_path.iterdir()} == OF_A_REFUSAL
+    said = capsys.readouterr().out
+    assert said.startswith("Refused: ")
+    assert "--force" in said
+    assert "<strong>REFUSED</strong>" in (tmp_path / "report.html").read_text("utf-8")
+
+
+def test_force_writes_the_refused_map_and_still_ends_with_1(strangers_folder, tmp_path):
+    assert main(["merge", *inputs(strangers_folder), "--out", str(tmp_path), "--force"]) == 1
+    assert {path.name for path in tmp_path.iterdir()} == ALL_FILES
+    assert yaml.safe_load((tmp_path / "transform.yaml").read_text())["accepted"] is False
+
+
+def test_a_refused_merge_takes_an_earlier_map_away_and_says_so(
+    case_folder, strangers_folder, tmp_path, capsys
+):
+    (tmp_path / "notes.txt").write_text("mine")
+    assert main(["merge", *inputs(case_folder), "--out", str(tmp_path)]) == 0
+    assert main(["merge", *inputs(strangers_folder), "--out", str(tmp_path)]) == 1
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "overlay.png",
+        "report.html",
+        "report.json",
+        "notes.txt",
+    }
+    assert "removed" in capsys.readouterr().out
+
+
+def without_an_answer(*_):
+    raise NoAnswerError("no two places of these maps are alike")
+    yield
+
+
+def test_a_merge_without_an_answer_is_a_refusal_that_leaves_its_reason_alone(
+    case_folder, tmp_path, capsys, monkeypatch
+):
+    (tmp_path / "notes.txt").write_text("mine")
+    words = ["merge", *inputs(case_folder), "--out", str(tmp_path)]
+    assert main(words) == 0
+    capsys.readouterr()
+    default = methods.DEFAULT_METHOD
+    monkeypatch.setitem(METHODS, default, replace(METHODS[default], run=without_an_answer))
+    assert main([*words, "--force"]) == 1
+    said = capsys.readouterr().out
+    assert said.startswith("Refused: no two places of these maps are alike.\n")
+    assert "merged.yaml" in said.split("removed")[1]
+    assert {path.name for path in tmp_path.iterdir()} == {"report.json", "notes.txt"}
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["T_ref_mov"] is None
+    assert report["verdict"] == {
+        "accepted": False,
+        "reason": "Refused: no two places of these maps are alike.",
+    }
+    assert main([*words, "--json"]) == 1
+    assert json.loads(capsys.readouterr().out) == json.loads((tmp_path / "report.json").read_text())
+
+
+def test_a_report_without_an_answer_has_the_keys_of_one_with(case_folder, tmp_path, monkeypatch):
+    words = ["merge", *inputs(case_folder), "--out", str(tmp_path)]
+    main(words)
+    usual = json.loads((tmp_path / "report.json").read_text())
+    default = methods.DEFAULT_METHOD
+    monkeypatch.setitem(METHODS, default, replace(METHODS[default], run=without_an_answer))
+    main(words)
+    assert list(json.loads((tmp_path / "report.json").read_text())) == list(usual)
+
+
+def test_a_replay_of_no_answer_is_not_written(case_folder, tmp_path, capsys, monkeypatch):
+    default = methods.DEFAULT_METHOD
+    monkeypatch.setitem(METHODS, default, replace(METHODS[default], run=without_an_answer))
+    assert main(["replay", str(case_folder), "--out", str(tmp_path / "a.html")]) == 1
+    assert "Refused: no two places" in capsys.readouterr().err
+    assert not (tmp_path / "a.html").exists()
+
+
+@pytest.mark.parametrize("named", ["merged.yaml", "left.yaml"])
+def test_a_merge_never_overwrites_its_own_inputs(named, case_folder, tmp_path, capsys):
+    (tmp_path / "merged.pgm").write_bytes((case_folder / "map1.pgm").read_bytes())
+    (tmp_path / named).write_bytes(
+        (case_folder / "map1.yaml").read_bytes().replace(b"map1.pgm", b"merged.pgm")
+    )
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    _, *others = inputs(case_folder)
+    assert main(["merge", str(tmp_path / named), *others, "--out", str(tmp_path)]) == 2
+    assert "is an input of this merge; choose another --out" in capsys.readouterr().err
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_bar_names_the_stage_at_work_where_a_person_looks(case_folder, tmp_path, monkeypatch):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    seen = Terminal()
+    monkeypatch.setattr(sys, "stderr", seen)
+    assert main(["merge", *inputs(case_folder), "--out", str(tmp_path)]) == 0
+    assert "refine" in seen.getvalue()
+    assert "%" in seen.getvalue()
+
+
+def test_plain_images_merge_where_their_resolution_is_given(case_folder, tmp_path, capsys):
+    case = read_case(case_folder)
+    o, first, second = case.observations[0], case.ref.origin.inverse(), case.mov.origin.inverse()
+    seen = second @ Pose2(o.observed_x, o.observed_y)  # without a YAML file the corner is the origin
+    moved = replace(o, observer=first @ o.observer, observed_x=seen.x, observed_y=seen.y)
+    write_observations(tmp_path / "o.yaml", [moved])
+    for name in ("map1.pgm", "map2.pgm"):
+        (tmp_path / name).write_bytes((case_folder / name).read_bytes())
+    words = ["merge", str(tmp_path / "map1.pgm"), str(tmp_path / "map2.pgm"), "--out", str(tmp_path / "out")]
+    words += ["--observation", str(tmp_path / "o.yaml")]
+    assert main(words) == 2
+    assert "resolution of the image" in capsys.readouterr().err
+    assert main([*words, "--resolution", f"{case.ref.resolution},{case.mov.resolution}"]) == 0
+    assert read_map(tmp_path / "out" / "merged.yaml").resolution == case.ref.resolution
+
+
+@pytest.mark.parametrize("given", ["0.1", "0.1,0.1"])
+def test_a_resolution_for_maps_that_say_their_own_is_refused(case_folder, tmp_path, capsys, given):
+    words = ["merge", *inputs(case_folder), "--out", str(tmp_path / "out"), "--resolution", given]
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert "map1.yaml is no plain image" in error
+    assert "leave --resolution out" in error
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_file_of_several_observations_is_merged_and_a_robot_off_its_map_is_told_by_number(
+    case_folder, small_case, tmp_path, capsys
+):
+    (seen,) = small_case.observations
+    lost, several = replace(seen, observed_x=800.0), tmp_path / "several.yaml"
+    one, two, _ = inputs(case_folder)
+    words = ["merge", one, two, "--observation", str(several), "--out", str(tmp_path / "out")]
+    write_observations(several, [seen, seen])
+    assert main(words) == 0
+    write_observations(several, [seen, lost])
+    assert main(words) == 2
+    assert "observation 2 puts robot 2 at (800, " in capsys.readouterr().err
+
+
+def test_swapped_maps_end_with_2_and_say_so(case_folder, tmp_path, capsys):
+    one, two, seen = inputs(case_folder)
+    assert main(["merge", two, one, seen, "--out", str(tmp_path / "out")]) == 2
+    assert "whether the two maps are swapped" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("missing", ["map1.yaml", "map2.yaml", "observation.yaml"])
+def test_a_missing_file_ends_with_2_and_one_line_that_names_it(missing, case_folder, tmp_path, capsys):
+    words = [word.replace(missing, f"no_{missing}") for word in inputs(case_folder)]
+    assert main(["merge", *words, "--out", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert f"no_{missing}: no such file" in said
+    assert said.count("\n") == 1
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,59 @@
+"""``mapmeld serve``: how the page is started, and how it ends."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+import urllib.request
+
+import pytest
+from commandline import ROOT
+
+from app.cli import main
+
+
+def as_in_a_terminal():
+    """A shell without job control lets what it starts in the background ignore Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM])
+def test_serve_answers_on_this_machine_alone_until_it_is_told_to_end(end):
+    command = [sys.executable, "-m", "app", "serve", "--no-browser", "--port", "0"]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, text=True, cwd=ROOT, preexec_fn=as_in_a_terminal
+    ) as page:
+        try:
+            said = next(line for line in page.stdout if line.startswith("mapmeld is at "))
+            url = said.split()[3]
+            assert url.startswith("http://127.0.0.1:")
+            with urllib.request.urlopen(url, timeout=20) as answer:
+                assert answer.status == 200
+            time.sleep(0.2)
+            page.send_signal(end)
+            assert page.wait(timeout=20) == 0
+        finally:
+            if page.poll() is None:
+                page.kill()
+
+
+def test_a_browser_is_opened_only_where_there_is_a_screen(monkeypatch):
+    from app.commands.serve import _has_display
+
+    monkeypatch.setattr(sys, "platform", "linux")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    assert not _has_display()
+    monkeypatch.setitem(os.environ, "DISPLAY", ":0")
+    assert _has_display()
+
+
+def test_a_lesson_with_a_broken_text_is_refused_before_anyone_sees_it(tmp_path, capsys):
+    assert main(["serve", "--no-browser", "--lesson", str(tmp_path)]) == 2
+    assert "holds no text" in capsys.readouterr().err
+    (tmp_path / "01-mine.md").write_text("---\ntitle: Mine\npicture: hoof\n---\nText.\n")
+    assert main(["serve", "--no-browser", "--lesson", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert "01-mine.md: picture is 'hoof'; known are " in said
+    assert said.count("\n") == 1
