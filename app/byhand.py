@@ -17,6 +17,7 @@ from algorithms.steps import MergeResult
 from algorithms.touch import Walls
 from app import words
 from app.channel import Channel
+from app.host import MapHost
 from app.newest import Newest
 from app.panels.hand import HandPanel, HandWishes, weighed_html
 from app.panels.tables import box
@@ -28,7 +29,7 @@ REST = 0.15  # seconds in which a hand that rests does not move
 GLIDE = 180.0  # milliseconds in which map 2 goes where a number puts it
 
 
-class Host(Protocol):
+class Host(MapHost, Protocol):
     """The page, as far as it is asked from here."""
 
     @property
@@ -38,10 +39,6 @@ class Host(Protocol):
     @property
     def found(self) -> Pose2 | None:
         """What the method has found; None before."""
-
-    @property
-    def on_map(self) -> bool:
-        """Whether the map is looked at."""
 
     @property
     def follows(self) -> bool:

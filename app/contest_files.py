@@ -13,7 +13,7 @@ from algorithms.methods import METHODS
 from app.contest import Configs, Score, Tally, tally
 from app.machine import machine
 from app.report import plain
-from app.tables import angle_text, csv_bytes, metres_text, share_text, yes_text
+from app.tables import JUDGED, PLACED, csv_bytes, judged_cells, placed_cells, share_text
 
 TABLE = {
     "method": "{}",
@@ -93,24 +93,13 @@ def _methods_csv(rows: dict[str, Tally]) -> bytes:
 
 
 def _scores_csv(scores: Sequence[Score]) -> bytes:
-    header = (
-        *("case", "method", "right", "fine", "accepted", "index", "distance_m", "angle_deg"),
-        *("x_m", "y_m", "theta_deg", "seconds", "said"),
-    )
-    rows = []
-    for score in scores:
-        trial = score.trial
-        x, y, theta = trial.T_ref_mov or (None, None, None)
-        rows.append(
-            (
-                *(score.case, score.method, yes_text(trial.right), yes_text(trial.fine)),
-                *(yes_text(trial.accepted), share_text(trial.index)),
-                *(metres_text(trial.distance), angle_text(trial.angle)),
-                *(metres_text(x), metres_text(y), angle_text(theta)),
-                *("" if trial.failed else f"{trial.seconds:.3f}", trial.reason),
-            )
-        )
-    return csv_bytes(header, rows)
+    rows = [
+        (score.case, score.method, *judged_cells(score.trial), share_text(score.trial.index))
+        + placed_cells(score.trial)
+        + ("" if score.trial.failed else f"{score.trial.seconds:.3f}", score.trial.reason)
+        for score in scores
+    ]
+    return csv_bytes(("case", "method", *JUDGED, "index", *PLACED, "seconds", "said"), rows)
 
 
 def _json(scores: Sequence[Score], configs: Configs, seed: int) -> bytes:

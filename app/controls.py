@@ -123,6 +123,15 @@ def word_for(setting: Setting, value: Any) -> str:
     return next(word for word, option in setting.choices.items() if option == value)
 
 
+def text_for(setting: Setting, value: Any, on: str, off: str) -> str:
+    """A value in words, without its unit; ``on`` and ``off`` for a tick."""
+    if setting.choices is not None:
+        return word_for(setting, value)
+    if isinstance(value, bool):
+        return on if value else off
+    return f"{value:g}"
+
+
 def in_cells(metres: float, *cells: float) -> str:
     """A length in cells, for one or two resolutions (metres per cell): "60 cells" or "60 / 30 cells"."""
     counts = dict.fromkeys(f"{metres / cell:.3g}" for cell in cells)

@@ -11,7 +11,7 @@ import numpy as np
 from algorithms.methods import METHODS
 from algorithms.pose import Pose2
 from algorithms.steps import MergeResult
-from app.controls import Setting, settings_of, value_at, word_for
+from app.controls import settings_of, text_for, value_at
 from app.inputs import Files, Inputs
 from app.research.guest import Guest
 from app.session import Goal
@@ -107,15 +107,7 @@ def _moved(before: Any, after: Any) -> tuple[str, Hashable]:
     if len(moved) != 1:
         return f"{len(moved)} settings", None
     (setting,) = moved
-    shown = [_shown(setting, value_at(config, setting.path)) for config in (before, after)]
+    shown = [text_for(setting, value_at(config, setting.path), "on", "off") for config in (before, after)]
     unit = f" {setting.bounds.unit}" if setting.bounds and setting.bounds.unit else ""
     label = setting.label.removesuffix(f"({unit.strip()})").strip()
     return f"{label} {shown[0]} → {shown[1]}{unit}", setting.path
-
-
-def _shown(setting: Setting, value: Any) -> str:
-    if setting.choices is not None:
-        return word_for(setting, value)
-    if isinstance(value, bool):
-        return "on" if value else "off"
-    return f"{value:g}"

@@ -16,7 +16,6 @@ from app.legend import legend
 from app.lesson.mode import Lesson
 from app.lesson.museum import Museum
 from app.lesson.texts import lesson_folder, museum_folder
-from app.palette import Palette
 from app.panels.run import LESSON, MAP, MUSEUM
 from app.part import Part
 from app.stage import Item
@@ -52,24 +51,9 @@ class Learning(Part):
     # --- the lesson -------------------------------------------------------------------------------
 
     @property
-    def inputs(self) -> Inputs:
-        """What is loaded."""
-        return self._inputs
-
-    @property
     def layout(self) -> Layout:
         """Where the maps lie in the scene."""
         return self._maps.layout
-
-    @property
-    def palette(self) -> Palette:
-        """The colours of the page."""
-        return self._palette
-
-    @property
-    def seed(self) -> int:
-        """Where the luck of a run comes from."""
-        return self._run.seed
 
     def entered(self, open_: bool) -> None:
         """The lesson takes the place of the plots, or gives it back."""

@@ -73,6 +73,21 @@ class Part(ABC):
     _errand: Errand
     _refining: tuple[Scales, Pose2] | None
 
+    @property
+    def inputs(self) -> Inputs:
+        """What is loaded."""
+        return self._inputs
+
+    @property
+    def palette(self) -> Palette:
+        """The colours of the page."""
+        return self._palette
+
+    @property
+    def seed(self) -> int:
+        """Where the luck of a run comes from."""
+        return self._run.seed
+
     @abstractmethod
     def _report(self, error: MapMergeError) -> None:
         """Tell the person what is wrong."""

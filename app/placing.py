@@ -14,9 +14,8 @@ from algorithms.pose import FloatArray, Pose2
 from app import words
 from app.channel import Channel, Numbers
 from app.draft import Draft, Part
-from app.inputs import Inputs
+from app.host import MapHost, PageHost
 from app.layout import Layout, lay_out
-from app.palette import Palette
 from app.panels.observation import ObservationPanel, PlacingWishes
 from app.stage import Stage
 from app.views import signs
@@ -25,20 +24,8 @@ from app.views.maps import MapView
 PARTS: tuple[Part, ...] = ("observer", "seen", "observed")
 
 
-class Host(Protocol):
+class Host(PageHost, MapHost, Protocol):
     """The page, as far as it is asked from here."""
-
-    @property
-    def inputs(self) -> Inputs:
-        """What is loaded."""
-
-    @property
-    def palette(self) -> Palette:
-        """The colours of the page."""
-
-    @property
-    def on_map(self) -> bool:
-        """Whether the map is looked at."""
 
     def placing_asked(self) -> None:
         """The robots are to be placed: whatever else is going on ends."""

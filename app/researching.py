@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -14,15 +13,13 @@ from algorithms.errors import MapMergeError
 from algorithms.fuse import Fusion
 from algorithms.methods import METHODS
 from app.errand import Left
-from app.inputs import Inputs
-from app.palette import Palette
 from app.panels.run import MAP
 from app.part import Part
 from app.research.compare import Compare
 from app.research.guest import NOT_YOURS, Guest
 from app.research.sweep import Sweep
 from app.story import Story
-from app.takeaway import TAKEAWAY
+from app.takeaway import Delivery
 
 
 class Researching(Part):
@@ -32,6 +29,7 @@ class Researching(Part):
 
     def _research_with(self, gui: viser.GuiApi) -> None:
         """Add both tabs to the dock of the plots."""
+        self._deliver = Delivery(self._client, self._errand)
         both = self._turn, self.session.drawing
         with self._plots.add_tab("Compare", viser.Icon.SCALE):
             self._compare_tab = Compare(gui, self._channel, *both, self)
@@ -40,21 +38,6 @@ class Researching(Part):
         self._channel.on("back", self.back)
 
     # --- what the tabs ask ------------------------------------------------------------------------
-
-    @property
-    def inputs(self) -> Inputs:
-        """What is loaded."""
-        return self._inputs
-
-    @property
-    def palette(self) -> Palette:
-        """The colours of the page."""
-        return self._palette
-
-    @property
-    def seed(self) -> int:
-        """Where the luck of a run comes from."""
-        return self._run.seed
 
     @property
     def method(self) -> str:
@@ -80,11 +63,7 @@ class Researching(Part):
 
     def save(self, name: str, make: Callable[[], bytes]) -> None:
         """Send a file, once it is made."""
-        with TAKEAWAY.making() as begun, suppress(Left):  # left: there is no file, and that is all
-            if begun:
-                with self._errand("Making the files: tables and pictures.", aside=True):
-                    content = make()
-                TAKEAWAY.send(self._client, name, content)
+        self._deliver("Making the files: tables and pictures.", name, lambda _: make())
 
     # --- another method's transform over map 1 ----------------------------------------------------
 

@@ -10,7 +10,7 @@ from algorithms.methods import METHODS
 from app.machine import machine
 from app.report import plain
 from app.sweep import Plan, Point, in_order
-from app.tables import angle_text, csv_bytes, metres_text, share_text, yes_text
+from app.tables import JUDGED, PLACED, csv_bytes, judged_cells, placed_cells, share_text
 
 JOURNAL_FILE = "journal.jsonl"
 
@@ -45,16 +45,6 @@ def sweep_files(case: Case, plan: Plan, points: Sequence[Point]) -> dict[str, by
 
 def points_csv(plan: Plan, points: Iterable[Point]) -> bytes:
     """A row per point, without anything that was measured with a clock."""
-    header = (
-        "seeds",
-        "index_mean",
-        "index_deviation",
-        "index_min",
-        "index_max",
-        "right",
-        "accepted",
-        "failed",
-    )
     rows = []
     for point in points:
         spread, n = point.index, len(point.trials)
@@ -63,43 +53,18 @@ def points_csv(plan: Plan, points: Iterable[Point]) -> bytes:
             numbers = tuple(map(share_text, (spread.mean, spread.deviation, spread.low, spread.high)))
         right = "" if point.right is None else point.right
         rows.append((*_at(plan, point), n, *numbers, right, point.accepted, point.failed))
-    return csv_bytes((*_names(plan), *header), rows)
+    index = ("index_mean", "index_deviation", "index_min", "index_max")
+    return csv_bytes((*_names(plan), "seeds", *index, "right", "accepted", "failed"), rows)
 
 
 def runs_csv(plan: Plan, points: Iterable[Point]) -> bytes:
     """A row per merge: metres and degrees."""
-    header = (
-        "seed",
-        "index",
-        "right",
-        "fine",
-        "accepted",
-        "distance_m",
-        "angle_deg",
-        "x_m",
-        "y_m",
-        "theta_deg",
-    )
-    rows = []
-    for point in points:
-        for seed, trial in zip(plan.seeds, point.trials, strict=False):
-            x, y, theta = trial.T_ref_mov or (None, None, None)
-            rows.append(
-                (
-                    *_at(plan, point),
-                    seed,
-                    share_text(trial.index),
-                    yes_text(trial.right),
-                    yes_text(trial.fine),
-                    yes_text(trial.accepted),
-                    metres_text(trial.distance),
-                    angle_text(trial.angle),
-                    metres_text(x),
-                    metres_text(y),
-                    angle_text(theta),
-                )
-            )
-    return csv_bytes((*_names(plan), *header), rows)
+    rows = [
+        (*_at(plan, point), seed, share_text(trial.index), *judged_cells(trial), *placed_cells(trial))
+        for point in points
+        for seed, trial in zip(plan.seeds, point.trials, strict=False)
+    ]
+    return csv_bytes((*_names(plan), "seed", "index", *JUDGED, *PLACED), rows)
 
 
 def times_csv(plan: Plan, points: Iterable[Point]) -> bytes:

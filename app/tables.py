@@ -6,7 +6,10 @@ import csv
 import io
 from collections.abc import Iterable, Sequence
 from math import degrees
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from app.trial import Trial
 
 
 def csv_bytes(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
@@ -36,6 +39,26 @@ def angle_text(value: float | None) -> str:
 def yes_text(value: bool | None) -> str:
     """A yes or a no."""
     return "" if value is None else "yes" if value else "no"
+
+
+JUDGED = ("right", "fine", "accepted")
+"""Columns of what is to be said of a run."""
+
+
+def judged_cells(trial: Trial) -> tuple[str, ...]:
+    """Cells of JUDGED."""
+    return tuple(map(yes_text, (trial.right, trial.fine, trial.accepted)))
+
+
+PLACED = ("distance_m", "angle_deg", "x_m", "y_m", "theta_deg")
+"""Columns of a run's transform: how far off it is, and what it is."""
+
+
+def placed_cells(trial: Trial) -> tuple[str, ...]:
+    """Cells of PLACED."""
+    x, y, theta = trial.T_ref_mov or (None, None, None)
+    off = metres_text(trial.distance), angle_text(trial.angle)
+    return (*off, metres_text(x), metres_text(y), angle_text(theta))
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> list[str]:

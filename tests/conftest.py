@@ -24,7 +24,10 @@ from algorithms.casefiles import (
 )
 from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.mapio import map_to_bytes
+from algorithms.methods import merge
 from algorithms.pose import Pose2
+from algorithms.steps import MergeResult
+from app.inputs import Inputs
 
 # A machine that is busy with other things must not fail a test; where CI runs, the same examples every time.
 settings.register_profile(
@@ -69,6 +72,18 @@ def small_case() -> Case:
     """Two maps of one flat, seen in part by each robot, and the sighting without error."""
     ref, mov, observation, T_ref_mov = flat_pair()
     return Case("flat_1", ref, mov, (observation,), OBSERVATION_FILE, Truth(T_ref_mov))
+
+
+@pytest.fixture(scope="session")
+def inputs(small_case: Case) -> Inputs:
+    """``small_case`` as the page holds it."""
+    return Inputs.of(small_case)
+
+
+@pytest.fixture(scope="session")
+def result(small_case: Case) -> MergeResult:
+    """What merging ``small_case`` gives."""
+    return merge(small_case.ref, small_case.mov, small_case.observations)
 
 
 @pytest.fixture(scope="session")

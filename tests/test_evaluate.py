@@ -26,11 +26,6 @@ def order(root, **more):
     return Order(Path(root), METHOD, DEFAULTS, **more)
 
 
-@pytest.fixture(scope="module")
-def result(small_case):
-    return methods.merge(small_case.ref, small_case.mov, small_case.observations)
-
-
 def off_by(case, result, metres=0.0, angle=0.0, **truth):
     """The case with a truth so far from the result, at the seen robot."""
     at = result.encounter.x_mov

@@ -20,11 +20,6 @@ DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 
 
 @pytest.fixture(scope="module")
-def result(small_case) -> MergeResult:
-    return merge(small_case.ref, small_case.mov, small_case.observations)
-
-
-@pytest.fixture(scope="module")
 def scales(small_case, result) -> Scales:
     best = (result.T_ref_mov, result.value)
     return Scales(small_case.ref, small_case.mov, small_case.observations, DEFAULTS, (best,))

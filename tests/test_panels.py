@@ -14,7 +14,7 @@ from algorithms.errors import InputFileError
 from algorithms.mapio import map_to_bytes
 from algorithms.methods import DEFAULT_METHOD, METHODS, merge, run
 from algorithms.pose import Pose2
-from algorithms.steps import CandidatesDetail, HoughDetail, MergeResult
+from algorithms.steps import CandidatesDetail, HoughDetail
 from app import charts
 from app.inputs import Inputs
 from app.panels.files import Upload, inputs_from
@@ -25,16 +25,6 @@ from app.story import Story
 from app.words import progress, sentence, typeset
 
 DEFAULTS = METHODS[DEFAULT_METHOD].defaults
-
-
-@pytest.fixture(scope="module")
-def inputs(small_case) -> Inputs:
-    return Inputs.of(small_case)
-
-
-@pytest.fixture(scope="module")
-def result(inputs) -> MergeResult:
-    return merge(inputs.ref, inputs.mov, inputs.observations)
 
 
 def test_what_is_missing_is_said_in_the_order_of_the_work(inputs):

@@ -19,11 +19,6 @@ from app.inputs import Inputs
 from app.palette import LIGHT
 
 
-@pytest.fixture(scope="module")
-def result(small_case):
-    return merge(small_case.ref, small_case.mov, small_case.observations)
-
-
 def test_the_report_has_the_keys_that_other_programs_read(result):
     told = report.report_of(result, METHODS[result.method].defaults, load_s=0.5)
     assert list(told)[:8] == [

@@ -28,16 +28,6 @@ DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 VOID = {"meta"}
 
 
-@pytest.fixture(scope="module")
-def inputs(small_case) -> Inputs:
-    return Inputs.of(small_case)
-
-
-@pytest.fixture(scope="module")
-def result(inputs) -> MergeResult:
-    return merge(inputs.ref, inputs.mov, inputs.observations)
-
-
 def page_of(result: MergeResult, inputs: Inputs, config=DEFAULTS, **named: str) -> str:
     return report_page(result, inputs, config, report_of(result, config, inputs=named)).decode()
 

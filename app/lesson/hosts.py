@@ -6,34 +6,22 @@ from typing import Any, Protocol
 
 from algorithms.errors import MapMergeError
 from app.desk import Desk
+from app.host import RunHost
 from app.inputs import Inputs
 from app.layout import Layout
-from app.palette import Palette
 from app.session import Session
 from app.stage import Item
 from app.story import Story
 
 
-class Host(Protocol):
+class Host(RunHost, Protocol):
     """A page with a lesson."""
 
     session: Session
 
     @property
-    def inputs(self) -> Inputs:
-        """What is loaded."""
-
-    @property
     def layout(self) -> Layout:
         """Where it lies in the scene."""
-
-    @property
-    def palette(self) -> Palette:
-        """The colours of the page."""
-
-    @property
-    def seed(self) -> int:
-        """Where the luck comes from."""
 
     def present(
         self, story: Story, says: str, ink: list[Item], turn: float | None, look: bool, busy: bool

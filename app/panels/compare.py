@@ -11,6 +11,7 @@ import viser
 
 from algorithms.methods import METHODS, Family
 from app.palette import LIGHT, QUIET
+from app.panels.sparing import put
 from app.research.outcome import Outcome
 from app.words import typeset
 
@@ -94,15 +95,9 @@ class ComparePanel:
     def possible(self, count: int, ready: bool, busy: bool, harvest: bool) -> None:
         """How many methods are chosen, whether there is a pair, whether they run, whether any has ended."""
         label = "Compare methods" if count == 0 else f"Compare {count} method{'s' if count > 1 else ''}"
-        for handle, name, value in (
-            (self._run, "label", label),
-            (self._run, "disabled", count == 0 or not ready),
-            (self._run, "visible", not busy),
-            (self._stop, "visible", busy),
-            (self._save, "visible", harvest and not busy),
-        ):
-            if getattr(handle, name) != value:
-                setattr(handle, name, value)
+        put(self._run, label=label, disabled=count == 0 or not ready, visible=not busy)
+        put(self._stop, visible=busy)
+        put(self._save, visible=harvest and not busy)
 
     def say(self, words: str, share: float | None = None) -> None:
         """How far the run is."""
@@ -111,9 +106,7 @@ class ComparePanel:
     def show(self, cards: Mapping[str, Card]) -> None:
         """Show these cards; those that stay as they are cost nothing."""
         for name, card in cards.items():
-            html = card_html(name, card)
-            if self._cards[name].content != html:
-                self._cards[name].content = html
+            put(self._cards[name], content=card_html(name, card))
 
 
 def says_html(words: str, share: float | None = None) -> str:

@@ -6,17 +6,16 @@ What a robot would act upon is given of a refused merge only after a warning.
 from __future__ import annotations
 
 from html import escape
-from threading import Lock
 
 import viser
 
-from app.errand import Errand, Left
+from app.errand import Check, Errand
 from app.export import ACTED_UPON, ALONE, ARCHIVE, Harvest
 from app.palette import LIGHT, QUIET
 from app.panels.replay import ReplayButton
 from app.panels.tables import box
 from app.publish import publish_command
-from app.takeaway import TAKEAWAY
+from app.takeaway import Delivery
 
 _NOTHING = box("After a merge it can be taken away from here: map, transform, report.", "plain")
 _OUTDATED = "Out of date: a setting was changed."
@@ -26,9 +25,8 @@ class ExportPanel:
     """Holds the result that can be downloaded; None while there is none, or it is out of date."""
 
     def __init__(self, client: viser.ClientHandle, errand: Errand) -> None:
-        self._client, self._errand = client, errand
+        self._client, self._deliver = client, Delivery(client, errand)
         self._harvest: Harvest | None = None
-        self._at_work = Lock()
         gui = client.gui
         with gui.add_folder("Export", order=70):
             self._all = gui.add_button(
@@ -94,23 +92,11 @@ class ExportPanel:
         no.on_click(lambda _: go(False))
 
     def _send(self, harvest: Harvest, name: str) -> None:
-        if not self._at_work.acquire(blocking=False):
-            return  # a second click while the files are being made
-        try:
-            self._make(harvest, name)
-        except Left:
-            pass  # there is no file, and that is all
-        finally:
-            self._at_work.release()
+        def make(check: Check) -> bytes:
+            files = harvest.make(check)
+            return harvest.archive() if name == ARCHIVE else files[name]
 
-    def _make(self, harvest: Harvest, name: str) -> None:
-        with TAKEAWAY.making() as begun:
-            if not begun:
-                return
-            with self._errand("Making the files: map, pictures and report.", aside=True) as check:
-                files = harvest.make(check)
-                content = harvest.archive() if name == ARCHIVE else files[name]
-            TAKEAWAY.send(self._client, name, content)
+        self._deliver("Making the files: map, pictures and report.", name, make)
 
 
 def line_html(harvest: Harvest, faded: bool = False) -> str:

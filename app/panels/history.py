@@ -7,6 +7,7 @@ from html import escape
 import viser
 
 from app.history import Entry, History
+from app.panels.sparing import put
 
 
 class HistoryPanel:
@@ -22,9 +23,8 @@ class HistoryPanel:
         entries, at = history.entries, history.position
         undo = entries[at].label if at > 0 else ""
         redo = entries[at + 1].label if at + 1 < len(entries) else ""
-        for html, content in ((self._steps, steps_html(undo, redo)), (self._list, history_html(history))):
-            if html.content != content:
-                html.content = content
+        put(self._steps, content=steps_html(undo, redo))
+        put(self._list, content=history_html(history))
 
 
 def steps_html(undo: str, redo: str) -> str:

@@ -11,6 +11,7 @@ import viser
 from app.lesson.equations import equations_html
 from app.lesson.texts import Trial
 from app.palette import QUIET
+from app.panels.sparing import put
 from app.panels.tables import box
 from app.pictures.book import Dial, place_of, shown
 
@@ -156,14 +157,11 @@ class LessonPanel:
             if there:
                 answer = f'<div class="mm-answer">{escape(told[k])}</div>' if told[k] else ""
                 content = f'<div class="mm-try"><b>Try</b> {escape(trials[k].ask)}{answer}</div>'
-                if ask.content != content:
-                    ask.content = content
+                put(ask, content=content)
                 if trials[k].button:
                     label = PUT_BACK if told[k] else trials[k].button
                 else:
                     label = HIDE if told[k] else ANSWER
-                if button.label != label:
-                    button.label = label
-            for handle in (ask, button):
-                if handle.visible != there:
-                    handle.visible = there
+                put(button, label=label)
+            put(ask, visible=there)
+            put(button, visible=there)

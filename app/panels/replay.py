@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from threading import Lock
 
 import viser
 
-from app.errand import Check, Errand, Left
+from app.errand import Check, Errand
 from app.palette import QUIET
-from app.takeaway import TAKEAWAY
+from app.takeaway import Delivery
 
 
 class ReplayButton:
     """Holds the run that can be recorded; None while there is none, or it is out of date."""
 
     def __init__(self, client: viser.ClientHandle, errand: Errand) -> None:
-        self._client, self._errand = client, errand
+        self._deliver = Delivery(client, errand)
         self._name = ""
         self._make: Callable[[Check], bytes] | None = None
-        self._at_work = Lock()
         self._button = client.gui.add_button(
             "Save replay",
             icon=viser.Icon.MOVIE,
@@ -41,22 +39,8 @@ class ReplayButton:
 
     def _save(self) -> None:
         name, make = self._name, self._make
-        if make is None or not self._at_work.acquire(blocking=False):
-            return  # a second click while it is being made
-        try:
-            self._record(name, make)
-        except Left:
-            pass  # there is no file, and that is all
-        finally:
-            self._at_work.release()
-
-    def _record(self, name: str, make: Callable[[Check], bytes]) -> None:
-        with TAKEAWAY.making() as begun:
-            if not begun:
-                return
-            with self._errand("Recording the run: it is told once more, for the file.", aside=True) as check:
-                page = make(check)
-            TAKEAWAY.send(self._client, file_name(name), page)
+        if make is not None:
+            self._deliver("Recording the run: it is told once more, for the file.", file_name(name), make)
 
 
 def file_name(name: str) -> str:

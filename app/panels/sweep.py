@@ -15,6 +15,7 @@ from algorithms.bounds import Bounds
 from app.controls import Setting
 from app.palette import LIGHT, QUIET, css
 from app.panels.compare import says_html
+from app.panels.sparing import put
 from app.research.asked import Wanted
 from app.research.curves import AGREEMENT, Numbers, measures
 from app.words import typeset
@@ -183,19 +184,13 @@ class SweepPanel:
             f'<p style="{SMALL}">Merge the loaded maps again and again while a setting changes. Method: '
             f"<b>{escape(title)}</b>; all else as its sliders stand.</p>"
         )
-        if self._of.content != html:
-            self._of.content = html
+        put(self._of, content=html)
 
     def possible(self, ready: bool, busy: bool, harvest: bool) -> None:
         """Whether there is a pair, whether a sweep runs, whether any of its points is there."""
-        for handle, name, value in (
-            (self._run, "disabled", not ready),
-            (self._run, "visible", not busy),
-            (self._stop, "visible", busy),
-            (self._save, "visible", harvest and not busy),
-        ):
-            if getattr(handle, name) != value:
-                setattr(handle, name, value)
+        put(self._run, disabled=not ready, visible=not busy)
+        put(self._stop, visible=busy)
+        put(self._save, visible=harvest and not busy)
 
     def say(self, words: str, share: float | None = None) -> None:
         """How far the sweep is, or why there is none."""
@@ -234,16 +229,12 @@ class SweepPanel:
             self._curve.title = title
         self._curve.data = data
         self._heat.content = ""
-        if not self._curve.visible:
-            self._curve.visible = True
+        put(self._curve, visible=True)
 
     def heat(self, svg: str) -> None:
         """Show a field of colours."""
-        html = f'<div class="mm-heat">{svg}</div>'
-        if self._heat.content != html:
-            self._heat.content = html
-        if self._curve.visible:
-            self._curve.visible = False
+        put(self._heat, content=f'<div class="mm-heat">{svg}</div>')
+        put(self._curve, visible=False)
 
     def points(
         self, head: Sequence[str], rows: Sequence[tuple[int, Sequence[str]]], here: int | None

@@ -58,18 +58,11 @@ def _turning(story: Story) -> list[Chart]:
     if hough is None:
         return []
     x, ref, mov = charts.hough_spectra(hough.match)
-    turns, correlation, candidates, _ = charts.turn_correlation(hough.match, None)
     return [
         _chart(
             charts.HOUGH, (0.0, 180.0), (0.0, 1.1), _line("map 1", REF, x, ref), _line("map 2", MOV, x, mov)
         ),
-        _chart(
-            charts.TURNS,
-            (0.0, 180.0),
-            charts.turn_range(hough.match),
-            _line("CC", GREY, turns, correlation),
-            _dots("candidates", MARK, turns, candidates, 4),
-        ),
+        _turns(hough, None),
     ]
 
 
@@ -81,17 +74,7 @@ def _shifting(story: Story) -> list[Chart]:
     if at_hand is None or hough is None or not story.reached(WindowDetail):
         return []
     theta = at_hand.T_ref_mov.theta
-    turns, correlation, candidates, chosen = charts.turn_correlation(hough.match, theta)
-    drawn = [
-        _chart(
-            charts.TURNS,
-            (0.0, 180.0),
-            charts.turn_range(hough.match),
-            _line("CC", GREY, turns, correlation),
-            _dots("candidates", MARK, turns, candidates, 4),
-            _dots("at hand", BEST, turns, chosen, 5.5),
-        )
-    ]
+    drawn = [_turns(hough, theta)]
     for match, names in ((at_hand.x, charts.SHIFT_X), (at_hand.y, charts.SHIFT_Y)):
         at, window, values, best = charts.shift_correlation(match)
         drawn.append(
@@ -105,6 +88,18 @@ def _shifting(story: Story) -> list[Chart]:
             )
         )
     return drawn
+
+
+def _turns(hough: HoughDetail, theta: float | None) -> Chart:
+    """How well the directions of the walls agree at every turn.
+
+    theta : the turn at hand, radians; None: none is
+    """
+    turns, correlation, candidates, chosen = charts.turn_correlation(hough.match, theta)
+    lines = [_line("CC", GREY, turns, correlation), _dots("candidates", MARK, turns, candidates, 4)]
+    if theta is not None:
+        lines.append(_dots("at hand", BEST, turns, chosen, 5.5))
+    return _chart(charts.TURNS, (0.0, 180.0), charts.turn_range(hough.match), *lines)
 
 
 def _climb(story: Story) -> Chart:

@@ -9,7 +9,7 @@ from typing import Any
 from algorithms.gridmap import GridMap
 from algorithms.methods import METHODS
 from app import render
-from app.controls import settings_of, value_at, word_for
+from app.controls import settings_of, text_for, value_at
 from app.inputs import Inputs
 from app.replay.record import LATER_PARTICLES, PARTICLES, PICTURE
 from app.version import versions
@@ -54,8 +54,9 @@ class About:
         for setting in settings_of(self.config):
             default = value_at(METHODS[self.method].defaults, setting.path)
             value = setting.default
-            changed = f"instead of {_text(setting, default)}" if value != default else ""
-            rows.append([f"{setting.path[0]}: {setting.label}", _text(setting, value), changed])
+            shown, usual = (text_for(setting, each, "yes", "no") for each in (value, default))
+            changed = f"instead of {usual}" if value != default else ""
+            rows.append([f"{setting.path[0]}: {setting.label}", shown, changed])
         return rows
 
     def notes(self) -> list[str]:
@@ -75,11 +76,3 @@ class About:
 
 def _size(grid: GridMap) -> str:
     return f"{grid.width} × {grid.height} cells of {grid.resolution:g} m"
-
-
-def _text(setting: Any, value: Any) -> str:
-    if setting.choices is not None:
-        return word_for(setting, value)
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return f"{value:g}"

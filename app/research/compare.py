@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from threading import Event, RLock
 from time import perf_counter
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import viser
@@ -17,44 +17,26 @@ from app.channel import Channel
 from app.contest import Score, contest
 from app.executor import Executor
 from app.inputs import Inputs
-from app.palette import Palette
 from app.panels.compare import ALL, FAMILIES, Card, ComparePanel, CompareWishes
 from app.pictures.thumbnail import thumbnail
 from app.png import png_base64
 from app.research.archive import contest_archive
 from app.research.background import Background, beside_the_page
 from app.research.guest import Guest
+from app.research.host import ResearchHost
 from app.research.outcome import outcome_of
 
 FIRST = (DEFAULT_METHOD, "paper-argmax", "sift")  # ticked in the beginning: quick, and one of each family
 
 
-class Host(Protocol):
+class Host(ResearchHost, Protocol):
     """The page, as far as it is asked from here."""
-
-    @property
-    def inputs(self) -> Inputs:
-        """What is loaded."""
-
-    @property
-    def palette(self) -> Palette:
-        """The colours of the page."""
-
-    @property
-    def seed(self) -> int:
-        """Where the luck of a run comes from."""
-
-    def settings_for(self, method: str) -> Any:
-        """The settings a method is to run with."""
 
     def look(self, guest: Guest) -> None:
         """Show what a method has found over map 1."""
 
     def back(self) -> None:
         """Show one's own result again."""
-
-    def save(self, name: str, make: Callable[[], bytes]) -> None:
-        """Send a file, once it is made."""
 
 
 class Compare:

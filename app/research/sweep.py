@@ -18,7 +18,6 @@ from app.controls import Setting, settings_of
 from app.executor import Executor
 from app.inputs import Inputs
 from app.journal import Journal
-from app.palette import Palette
 from app.panels.sweep import NOTHING, SweepPanel, SweepWishes
 from app.panels.tuning import FRONT, idle
 from app.pictures.heat import heat_svg
@@ -26,6 +25,7 @@ from app.research import curves
 from app.research.archive import sweep_archive
 from app.research.asked import labelled, planned, suggestion
 from app.research.background import Background, beside_the_page
+from app.research.host import ResearchHost
 from app.research.outcome import sentence
 from app.sweep import Plan, Point, done_before, sweep
 
@@ -33,36 +33,18 @@ Swept = tuple[Inputs, Case | None, Plan | None, dict[int, Point], Journal]
 """A pair, and what was swept on it as far as it came; with the journal, to go on from there."""
 
 
-class Host(Protocol):
+class Host(ResearchHost, Protocol):
     """The page, as far as it is asked from here."""
-
-    @property
-    def inputs(self) -> Inputs:
-        """What is loaded."""
-
-    @property
-    def palette(self) -> Palette:
-        """The colours of the page."""
-
-    @property
-    def seed(self) -> int:
-        """Where the luck of a run comes from."""
 
     @property
     def method(self) -> str:
         """The method of the panel."""
-
-    def settings_for(self, method: str) -> Any:
-        """The settings a method is to run with."""
 
     def mark(self, measure: str) -> None:
         """Let the button of this measure be seen to be the chosen one."""
 
     def load_settings(self, method: str, config: Any) -> None:
         """Put settings into the sliders, as if a person had moved them."""
-
-    def save(self, name: str, make: Callable[[], bytes]) -> None:
-        """Send a file, once it is made."""
 
 
 class Sweep:
