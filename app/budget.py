@@ -7,9 +7,9 @@ from threading import Lock
 
 from algorithms.errors import TooLargeError
 
-# Of the maps on all pages together. A page takes 16 to 25 bytes for a cell of its maps (measured at
-# 4000 x 4000 and 1200 x 1200), so this is about 6 GB.
-MOST_CELLS = 250_000_000
+# Of the maps on all pages together. A page and its worker take about 27 bytes for a cell of its maps after
+# the first merge, and 43 with two results to go back to (measured with a pair of 4000 x 4000): 5 to 9 GB.
+MOST_CELLS = 200_000_000
 
 
 class Budget:

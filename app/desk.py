@@ -13,8 +13,8 @@ from algorithms.pose import Pose2
 from algorithms.steps import MergeResult
 from app.controls import settings_of, text_for, value_at
 from app.inputs import Files, Inputs
+from app.job import Goal
 from app.research.guest import Guest
-from app.session import Goal
 from app.story import Story
 
 

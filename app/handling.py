@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import viser
 
@@ -156,8 +157,8 @@ class Handling(Part):
 
     def hand_refines(self, scales: Scales, T_ref_mov: Pose2) -> None:
         """Search from there; where it ends map 2 is in the hand again."""
-        seed = self._run.seed
-        job = self._job(pace=self._run.pace, steps=lambda: refine(scales, T_ref_mov, seed))
+        search = partial(refine, scales, T_ref_mov, self._run.seed)
+        job = self._job(pace=self._run.pace, steps=search)
         if job is not None:
             self._refining = scales, T_ref_mov
             self.session.request(job)

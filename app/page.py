@@ -14,7 +14,7 @@ from algorithms.casefiles import Case
 from algorithms.conflicts import Conflicts
 from algorithms.errors import InputFileError, MapMergeError, TooLargeError
 from algorithms.steps import MergeResult, RefineDetail
-from app import words
+from app import words, workers
 from app.budget import Budget
 from app.channel import Channel
 from app.comparison import MODES, Comparison
@@ -22,6 +22,7 @@ from app.desk import Desk
 from app.errand import Errand
 from app.handling import Handling
 from app.inputs import Inputs
+from app.job import Job
 from app.keep import Keep, Kept
 from app.layout import lay_out
 from app.learning import Learning
@@ -34,7 +35,7 @@ from app.panels.result import result_html
 from app.panels.run import HEIGHTS, MAP, SWARM, RunPanel, Wishes
 from app.panels.tuning import TuningPanel
 from app.researching import Researching
-from app.session import Job, Session
+from app.session import Session
 from app.stage import Stage, TabStage, mark
 from app.story import Story
 from app.takeaway import TAKEAWAY
@@ -82,7 +83,7 @@ class Page(Telling, Handling, Learning, Researching):
         self._keep, self._key, self._gone = keep, "", False
         self._budget = budget or Budget()
         self._turn = RLock()  # wishes come one after the other; taken before session.drawing
-        self.session = Session(self)
+        self.session = Session(self, workers.COMMON.bench())
         self._channel.on("compare", self._compare, mode=MODES)
         self._closer = Closeness(self._channel, self._stage, self._maps.ground, self.session.drawing)
         self._errand = Errand(

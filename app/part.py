@@ -19,6 +19,7 @@ from app.comparison import Comparison
 from app.desk import Desk
 from app.errand import Errand
 from app.inputs import Inputs
+from app.job import Job
 from app.lesson.mode import Lesson
 from app.lesson.museum import Museum
 from app.palette import Palette
@@ -28,7 +29,7 @@ from app.panels.observation import ObservationPanel
 from app.panels.run import RunPanel
 from app.panels.tuning import TuningPanel
 from app.placing import Placing
-from app.session import Job, Session
+from app.session import Session
 from app.stage import Stage
 from app.story import Story
 from app.timeline import Timeline

@@ -13,12 +13,16 @@ import viser
 
 from algorithms.casefiles import Case
 from algorithms.errors import MapMergeError
+from app import workers
 from app.access import Access
 from app.budget import Budget
 from app.guard import guarded_server
+from app.job import Job
 from app.keep import Keep
 from app.logs import facts
+from app.memory import Housekeeping
 from app.page import Page
+from app.turns import Turns
 
 log = logging.getLogger(__name__)
 
@@ -58,6 +62,7 @@ def make_server(
     pages: dict[int, Page] = {}
     keep = Keep()
     budget = Budget(make_room=keep.forget_all)
+    housekeeping = Housekeeping()
 
     @server.on_client_connect
     def _(client: viser.ClientHandle) -> None:
@@ -74,29 +79,36 @@ def make_server(
             dropped = dict(server.gate.dropped)
             log.info("a tab went", extra=facts(tab=client.client_id, tabs=len(pages), dropped=dropped))
             page.close()
+            housekeeping.soon()
 
     threading.Thread(target=warm_up, name="mapmeld-warm-up", daemon=True).start()
     return server
 
 
 def warm_up() -> None:
-    """Compile the kernels with a room of some cells, so that the first Merge need not wait for it."""
+    """Merge a room of some cells: the kernels are compiled then, and the first Merge need not wait for it."""
     import numpy as np
 
     from algorithms.gridmap import FREE, OCCUPIED, GridMap
-    from algorithms.methods import merge
     from algorithms.observation import Observation
     from algorithms.pose import Pose2
 
     cells = np.full((40, 60), FREE, dtype=np.int8)
     cells[[0, -1], :], cells[:, [0, -1]] = OCCUPIED, OCCUPIED
     room = GridMap(cells, 0.1)
+    seen = Observation(Pose2(2.0, 2.0), 3.0, 2.0, 1.0, 0.0)
+    bench = workers.COMMON.bench()
     try:
-        merge(room, room, Observation(Pose2(2.0, 2.0), 3.0, 2.0, 1.0, 0.0))
+        for _ in bench.steps(Job(room, room, (seen,), None), Turns.get):
+            pass
+        for _ in Job(room, room, (seen,), None).run({}):  # here, too: for what a hand moves, and the lesson
+            pass
     except MapMergeError:
         log.debug("warming up ended early", exc_info=True)
     except Exception:  # nobody asked for it: who merges is told then
         log.warning("warming up failed", exc_info=True)
+    finally:
+        bench.close()
 
 
 def _taken(port: int) -> str:

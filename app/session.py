@@ -7,48 +7,22 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from contextlib import AbstractContextManager, closing
+from functools import partial
 from threading import Condition, RLock, Thread
 from time import perf_counter
-from typing import Any, Literal, Protocol
+from typing import Protocol
 
-from algorithms import methods
-from algorithms.chain import Memo
 from algorithms.errors import MapMergeError
-from algorithms.gridmap import GridMap
-from algorithms.observation import Observation
 from algorithms.steps import AnswersDetail, CandidatesDetail, MergeResult, Step
+from app.bench import Bench
+from app.job import Job
 from app.logs import facts
 from app.player import FRAME, Waiting, dwell
 from app.story import Story
-from app.turns import COMMON, Turns
+from app.turns import Turns
 
 log = logging.getLogger(__name__)
-
-Goal = Literal["merge", "candidates"]
-
-
-@dataclass(frozen=True, eq=False)
-class Job:
-    """One request: what to merge, how, how far, and how fast to tell it.
-
-    goal  : the whole merge, or only up to the candidates (before the first merge, a moved slider
-            shows what it does without jumping to the answer)
-    pace  : factor on the time each step stays on the screen; 0: none
-    again : play steps that are known already, too
-    steps : what runs in place of the method; None: the method
-    """
-
-    ref: GridMap
-    mov: GridMap
-    observations: tuple[Observation, ...]
-    config: Any
-    method: str = methods.DEFAULT_METHOD
-    seed: int = 0
-    goal: Goal = "merge"
-    pace: float = 0.0
-    again: bool = False
-    steps: Callable[[], Iterator[Step]] | None = None
 
 
 class Listener(Protocol):
@@ -79,24 +53,22 @@ class Listener(Protocol):
 
 
 class Session:
-    """A worker thread and the request it works on.
+    """A thread and the request it works on.
 
-    One that works ``beside`` another draws on the same page, and knows what the other has worked out.
+    One that works ``beside`` another draws on the same page.
     """
 
     def __init__(
         self,
         listener: Listener,
-        run: Callable[..., Iterator[Step]] = methods.run,
+        bench: Bench,
         clock: Callable[[], float] = perf_counter,
         waiting: Waiting | None = None,
         beside: Session | None = None,
-        turns: Turns = COMMON,
     ) -> None:
-        self._listener, self._run, self._clock = listener, run, clock
+        """bench : where it is worked out; closed with the session"""
+        self._listener, self.bench, self._clock = listener, bench, clock
         self._waiting = waiting or Waiting()
-        self._turns = turns
-        self._memo: Memo = beside._memo if beside else {}
         self._wake = Condition()
         self._wanted: Job | None = None
         self._running: Job | None = None
@@ -141,8 +113,7 @@ class Session:
 
     def told_again(self, job: Job) -> Iterator[Step]:
         """The steps of a run once more, for a recording: those that are known are not computed again."""
-        memo = dict(self._memo)  # the worker goes on with its own
-        return self._run(job.method, job.ref, job.mov, job.observations, job.config, job.seed, memo)
+        return self.bench.steps(job, Turns.get, aside=True)
 
     def close(self) -> None:
         """End the worker; the tab is gone."""
@@ -152,6 +123,12 @@ class Session:
         self._waiting.cut()
 
     def _work(self) -> None:
+        try:
+            self._work_on()
+        finally:
+            self.bench.close()
+
+    def _work_on(self) -> None:
         while True:
             with self._wake:
                 self._wake.wait_for(lambda: self._closed or self._wanted is not None)
@@ -182,26 +159,25 @@ class Session:
         if not self._deliver(job, lambda: self._listener.begun(job)):
             return
         drawn_at = -FRAME
-        whole = (job.method, job.ref, job.mov, job.observations, job.config, job.seed, self._memo)
-        steps = job.steps() if job.steps is not None else self._run(*whole)
-        while (step := self._next(job, steps)) is not None:
-            story.tell(step)
-            mark = self._waiting.mark
-            stay = dwell(step, self._pace, job.again)
-            if not self._wants(job):
-                return
-            if stay >= FRAME or self._clock() - drawn_at >= FRAME:
-                drawn_at = self._clock()
-                if not self._deliver(job, lambda: self._listener.show(job, story)):
+        with closing(self.bench.steps(job, partial(self._take, job))) as steps:
+            for step in steps:
+                story.tell(step)
+                mark = self._waiting.mark
+                stay = dwell(step, self._pace, job.again)
+                if not self._wants(job):
                     return
-                stay -= self._clock() - drawn_at
-            self._waiting.wait(stay, mark)
-            if not self._wants(job):
-                return
-            if job.goal == "candidates" and isinstance(step.detail, (CandidatesDetail, AnswersDetail)):
-                break
-            if isinstance(step.detail, MergeResult):
-                break
+                if stay >= FRAME or self._clock() - drawn_at >= FRAME:
+                    drawn_at = self._clock()
+                    if not self._deliver(job, lambda: self._listener.show(job, story)):
+                        return
+                    stay -= self._clock() - drawn_at
+                self._waiting.wait(stay, mark)
+                if not self._wants(job):
+                    return
+                if job.goal == "candidates" and isinstance(step.detail, (CandidatesDetail, AnswersDetail)):
+                    break
+                if isinstance(step.detail, MergeResult):
+                    break
         self._listener.ending(job, story)
         self._deliver(job, lambda: self._end(job, story))
 
@@ -209,14 +185,13 @@ class Session:
         self._ended = job
         self._listener.ended(job, story)
 
-    def _next(self, job: Job, steps: Iterator[Step]) -> Step | None:
-        """The next step, worked out when it is this run's turn; None at the end."""
+    def _take(self, job: Job, turns: Turns) -> AbstractContextManager[bool]:
+        """A turn for this run, as long as it is wanted."""
 
         def tell(before: int) -> None:
             self._deliver(job, lambda: self._listener.waits(job, before))
 
-        with self._turns.take(lambda: self._wants(job), tell) as mine:
-            return next(steps, None) if mine else None
+        return turns.take(lambda: self._wants(job), tell)
 
     def _wants(self, job: Job) -> bool:
         return self._running is job and self._wanted is None and not self._closed

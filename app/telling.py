@@ -12,13 +12,13 @@ from algorithms.steps import AugmentDetail, MergeResult
 from app import mishap, words
 from app.export import Harvest
 from app.inputs import Inputs
+from app.job import Job
 from app.legend import in_hand, legend
 from app.panels.result import result_html
 from app.panels.run import HEIGHTS, MAP, SWARM
 from app.panels.tables import box
 from app.part import Part
 from app.replay import replay_of
-from app.session import Job
 from app.story import Story
 
 

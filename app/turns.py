@@ -1,14 +1,13 @@
-"""Who computes when many tabs want to: as many at a time as there are processors, the others in their order.
+"""Who computes when many tabs want to: so many at a time, the others in their order.
 
 A turn is one step of a run, not a whole one: all of them go on, and none has to wait for another's end.
 """
 
 from __future__ import annotations
 
-import os
 from collections import deque
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from threading import Condition
 from time import monotonic
 
@@ -64,5 +63,6 @@ class Turns:
                     self._free += 1
                     self._wake.notify_all()
 
-
-COMMON = Turns(os.cpu_count() or 1)
+    def get(self) -> AbstractContextManager[bool]:
+        """A turn, however long it takes."""
+        return self.take(lambda: True, lambda before: None)

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import json
 import logging
+import os
+import signal
+from dataclasses import replace
+from typing import Any
 
 import pytest
 from wire import WireTab, until
 
+from algorithms.pipeline import PipelineConfig
+from algorithms.smm import CandidateConfig
+from app import workers
 from app.export import Harvest
 from app.logs import Lines, facts
 from app.mishap import OUT_OF_MEMORY, words
+from app.page import Page
 from app.panels.files import read_case as real_read_case
 from app.server import make_server
 
@@ -37,22 +45,48 @@ def merge(tab: WireTab) -> str:
     return tab.mood
 
 
-@pytest.mark.parametrize("error", [MemoryError(), RuntimeError("within")])
-def test_a_stage_that_fails_is_told_and_the_next_merge_works(server, tab, monkeypatch, caplog, error):
+class Broken(PipelineConfig):
+    """Settings with which a stage fails half-way through a merge."""
+
+    @property
+    def error(self) -> Exception:
+        return MemoryError() if self.candidates.peaks == 1 else RuntimeError("within")
+
+    def __getattribute__(self, name: str) -> Any:
+        if name == "refine":
+            raise self.error
+        return super().__getattribute__(name)
+
+
+@pytest.mark.parametrize("peaks", [1, 2])
+def test_a_stage_that_fails_is_told_and_the_next_merge_works(server, tab, monkeypatch, caplog, peaks):
     other = WireTab(server.get_port())
-
-    def broken(*_: object, **__: object) -> None:
-        raise error
-
+    broken = Broken(candidates=CandidateConfig(peaks=peaks))
+    job = Page._job
     with monkeypatch.context() as patch:
-        patch.setattr("algorithms.pipeline.fuse", broken)
+        patch.setattr(Page, "_job", lambda page, **how: replace(job(page, **how), config=broken))
         assert merge(tab) == "failed"
-    assert tab.state == words(error)
+    assert tab.state == words(broken.error)
     assert "within" not in tab.state
     assert other.mood == "idle"  # it was none of theirs
     assert "a run of spectra-proven ended in a bug" in caplog.text
+    assert "RuntimeError: within" in caplog.text or peaks == 1
     assert merge(tab) == "accepted"
     other.close()
+
+
+def test_a_merge_whose_process_is_killed_is_told_and_the_next_merge_works(tab, caplog):
+    tab.choose("Slow")
+    tab.words["mood"] = ""
+    tab.press("Merge")
+    until(lambda: tab.mood == "running" and tab.words["progress"], "the merge to go on")
+    for pid in workers.COMMON.pids:
+        os.kill(pid, signal.SIGKILL)
+    until(lambda: tab.mood == "failed", "a word of it")
+    assert tab.state == str(workers.WorkerDiedError())
+    assert "a process that merges has ended" in caplog.text
+    tab.choose("Instant")
+    assert merge(tab) == "accepted"
 
 
 def test_files_that_cannot_be_made_are_told_of_and_can_be_asked_for_again(tab, monkeypatch):

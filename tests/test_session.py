@@ -17,8 +17,10 @@ from algorithms.pose import Pose2
 from algorithms.search import SearchState
 from algorithms.steps import AnswersDetail, ObservationDetail, ProofDetail, RefineDetail, Step
 from algorithms.window import Box, WindowConfig, coupled_window
+from app.bench import Bench
+from app.job import Job
 from app.player import DWELL, FRAME, Waiting, dwell
-from app.session import Job, Session
+from app.session import Session
 
 PATIENCE = 10.0  # seconds until a test gives up
 ROOM = GridMap(np.full((4, 4), FREE, dtype=np.int8), 0.1)
@@ -64,6 +66,19 @@ class Ear:
         self.done.set()
 
 
+class Scripted(Bench):
+    """Tells what it is given."""
+
+    def __init__(self, run) -> None:
+        self._run, self.closed = run, False
+
+    def steps(self, job, take, aside=False):
+        yield from self._run(job)
+
+    def close(self):
+        self.closed = True
+
+
 @pytest.fixture
 def ear():
     return Ear()
@@ -74,7 +89,7 @@ def start(ear):
     sessions = []
 
     def make(run, **more) -> Session:
-        sessions.append(Session(ear, run, **more))
+        sessions.append(Session(ear, Scripted(run), **more))
         return sessions[-1]
 
     yield make
@@ -83,7 +98,7 @@ def start(ear):
 
 
 def steps(*numbers: float):
-    def run(*_) -> Iterator[Step]:
+    def run(_) -> Iterator[Step]:
         for number in numbers:
             yield Step("observe", detail(number), 0.0)
 
@@ -128,7 +143,7 @@ def test_a_newer_request_cuts_the_older_one_short_even_while_it_waits(start, ear
 def test_of_many_requests_the_newest_wins(start, ear):
     held, entered = Event(), Event()
 
-    def run(method, ref, mov, observations, config, *_) -> Iterator[Step]:
+    def run(job) -> Iterator[Step]:
         entered.set()
         held.wait(PATIENCE)
         yield Step("observe", detail(), 0.0)
@@ -203,8 +218,8 @@ def test_stop_without_a_run_says_nothing(start, ear):
 
 @pytest.mark.parametrize("error", [MapMergeError("a.yaml: is empty; give a map"), ZeroDivisionError("bug")])
 def test_an_error_is_told_and_the_session_lives_on(start, ear, error, caplog):
-    def run(method, ref, mov, observations, config, *_) -> Iterator[Step]:
-        if config == "bad":
+    def run(job) -> Iterator[Step]:
+        if job.config == "bad":
             raise error
         yield Step("observe", detail(), 0.0)
 
@@ -226,6 +241,7 @@ def test_a_closed_session_ends_its_thread(start, ear):
     session.close()
     session._worker.join(PATIENCE)
     assert not session._worker.is_alive()
+    assert session.bench.closed
 
 
 def test_known_steps_are_played_again_only_when_asked_for():
@@ -273,7 +289,7 @@ def test_a_new_speed_holds_from_the_step_at_hand_on(start, ear):
 
 
 def test_before_the_first_merge_a_run_ends_at_the_candidates(start, ear):
-    def run(*_) -> Iterator[Step]:
+    def run(_) -> Iterator[Step]:
         yield Step("observe", detail(), 0.0)
         yield Step("search", AnswersDetail(()), 0.0)
         raise AssertionError("nobody asked for more")

@@ -9,12 +9,13 @@ from typing import Any
 
 import viser
 
-from algorithms import methods
 from algorithms.errors import MapMergeError
 from algorithms.methods import DEFAULT_METHOD, METHODS
 from algorithms.pipeline import PipelineConfig
 from algorithms.steps import Step
+from app.bench import Overheard
 from app.inputs import Inputs
+from app.job import Job
 from app.lesson.hosts import Host
 from app.lesson.numbers import NUMBERS, numbers_of
 from app.lesson.study import Study, keep
@@ -22,7 +23,7 @@ from app.lesson.texts import StepText, files, filled, read_step, with_settings
 from app.panels.lesson import LessonPanel, LessonWishes
 from app.panels.tuning import TuningPanel
 from app.pictures.book import PICTURES, Dial
-from app.session import Job, Session
+from app.session import Session
 from app.story import Story
 
 OWN = "Your own settings and results come back when you leave."
@@ -43,7 +44,7 @@ class Lesson:
             go=self.go, move=self.move, leave=self.leave, turn=self._dialled, try_=self._try
         )
         self._panel = LessonPanel(gui, wishes)
-        self._session = Session(self, run=self._record, beside=host.session)
+        self._session = Session(self, Overheard(host.session.bench, self._record), beside=host.session)
         self.open = False
         self._own: tuple[str, Any] = (DEFAULT_METHOD, METHODS[DEFAULT_METHOD].defaults)
         self._files: list[Path] = []
@@ -197,10 +198,10 @@ class Lesson:
         """Whether there are maps, and a method that goes through all the stages."""
         return self._study.inputs.complete and isinstance(self._study.config, PipelineConfig)
 
-    def _record(self, *how: Any) -> Iterator[Step]:
-        """Run a method and keep its steps."""
+    def _record(self, told: Iterator[Step]) -> Iterator[Step]:
+        """Keep the steps of a run."""
         self._steps = steps = []
-        for step in methods.run(*how):
+        for step in told:
             keep(steps, step)
             yield step
 

@@ -15,7 +15,7 @@ from app.story import Story
 
 if TYPE_CHECKING:
     from algorithms.steps import Step
-    from app.session import Job
+    from app.job import Job
 
 __all__ = ["About", "record", "replay_html", "replay_of"]
 
