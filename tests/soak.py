@@ -5,7 +5,9 @@ by the clock; it ends with 1 where a merge came out otherwise, something leaked,
 from __future__ import annotations
 
 import argparse
+import os
 import re
+import signal
 import subprocess
 import sys
 import threading
@@ -34,14 +36,22 @@ class Served:
         said = next(line for line in self.process.stdout if line.startswith("mapmeld is at "))
         self.port = int(re.findall(r":(\d+)/", said)[0])
 
-    def status(self, name: str) -> float:
+    def status(self, name: str, pid: int = 0) -> float:
         """A number of /proc/PID/status."""
-        text = Path(f"/proc/{self.process.pid}/status").read_text()
+        text = Path(f"/proc/{pid or self.process.pid}/status").read_text()
         return float(re.findall(rf"^{name}:\s+(\d+)", text, flags=re.MULTILINE)[0])
 
     @property
+    def workers(self) -> list[int]:
+        """The processes in which merges run."""
+        tasks = Path(f"/proc/{self.process.pid}/task").iterdir()
+        children = [int(pid) for task in tasks for pid in (task / "children").read_text().split()]
+        return [pid for pid in children if "spawn_main" in Path(f"/proc/{pid}/cmdline").read_text()]
+
+    @property
     def megabytes(self) -> float:
-        return self.status("VmRSS") / 1024
+        """Of all of them together."""
+        return sum(self.status("VmRSS", pid) for pid in (self.process.pid, *self.workers)) / 1024
 
     @property
     def open_files(self) -> int:
@@ -129,6 +139,19 @@ def main() -> int:
             flush=True,
         )
 
+    with tabs(server.port, 1) as (tab,):
+        tab.choose("Slow")
+        tab.press("Merge")
+        until(lambda: tab.mood == "running" and tab.words.get("progress"), "the merge to go on")
+        for pid in server.workers:
+            os.kill(pid, signal.SIGKILL)
+        until(lambda: tab.mood == "failed", "a word of it")
+        tab.choose("Instant")
+        said, seconds = merge(tab)
+        print(f"merges' processes killed: told; the next merge took {seconds:.2f} s", flush=True)
+        if said != right:
+            wrong.append(f"after a process was killed a merge said: {said}")
+
     sizes: list[float] = []
     waves = 0
     while waves < 20 or (monotonic() < end and waves < 1000):
@@ -138,7 +161,7 @@ def main() -> int:
             merge(opened[waves % len(opened)])
             at = server.megabytes
         until(lambda: server.open_files < 40, "the connections to end")
-        sleep(0.5)
+        sleep(4)  # what they held is given back
         waves += 1
         sizes.append(server.megabytes)
         threads_now = int(server.status("Threads"))
