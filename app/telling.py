@@ -69,9 +69,9 @@ class Telling(Part):
         return self._weighed[1]
 
     def waits(self, job: Job, before: int) -> None:
-        """Other tabs' runs are at work."""
+        """Others are at work: other tabs' runs, or the end of a step of one that was left."""
         place = f"{before} before this one" if before else "this one is next"
-        self._stage.hud(state=f"Other tabs are merging: {place}.", mood="running")
+        self._stage.hud(state=f"The processors are busy: {place}.", mood="running")
         self._stage.flush()
 
     def ended(self, job: Job, story: Story) -> None:
