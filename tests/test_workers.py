@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import signal
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -286,6 +287,22 @@ def test_what_a_run_raises_is_raised_here_and_the_next_one_works(workers, bench,
     assert "in __call__" in str(raised.value.__cause__)  # where it was, for the log
     assert end(told(bench, job)).method == job.method
     assert pid in (None, *workers.pids)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not bound a process's memory so")
+def test_a_run_that_wants_nearly_all_memory_fails_before_the_system_ends_anyone(workers, bench, job):
+    told(bench, job)
+    (pid,) = workers.pids
+    with pytest.raises(MemoryError):
+        told(bench, replace(job, steps=greedy))
+    assert end(told(bench, job)).method == job.method
+    assert workers.pids == [pid]
+
+
+def greedy() -> Iterator[Step]:
+    whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    held = np.empty(int(0.8 * whole), dtype=np.uint8)  # asked for, never touched
+    yield Step("observe", ObservationDetail(()), float(held.size))
 
 
 def test_an_error_that_cannot_travel_is_told_by_its_name(bench, job):
