@@ -247,9 +247,7 @@ class Page(Telling, Handling, Learning, Researching):
         except MapMergeError as error:
             self._report(error)
             return False
-        if self._notice is not None:
-            self._notice.remove()
-            self._notice = None
+        self._hush()
         self._hand.end()
         self._placing.end()
         self._farewell()
@@ -427,7 +425,12 @@ class Page(Telling, Handling, Learning, Researching):
             self._stage.flush()
 
     def _notify(self, title: str, text: str, colour: Literal["orange", "red"]) -> None:
-        """Show a notice in place of the last one: what it said has been mended or overtaken."""
+        """Show a notice in place of the last one."""
+        self._hush()
+        self._notice = self._client.add_notification(title, text, auto_close_seconds=12.0, color=colour)
+
+    def _hush(self) -> None:
+        """What the last notice said has been mended or overtaken."""
         if self._notice is not None:
             self._notice.remove()
-        self._notice = self._client.add_notification(title, text, auto_close_seconds=12.0, color=colour)
+            self._notice = None

@@ -98,6 +98,10 @@ class Part(ABC):
         """Show a notice."""
 
     @abstractmethod
+    def _hush(self) -> None:
+        """Take it away again."""
+
+    @abstractmethod
     def _turn_view(self) -> None:
         """Show the chosen view."""
 

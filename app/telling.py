@@ -20,6 +20,7 @@ from app.panels.tables import box
 from app.part import Part
 from app.replay import replay_of
 from app.story import Story
+from app.workers import WorkerDiedError
 
 
 class Telling(Part):
@@ -31,6 +32,7 @@ class Telling(Part):
 
     def begun(self, job: Job) -> None:
         """A run starts."""
+        self._hush()
         self._run.stoppable("run", True)
         if self._farewell():  # who was looked at is not left on the map while something else is said
             self._comparison.clear()
@@ -131,10 +133,11 @@ class Telling(Part):
         if isinstance(error, NoAnswerError):
             self._unanswered(story, error)
             return
-        if isinstance(error, MapMergeError):
+        died = isinstance(error, WorkerDiedError)
+        if isinstance(error, MapMergeError) and not died:
             self._report(error)
             return
-        text = mishap.words(error)
+        text = str(error) if died else mishap.words(error)
         self._notify("The run ended", text, "red")
         self._stage.hud(state=text, mood="failed", progress=None)
         self._stage.flush()

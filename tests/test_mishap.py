@@ -76,6 +76,7 @@ def test_a_stage_that_fails_is_told_and_the_next_merge_works(server, tab, monkey
 
 
 def test_a_merge_whose_process_is_killed_is_told_and_the_next_merge_works(tab, caplog):
+    said = tab.notices("The run ended")
     tab.choose("Slow")
     tab.words["mood"] = ""
     tab.press("Merge")
@@ -84,6 +85,7 @@ def test_a_merge_whose_process_is_killed_is_told_and_the_next_merge_works(tab, c
         os.kill(pid, signal.SIGKILL)
     until(lambda: tab.mood == "failed", "a word of it")
     assert tab.state == str(workers.WorkerDiedError())
+    assert tab.notices("The run ended") == said + 1
     assert "a process that merges has ended" in caplog.text
     tab.choose("Instant")
     assert merge(tab) == "accepted"
