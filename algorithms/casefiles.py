@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi, radians
@@ -9,7 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from algorithms.atomic import write_file
-from algorithms.errors import InputFileError, SettingError
+from algorithms.errors import InputFileError, SettingError, unreadable
 from algorithms.gridmap import GridMap
 from algorithms.mapio import fields, read_bytes, read_map
 from algorithms.mapio.fields import Fields, number_text, quoted
@@ -244,12 +245,18 @@ def read_case(folder: Path, rough: bool = False) -> Case:
 def case_folders(root: Path) -> list[Path]:
     """The folders under root, and root itself, that hold a map1.yaml; sorted.
 
-    raises : InputFileError where there is none
+    raises : InputFileError where there is none, or a folder that cannot be looked into
     """
     root = Path(root)
     if not root.is_dir():
         raise InputFileError(root, "is not a folder", "give a folder of cases, or one case")
-    folders = sorted(path.parent for path in root.rglob(FIRST_MAP_FILE))
+
+    def closed(error: OSError) -> None:  # a case that is passed over would be missing in every count
+        raise unreadable(error.filename, error, "see that you may read it, or move it away") from error
+
+    folders = sorted(
+        Path(folder) for folder, _, files in os.walk(root, onerror=closed) if FIRST_MAP_FILE in files
+    )
     if not folders:
         raise InputFileError(
             root,

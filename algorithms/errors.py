@@ -24,6 +24,18 @@ class InputFileError(MapMergeError):
         return type(self), (self.source, self.found, self.remedy)
 
 
+def unreadable(source: object, error: Exception, remedy: str) -> InputFileError:
+    """What is said of a file or folder that the system does not let us read."""
+    if isinstance(error, FileNotFoundError):
+        return InputFileError(source, "no such file", remedy)
+    if isinstance(error, IsADirectoryError):
+        return InputFileError(source, "is a folder", remedy)
+    if isinstance(error, UnicodeDecodeError):  # whose own words show a part of it
+        return InputFileError(source, "cannot be read (not a text)", remedy)
+    cause = getattr(error, "strerror", None) or str(error)
+    return InputFileError(source, f"cannot be read ({cause})", remedy)
+
+
 class SettingError(MapMergeError):
     """A setting outside what it may be."""
 

@@ -17,7 +17,7 @@ from html import escape
 from ipaddress import ip_address
 from pathlib import Path
 
-from algorithms.errors import InputFileError, SettingError
+from algorithms.errors import InputFileError, SettingError, unreadable
 
 LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
 TOKEN_VARIABLE = "MAPMELD_TOKEN"
@@ -160,10 +160,7 @@ def _given_token(token_file: Path | None) -> str:
             with token_file.open(encoding="utf-8") as stream:
                 token = stream.read(1000).strip()
         except (OSError, ValueError) as error:
-            cause = getattr(error, "strerror", None) or "not a text"
-            raise InputFileError(
-                token_file, f"cannot be read ({cause})", "give a file that holds the token alone"
-            ) from error
+            raise unreadable(token_file, error, "give a file that holds the token alone") from error
     known = set(token) <= _TOKEN_LETTERS and len(set(token)) >= LEAST_DIFFERENT
     if not (LEAST_TOKEN <= len(token) <= MOST_TOKEN and known):
         raise SettingError(
@@ -185,7 +182,7 @@ def _tls(certfile: Path | None, keyfile: Path | None) -> ssl.SSLContext | None:
         try:
             path.open("rb").close()
         except OSError as error:
-            raise InputFileError(path, f"cannot be read ({error.strerror})", "check the path") from error
+            raise unreadable(path, error, "check the path") from error
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.minimum_version = ssl.TLSVersion.TLSv1_2
 

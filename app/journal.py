@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from algorithms.errors import InputFileError, OutputError
+from algorithms.errors import OutputError, unreadable
 
 Record = dict[str, Any]
 
@@ -28,9 +28,7 @@ class Journal:
         try:
             data = path.read_bytes()
         except OSError as error:
-            raise InputFileError(
-                path, f"cannot be read ({error.strerror})", "choose another --out"
-            ) from error
+            raise unreadable(path, error, "choose another --out") from error
         self._torn = bool(data) and not data.endswith(b"\n")
         for line in data.splitlines():
             try:

@@ -147,7 +147,7 @@ def _no_room(error: OSError) -> OutputError:
     return OutputError(
         "the folder for temporary files",
         f"cannot be written to ({error.strerror})",
-        "make room in it, name another one in $TMPDIR, or give --jobs 1",
+        "make room in it, or name another one in $TMPDIR",
     )
 
 

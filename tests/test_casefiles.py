@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from math import radians
 from pathlib import Path
 
@@ -322,3 +324,22 @@ def test_a_folder_without_cases_is_refused(tmp_path):
         case_folders(tmp_path)
     with pytest.raises(InputFileError, match="not a folder"):
         case_folders(tmp_path / "none")
+
+
+def test_a_folder_that_nobody_may_look_into_is_named_not_passed_over(tmp_path, monkeypatch):
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "map1.yaml").touch()
+    assert case_folders(tmp_path) == [tmp_path / "a", tmp_path / "b"]
+    look = os.scandir
+
+    def locked(folder):  # as a mode does for all but root
+        if Path(folder).name == "b":
+            raise PermissionError(errno.EACCES, "Permission denied", str(folder))
+        return look(folder)
+
+    monkeypatch.setattr(os, "scandir", locked)
+    with pytest.raises(
+        InputFileError, match=r"b: cannot be read \(Permission denied\); see that you may read"
+    ):
+        case_folders(tmp_path)

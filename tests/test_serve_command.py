@@ -52,6 +52,8 @@ def test_a_browser_is_opened_only_where_there_is_a_screen(monkeypatch):
 def test_a_lesson_with_a_broken_text_is_refused_before_anyone_sees_it(tmp_path, capsys):
     assert main(["serve", "--no-browser", "--lesson", str(tmp_path)]) == 2
     assert "holds no text" in capsys.readouterr().err
+    assert main(["serve", "--no-browser", "--lesson", str(tmp_path / "gone")]) == 2
+    assert "gone: no such file; give a folder of Markdown files" in capsys.readouterr().err
     (tmp_path / "01-mine.md").write_text("---\ntitle: Mine\npicture: hoof\n---\nText.\n")
     assert main(["serve", "--no-browser", "--lesson", str(tmp_path)]) == 2
     said = capsys.readouterr().err

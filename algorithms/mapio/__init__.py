@@ -12,7 +12,7 @@ from pathlib import Path, PurePath
 from typing import BinaryIO
 
 from algorithms.atomic import write_files
-from algorithms.errors import InputFileError, OutputError, SettingError
+from algorithms.errors import InputFileError, OutputError, SettingError, unreadable
 from algorithms.gridmap import CellArray, GridMap
 from algorithms.mapio import fields
 from algorithms.mapio.image import read_pixels
@@ -210,7 +210,7 @@ def read_bytes(path: Path, what: str) -> bytes:
         with path.open("rb") as stream:
             return stream.read(fields.MAX_YAML_BYTES + 1)  # one more, so that the parser can tell
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
-        raise _unreadable(path, error, f"give the YAML file of {what}") from error
+        raise unreadable(path, error, f"give the YAML file of {what}") from error
 
 
 def _yaml_beside(image_path: Path) -> Path:
@@ -231,7 +231,7 @@ def _read_image(path: Path, meta: MapMeta, name: str) -> GridMap:
     try:
         stream = path.open("rb")
     except (OSError, ValueError) as error:
-        raise _unreadable(path, error, "check the path") from error
+        raise unreadable(path, error, "check the path") from error
     with stream:
         return _to_map(str(path), stream, meta, name)
 
@@ -244,12 +244,3 @@ def _to_map(source: str, stream: BinaryIO, meta: MapMeta, name: str) -> GridMap:
 
 def _opened(data: bytes | BinaryIO) -> BinaryIO:
     return io.BytesIO(data) if isinstance(data, bytes) else data
-
-
-def _unreadable(path: Path, error: Exception, remedy: str) -> InputFileError:
-    if isinstance(error, FileNotFoundError):
-        return InputFileError(path, "no such file", remedy)
-    if isinstance(error, IsADirectoryError):
-        return InputFileError(path, "is a folder", remedy)
-    cause = getattr(error, "strerror", None) or str(error)
-    return InputFileError(path, f"cannot be read ({cause})", remedy)

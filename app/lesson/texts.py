@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from algorithms.casefiles import read_case
-from algorithms.errors import InputFileError, MapMergeError
+from algorithms.errors import InputFileError, MapMergeError, unreadable
 from algorithms.mapio.fields import Fields, parse, shown
 from algorithms.methods import METHODS
 from algorithms.pipeline import PipelineConfig
@@ -93,9 +93,13 @@ def museum_folder(language: str = "en") -> Path:
 
 def files(folder: Path) -> list[Path]:
     """The texts of a folder in their order; raises InputFileError where there is none."""
-    found = sorted(Path(folder).glob("*.md"))
+    remedy = "give a folder of Markdown files like 01-name.md"
+    try:
+        found = sorted(path for path in Path(folder).iterdir() if path.suffix == ".md")
+    except OSError as error:
+        raise unreadable(folder, error, remedy) from error
     if not found:
-        raise InputFileError(folder, "holds no text", "give a folder of Markdown files like 01-name.md")
+        raise InputFileError(folder, "holds no text", remedy)
     return found
 
 
@@ -178,7 +182,7 @@ def _parts(path: Path) -> tuple[Fields, str]:
     try:
         lines = Path(path).read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise InputFileError(path, f"cannot be read ({error})", "save it as UTF-8 text") from error
+        raise unreadable(path, error, "save it as UTF-8 text") from error
     ends = [k for k, line in enumerate(lines) if line.strip() == FENCE]
     if len(ends) < 2 or ends[0] != 0:
         raise InputFileError(path, "has no front matter", EXAMPLE)
