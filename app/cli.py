@@ -94,6 +94,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def entry() -> None:
     """The command of the terminal: ``main``, and out."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # closed by whoever started us, as for work in the background
+            setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115
     status = main()
     if status == EXIT_INTERRUPTED:
         # not by the ordinary way out, which waits for threads that the interrupt may have caught

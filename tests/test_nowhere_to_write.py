@@ -19,7 +19,7 @@ from pathlib import Path
 
 import pytest
 import trustme
-from commandline import ROOT, inputs
+from commandline import ROOT, in_a_process, inputs
 
 from algorithms import atomic, kernels
 from algorithms.errors import OutputError
@@ -257,6 +257,13 @@ def test_output_that_goes_nowhere_ends_with_2_and_one_line(tmp_path):
     assert told.returncode == 2
     assert told.stderr.count("\n") == 1
     assert "see that there is room where the output goes" in told.stderr
+
+
+@pytest.mark.parametrize("closed", [1, 2])
+def test_a_command_works_where_nobody_listens(closed):
+    told = in_a_process("--version", preexec_fn=lambda: os.close(closed))
+    assert told.returncode == 0
+    assert told.stderr == ""
 
 
 def test_what_the_system_refuses_is_told_by_name_and_is_no_bug_of_ours(capsys):
