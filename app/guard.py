@@ -24,28 +24,33 @@ from viser._gui_api import GuiApi
 from websockets.http11 import Response
 
 from app.access import HEADERS, PAGE_POLICY, Access, Answer, Asked
+from app.arrivals import PATH, Arrivals, may_come
 from app.entrance import served
-from app.gate import MAX_FRAME, MAX_UPLOADS_OF_ALL, Gate
+from app.gate import MAX_FRAME, Gate
 from app.mishap import watched
 
 TOO_MANY = Answer(503, "too many tabs are open here; close one, and reload")
 
 
 def guarded_server(host: str, port: int, access: Access, most: int) -> viser.ViserServer:
-    """A ViserServer that answers whom ``access`` lets in; its ``gate`` counts what it let nobody do.
+    """A ViserServer that answers whom ``access`` lets in.
 
-    most : connections at a time
+    Its ``gate`` counts what it let nobody do, its ``arrivals`` take in files.
+
+    most : connections of pages at a time, and so many of files
     """
     _harden_widgets()
     gate = Gate()
     real_serve = websockets.asyncio.server.serve
     live: set[Any] = set()
+    files: set[Any] = set()  # connections that bring one
+    arrivals = Arrivals(gate, lambda: server.get_clients())
 
     def serve(handler: Any, at: str, on: int, *, process_request: Callable[..., Any], **options: Any) -> Any:
         async def ask(connection: Any, request: Any) -> Any:
             asked = Asked(request.path, {key.lower(): value for key, value in request.headers.raw_items()})
             answer = access.answer(asked)
-            if answer is None and asked.upgrade and len(live) >= most:
+            if answer is None and asked.upgrade and len(files if asked.path == PATH else live) >= most:
                 answer = TOO_MANY
             if answer is not None:
                 gate.drop(f"request, {answer.status}")
@@ -53,15 +58,18 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
             return _with_words(process_request(connection, request))
 
         async def handle(connection: Any) -> None:
-            gate.guard(connection)
-            live.add(connection)
+            brings = connection.request.path == PATH
+            among = files if brings else live
+            if not brings:
+                gate.guard(connection)
+            among.add(connection)
             try:
-                await handler(connection)
+                await (arrivals.receive if brings else handler)(connection)
             except RuntimeError:
                 if not ending():  # viser tells who has gone in threads that may have ended already
                     raise
             finally:
-                live.discard(connection)
+                among.discard(connection)
 
         options["max_size"] = MAX_FRAME
         return real_serve(handle, at, on, process_request=ask, ssl=access.tls, **options)
@@ -88,7 +96,7 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
     for kind in (messages.ShareUrlRequest, messages.ShareUrlDisconnect):
         server._websock_server.unregister_handler(kind)
     server._thread_executor.submit = watched(server._thread_executor.submit)  # type: ignore[method-assign]
-    server.gate = gate  # type: ignore[attr-defined]
+    server.gate, server.arrivals = gate, arrivals  # type: ignore[attr-defined]
     return server
 
 
@@ -136,9 +144,7 @@ def _harden_widgets() -> None:
 
     def safe_start(self: Any, client_id: Any, message: Any) -> None:
         gate = gate_of(self)
-        if gate is not None and _coming(self) + message.size_bytes > MAX_UPLOADS_OF_ALL:
-            gate.drop("uploads of all")
-        elif gate is None or gate.takes_upload(self, message):
+        if gate is None or may_come(gate, self, message):
             start(self, client_id, message)
 
     def safe_part(self: Any, client_id: Any, message: Any) -> None:
@@ -149,13 +155,3 @@ def _harden_widgets() -> None:
     GuiApi._handle_gui_updates = safe_update  # type: ignore[method-assign]
     GuiApi._handle_file_transfer_start = safe_start  # type: ignore[method-assign]
     GuiApi._handle_file_transfer_part = safe_part  # type: ignore[method-assign]
-
-
-def _coming(gui: Any) -> int:
-    """Bytes of all uploads that are on their way, of every tab."""
-    tabs = gui._root_server()._connected_clients.values()
-    return sum(
-        state["total_bytes"]
-        for api in (gui, *(tab.gui for tab in tabs if tab.gui is not gui))
-        for state in api._current_file_upload_states.values()
-    )

@@ -15,6 +15,7 @@ from algorithms.conflicts import Conflicts
 from algorithms.errors import InputFileError, MapMergeError, TooLargeError
 from algorithms.steps import MergeResult, RefineDetail
 from app import words, workers
+from app.arrivals import Arrivals, Host
 from app.budget import Budget
 from app.channel import Channel
 from app.comparison import MODES, Comparison
@@ -61,6 +62,7 @@ class Page(Telling, Handling, Learning, Researching):
         client: viser.ClientHandle,
         initial: Case | None,
         keep: Keep,
+        arrivals: Arrivals,
         lesson: Path | None = None,
         budget: Budget | None = None,
     ) -> None:
@@ -91,6 +93,11 @@ class Page(Telling, Handling, Learning, Researching):
         )
         inputs = Inputs.of(initial) if initial else Inputs()
         self._build(inputs.name)
+        self._arrivals = arrivals
+        arrivals.welcome(
+            client.client_id, Host(lambda yes: self._run.stoppable("sending", yes), self._report)
+        )
+        self._channel.on("unsend", lambda: arrivals.stop(client.client_id))
         self._learn_with(client.gui, lesson)
         self._channel.on("hello", lambda **who: self._greet(inputs, **who), key=str, again=bool)
         self._stage.flush()  # the page says hello when it has read where to
@@ -112,6 +119,7 @@ class Page(Telling, Handling, Learning, Researching):
 
     def close(self) -> None:
         """The tab is gone; what it leaves behind is kept for a while."""
+        self._arrivals.farewell(self._client.client_id)
         self._errand.stop()
         with self._turn:
             self._gone = True
@@ -198,8 +206,10 @@ class Page(Telling, Handling, Learning, Researching):
         return Desk(inputs, files, tuning.method, tuning.config, self._run.seed, goal, hand)
 
     def _stop(self) -> None:
-        """Leave what is read, or else what is run."""
-        if not self._errand.stop():
+        """Leave what is read, or else what is run, or else what is on its way."""
+        if self._errand.stop():
+            return
+        if self.session.busy or not self._arrivals.stop(self._client.client_id):
             self.session.stop()
 
     def _save(self, name: str, content: bytes) -> None:

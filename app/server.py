@@ -70,7 +70,7 @@ def make_server(
             client.gui.add_markdown(f"{MOST_TABS} tabs are open already. Close one, then reload this page.")
             return
         log.info("a tab came", extra=facts(tab=client.client_id, tabs=len(pages) + 1))
-        pages[client.client_id] = Page(client, initial, keep, lesson, budget)
+        pages[client.client_id] = Page(client, initial, keep, server.arrivals, lesson, budget)
 
     @server.on_client_disconnect
     def _(client: viser.ClientHandle) -> None:

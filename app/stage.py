@@ -22,7 +22,7 @@ from app.palette import Palette, Rgb, css
 # ink.js first: page.js draws with it, and so does a saved replay; the others add to the page
 SCRIPTS = (
     *("ink.js", "page.js", "hand.js", "closer.js", "compare.js", "measure.js", "lesson.js"),
-    *("research.js", "keys.js"),
+    *("research.js", "sending.js", "keys.js"),
 )
 _SCRIPT = "\n".join((Path(__file__).parent / name).read_text(encoding="utf-8") for name in SCRIPTS)
 

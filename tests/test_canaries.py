@@ -12,7 +12,7 @@ import viser
 import viser.infra._infra as infra
 import websockets.asyncio.server
 from viser import _gui_handles, _messages
-from viser._gui_api import GuiApi
+from viser._gui_api import GuiApi, _FileUploadState
 
 from app.access import Access
 from app.gate import _FIELDS, CHUNK, HEARD
@@ -52,8 +52,23 @@ ASSUMPTIONS: dict[str, Callable[[], bool]] = {
     "a tab of a panel knows its panel": lambda: (
         "_parent" in {field.name for field in fields(_gui_handles.GuiTabHandle)}
     ),
-    "uploads on their way are kept by their id, with whose they are and how long": lambda: all(
-        f'"{word}"' in GUI for word in ("client_id", "total_bytes", "part_count")
+    "uploads on their way are kept by their id, with these words about each": lambda: (
+        set(_FileUploadState.__annotations__)
+        == {"client_id", "filename", "mime_type", "part_count", "parts", "total_bytes"}
+        | {"transferred_bytes", "lock"}
+    ),
+    "a tab that goes takes what is kept of its uploads along": lambda: (
+        source(viser.ViserServer.__init__).count("gui._drop_uploads_from_client(") == 2
+    ),
+    "an upload comes to its end by its tab, its id and its button": lambda: (
+        list(inspect.signature(GuiApi._finish_file_upload).parameters)[1:]
+        == ["client_id", "transfer_uuid", "source_component_uuid"]
+    ),
+    "a picker of files bears the id of its button": lambda: (
+        "id={`file_upload_${uuid}`}" in typescript("components/UploadButton.tsx")
+    ),
+    "a connection for files is not taken for a request of a file": lambda: (
+        'request.headers.get("Upgrade") == "websocket"' in source(infra.WebsockServer._background_worker)
     ),
     "a tab finds its server": lambda: callable(getattr(GuiApi, "_root_server", None)),
     "the share tunnel hangs on two messages": lambda: all(

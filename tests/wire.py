@@ -59,6 +59,7 @@ class WireTab:
         self._said = 0
         self._reads = Event()
         self._reads.set()
+        self.port = port
         self.socket = connect(
             f"ws://127.0.0.1:{port}/",
             subprotocols=[f"viser-v{viser.__version__}"],  # type: ignore[list-item]
@@ -173,3 +174,39 @@ class WireTab:
     def close(self) -> None:
         self._reads.set()
         self.socket.close()
+
+
+class WireFile:
+    """A file on its way, sent as by the page's script."""
+
+    def __init__(self, tab: WireTab, label: str, name: str, content: bytes, **other: Any) -> None:
+        """other : fields of the first word in place of the right ones"""
+        self.content, self.sent = content, 0
+        self.socket = connect(
+            f"ws://127.0.0.1:{tab.port}/upload",
+            origin=f"http://127.0.0.1:{tab.port}",  # type: ignore[arg-type]
+            compression=None,
+            open_timeout=PATIENCE,
+        )
+        first = {"button": tab.find(label), "name": name, "kind": "", "size": len(content), **other}
+        self.socket.send(json.dumps(first))
+
+    def hear(self) -> dict[str, Any]:
+        """The next word; {} where the connection has ended."""
+        try:
+            return dict(json.loads(self.socket.recv(timeout=PATIENCE)))
+        except ConnectionClosed:
+            return {}
+
+    def part(self, size: int) -> None:
+        """Send so much more of it, and wait until that has arrived."""
+        self.socket.send(self.content[self.sent : self.sent + size])
+        self.sent = min(self.sent + size, len(self.content))
+        until(lambda: self.hear().get("arrived") == self.sent, "the part to arrive")
+
+    def over(self) -> str:
+        """What has become of it; "" where the connection ended without a word."""
+        while heard := self.hear():
+            if "over" in heard:
+                return str(heard["over"])
+        return ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from threading import Lock
 
 import viser
 
@@ -37,6 +38,7 @@ class RunPanel:
         self.merge = gui.add_button("Merge", color=LIGHT.ref, icon=viser.Icon.ARROWS_JOIN, order=1)
         self.merge.on_click(lambda _: wishes.merge())
         self._at_work: set[str] = set()  # who can be stopped
+        self._counting = Lock()  # they begin and end in threads of their own
         self.stop = gui.add_button(
             "Stop", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, disabled=True, order=2
         )
@@ -118,10 +120,11 @@ class RunPanel:
             self._seed.value = seed
 
     def stoppable(self, who: str, yes: bool) -> None:
-        """Whether a run, or the reading of a file, can be stopped now."""
-        (self._at_work.add if yes else self._at_work.discard)(who)
-        if self.stop.disabled == bool(self._at_work):
-            self.stop.disabled = not self._at_work
+        """Whether a run, or the reading or sending of a file, can be stopped now."""
+        with self._counting:
+            (self._at_work.add if yes else self._at_work.discard)(who)
+            if self.stop.disabled == bool(self._at_work):
+                self.stop.disabled = not self._at_work
 
     @property
     def follow(self) -> bool:
