@@ -47,7 +47,7 @@ class Announced(msgspec.Struct, forbid_unknown_fields=True):
 
 
 @dataclass(frozen=True)
-class Host:
+class Recipient:
     """The page of a tab, as far as it hears of its files.
 
     can_stop : whether anything has been on its way for so long that it can be stopped
@@ -88,18 +88,18 @@ class Arrivals:
     def __init__(self, gate: Gate, tabs: Callable[[], dict[int, viser.ClientHandle]]) -> None:
         """tabs : those that are open, by their number"""
         self._gate, self._tabs = gate, tabs
-        self._hosts: dict[int, Host] = {}
+        self._recipients: dict[int, Recipient] = {}
         self._coming: list[Arrival] = []
         self._lock = threading.Lock()
         self._partings: set[asyncio.Task[None]] = set()
 
-    def welcome(self, tab: int, host: Host) -> None:
+    def welcome(self, tab: int, recipient: Recipient) -> None:
         """From now on this page is told of its tab's files."""
-        self._hosts[tab] = host
+        self._recipients[tab] = recipient
 
     def farewell(self, tab: int) -> None:
         """The tab has gone: nothing of its files stays."""
-        self._hosts.pop(tab, None)
+        self._recipients.pop(tab, None)
         self._leave(tab, "lost")
 
     def stop(self, tab: int) -> bool:
@@ -147,9 +147,9 @@ class Arrivals:
             said.button, one.id, said.name, said.kind, part_count=-(-said.size // CHUNK), size_bytes=said.size
         )
         if not may_come(self._gate, one.gui, start):
-            host = self._hosts.get(one.tab)
-            if host is not None:  # told in a thread: it may have to wait for a picture that is drawn
-                one.gui._thread_executor.submit(host.refuse, refusal(said.name, said.size))
+            recipient = self._recipients.get(one.tab)
+            if recipient is not None:  # told in a thread: it may have to wait for a picture that is drawn
+                one.gui._thread_executor.submit(recipient.refuse, refusal(said.name, said.size))
             return None
         one.gui._current_file_upload_states[one.id] = {
             "client_id": one.tab,
@@ -202,9 +202,9 @@ class Arrivals:
         self._tell(one.tab)
 
     def _tell(self, tab: int) -> None:
-        host = self._hosts.get(tab)
-        if host is not None:
-            host.can_stop(any(one.tab == tab and one.long for one in self._coming))
+        recipient = self._recipients.get(tab)
+        if recipient is not None:
+            recipient.can_stop(any(one.tab == tab and one.long for one in self._coming))
 
     def _part(self, connection: Any, why: str) -> None:
         parting = asyncio.ensure_future(_over(connection, why))

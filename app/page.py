@@ -15,7 +15,7 @@ from algorithms.conflicts import Conflicts
 from algorithms.errors import InputFileError, MapMergeError, TooLargeError
 from algorithms.steps import MergeResult, RefineDetail
 from app import words, workers
-from app.arrivals import Arrivals, Host
+from app.arrivals import Arrivals, Recipient
 from app.budget import Budget
 from app.channel import Channel
 from app.comparison import MODES, Comparison
@@ -95,7 +95,7 @@ class Page(Telling, Handling, Learning, Researching):
         self._build(inputs.name)
         self._arrivals = arrivals
         arrivals.welcome(
-            client.client_id, Host(lambda yes: self._run.stoppable("sending", yes), self._report)
+            client.client_id, Recipient(lambda yes: self._run.stoppable("sending", yes), self._report)
         )
         self._channel.on("unsend", lambda: arrivals.stop(client.client_id))
         self._learn_with(client.gui, lesson)

@@ -6,7 +6,7 @@
   if (S.sending) { S.sending.reset(); return; }
   const SOON = 400, HARDLY = 300; // ms: what takes no longer, or will be there by then, is not worth a word
   const LATELY = 4000, SILENT = 5000, READ = 12000; // ms: a rate is of this time; no news for so long is news; a note stays
-  const STEP = 200, RESERVE = 1000; // ms of the line that one part takes, and all that is on its way: as much is sent after Stop
+  const STEP = 150, RESERVE = 600; // ms of the line that one part takes, and all that is on its way: as much still comes after Stop
   const F = { going: new Set() };
   S.sending = F;
   let card = null, what = null, much = null, bar = null, leave = null, clock = 0;
@@ -39,7 +39,8 @@
     one.socket.onclose = () => { if (F.going.has(one)) { lost(one); drop(one); } };
   }
   function room(one) { // bytes that may be sent now, as much as the line has been seen to carry in a moment
-    const of = (ms, least, most) => Math.min(most, Math.max(least, Math.round(ms * pace(performance.now()))));
+    const each = pace(performance.now()) / F.going.size;
+    const of = (ms, least, most) => Math.min(most, Math.max(least, Math.round(ms * each)));
     return one.sent - one.arrived < of(RESERVE, 4 * one.least, one.ahead) ? of(STEP, one.least, one.most) : 0;
   }
   async function pump(one) {

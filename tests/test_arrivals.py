@@ -14,7 +14,7 @@ from wire import WireFile, WireTab, until
 from algorithms.casefiles import Case
 from algorithms.mapio import map_to_bytes
 from app.access import Access
-from app.arrivals import LEAST, MOST, Host
+from app.arrivals import LEAST, MOST, Recipient
 from app.gate import MAX_UPLOAD, MAX_UPLOADS
 from app.guard import guarded_server
 from app.server import make_server
@@ -127,7 +127,7 @@ def test_stop_leaves_the_run_that_is_told_of_before_the_file_that_comes_meanwhil
 def test_a_file_that_takes_but_a_moment_cannot_be_stopped_and_moves_no_button(server, tab):
     told: list[bool] = []
     (number,) = server.get_clients()
-    server.arrivals.welcome(number, Host(told.append, lambda error: None))
+    server.arrivals.welcome(number, Recipient(told.append, lambda error: None))
     file = WireFile(tab, IMAGE, "short.pgm", b"P5")
     file.part(2)
     assert file.over() == "arrived"

@@ -18,6 +18,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from app.access import access_for
+from app.arrivals import PATH
 from app.guard import guarded_server
 
 NAME, TOKEN = "robots.example", "a-token-that-nobody-guesses"
@@ -39,10 +40,10 @@ class Outside:
             said = b"".join(iter(lambda: line.recv(65536), b"")).decode("latin-1")
         return int(said.split()[1]), said
 
-    def connect(self, cookie="", origin=None):
-        """The page's own connection, which goes to the folder without its slash; closed again."""
+    def connect(self, cookie="", origin=None, to=""):
+        """The page's own connection, which goes to the folder without its slash, or to something in it."""
         connect(
-            f"wss://{self.host}/maps",
+            f"wss://{self.host}/maps{to}",
             sock=self.knock(),
             ssl=self.context,
             server_hostname=NAME,
@@ -96,10 +97,11 @@ def test_behind_the_example_the_token_lets_in_and_nothing_else_does(outside, tmp
     status, said = outside.get(f"/maps?token={TOKEN}")
     assert status == 301
     assert f"https://{outside.host}/maps/?token={TOKEN}" in said
-    outside.connect(cookie)
-    for refused in ({"cookie": ""}, {"cookie": cookie, "origin": "https://evil.example"}):
-        with pytest.raises(InvalidStatus):
-            outside.connect(**refused)
+    for to in ("", PATH):
+        outside.connect(cookie, to=to)
+        for refused in ({"cookie": ""}, {"cookie": cookie, "origin": "https://evil.example"}):
+            with pytest.raises(InvalidStatus):
+                outside.connect(**refused, to=to)
     assert outside.get("/maps/", Host="evil.example", Cookie=cookie)[0] == 421
     logged = tmp_path / "access.log"  # nginx's
     assert not logged.exists() or TOKEN not in logged.read_text()
