@@ -15,6 +15,7 @@ from algorithms.casefiles import Case
 from algorithms.errors import MapMergeError
 from app import workers
 from app.access import Access
+from app.bench import Asker
 from app.budget import Budget
 from app.guard import guarded_server
 from app.job import Job
@@ -22,7 +23,6 @@ from app.keep import Keep
 from app.logs import facts
 from app.memory import Housekeeping
 from app.page import Page
-from app.turns import Turns
 
 log = logging.getLogger(__name__)
 
@@ -99,7 +99,7 @@ def warm_up() -> None:
     seen = Observation(Pose2(2.0, 2.0), 3.0, 2.0, 1.0, 0.0)
     bench = workers.COMMON.bench()
     try:
-        for _ in bench.steps(Job(room, room, (seen,), None), Turns.get):
+        for _ in bench.steps(Job(room, room, (seen,), None), Asker()):
             pass
         for _ in Job(room, room, (seen,), None).run({}):  # here, too: for what a hand moves, and the lesson
             pass

@@ -7,20 +7,18 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, closing
-from functools import partial
+from contextlib import closing
 from threading import Condition, RLock, Thread
 from time import perf_counter
 from typing import Protocol
 
 from algorithms.errors import MapMergeError
 from algorithms.steps import AnswersDetail, CandidatesDetail, MergeResult, Step
-from app.bench import Bench
+from app.bench import Asker, Bench
 from app.job import Job
 from app.logs import facts
 from app.player import FRAME, Waiting, dwell
 from app.story import Story
-from app.turns import Turns
 
 log = logging.getLogger(__name__)
 
@@ -113,7 +111,7 @@ class Session:
 
     def told_again(self, job: Job) -> Iterator[Step]:
         """The steps of a run once more, for a recording: those that are known are not computed again."""
-        return self.bench.steps(job, Turns.get, aside=True)
+        return self.bench.steps(job, Asker(), aside=True)
 
     def close(self) -> None:
         """End the worker; the tab is gone."""
@@ -159,7 +157,7 @@ class Session:
         if not self._deliver(job, lambda: self._listener.begun(job)):
             return
         drawn_at = -FRAME
-        with closing(self.bench.steps(job, partial(self._take, job))) as steps:
+        with closing(self.bench.steps(job, self._asker(job))) as steps:
             for step in steps:
                 story.tell(step)
                 mark = self._waiting.mark
@@ -185,13 +183,11 @@ class Session:
         self._ended = job
         self._listener.ended(job, story)
 
-    def _take(self, job: Job, turns: Turns) -> AbstractContextManager[bool]:
-        """A turn for this run, as long as it is wanted."""
-
-        def tell(before: int) -> None:
+    def _asker(self, job: Job) -> Asker:
+        def waits(before: int) -> None:
             self._deliver(job, lambda: self._listener.waits(job, before))
 
-        return turns.take(lambda: self._wants(job), tell)
+        return Asker(lambda: self._wants(job), waits)
 
     def _wants(self, job: Job) -> bool:
         return self._running is job and self._wanted is None and not self._closed

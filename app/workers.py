@@ -14,17 +14,18 @@ import os
 import pickle
 import signal
 import traceback
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from threading import Lock
+from time import monotonic
 from typing import Any
 
 from algorithms import kernels
 from algorithms.chain import Memo
 from algorithms.errors import MapMergeError
 from algorithms.steps import Step
-from app.bench import Bench, Take
+from app.bench import Asker, Bench
 from app.job import Job
 from app.memory import give_back
 from app.parcels import Parcels
@@ -34,6 +35,9 @@ from app.turns import Turns
 log = logging.getLogger(__name__)
 
 MOST = 4  # each takes 200 MB before it has done anything, and has threads for all cores
+HANGS = 10.0  # seconds that a step goes on, unwanted, until its process is ended
+HANGS_BESIDE = 60.0  # where other runs would end with it
+LOOK_S = 0.25  # how often it is looked
 SHARE = 0.75  # of this machine's memory that a worker may have; more is a MemoryError, not the end of others
 
 
@@ -86,6 +90,7 @@ class _Worker:
         self.turns = Turns(1)
         self.places: set[_Place] = set()
         self.life = 0  # how often it was started
+        self.runs: set[tuple[int, int]] = set()  # that are under way
         self._process: Any = None
         self._line: Connection | None = None
         self._closed = False
@@ -116,12 +121,20 @@ class _Worker:
         self._process, self._line = process, line
         self.life += 1
 
-    def ask(self, *order: Any) -> tuple[Any, ...]:
-        """Have it do something; raises WorkerDiedError."""
+    def ask(self, *order: Any, wanted: Callable[[], bool] = lambda: True) -> tuple[Any, ...]:
+        """Have it do something; raises WorkerDiedError, also where it goes on with what nobody wants."""
         if self._line is None:
             raise WorkerDiedError
         try:
             self._line.send(order)
+            until = None
+            while not self._line.poll(LOOK_S):
+                if wanted():
+                    until = None
+                elif until is None:
+                    until = monotonic() + (HANGS if len(self.runs) <= 1 else HANGS_BESIDE)
+                elif monotonic() > until:
+                    raise EOFError
             answer: tuple[Any, ...] = self._line.recv()
         except (EOFError, OSError, MemoryError) as error:
             self._end()
@@ -131,6 +144,7 @@ class _Worker:
     def _end(self) -> None:
         assert self._line is not None
         self._line.close()
+        self.runs.clear()
         process, self._line, self._process = self._process, None, None
         process.kill()
         process.join()
@@ -162,31 +176,33 @@ class _Place(Bench):
         self._parcels = Parcels("page")
         self._maps: tuple[object, object] = (None, None)
 
-    def steps(self, job: Job, take: Take, aside: bool = False) -> Generator[Step, None, None]:
+    def steps(self, job: Job, asker: Asker, aside: bool = False) -> Generator[Step, None, None]:
         """As in Bench."""
         with self._lock:
             if self._closed:
                 raise WorkerDiedError
             worker = self._worker = self._worker or self._workers.seat(self)
-        with take(worker.turns) as mine:
+        with worker.turns.take(asker.wanted, asker.waits) as mine:
             if not mine:
                 return
             run, epoch = self._begin(worker, job, aside), self._epoch
-        over = False
+        over, me = False, (self._number, run)
+        worker.runs.add(me)
         try:
             while True:
-                with take(worker.turns) as mine:
+                with worker.turns.take(asker.wanted, asker.waits) as mine:
                     if not mine:
                         return
                     over = True  # as it is where this fails
                     if self._epoch != epoch:
                         raise WorkerDiedError
-                    step = self._next(worker, run)
+                    step = self._next(worker, run, asker)
                 if step is None:
                     return
                 over = False
                 yield step
         finally:
+            worker.runs.discard(me)
             if not over:
                 self._say(worker, epoch, "leave", run)
 
@@ -219,8 +235,8 @@ class _Place(Bench):
         (run,) = self._heard(worker.ask("start", self._number, aside, turns, data))
         return int(run)
 
-    def _next(self, worker: _Worker, run: int) -> Step | None:
-        (data,) = self._heard(worker.ask("next", self._number, run))
+    def _next(self, worker: _Worker, run: int, asker: Asker) -> Step | None:
+        (data,) = self._heard(worker.ask("next", self._number, run, wanted=asker.wanted))
         if data is None:
             return None
         try:

@@ -72,7 +72,7 @@ class Scripted(Bench):
     def __init__(self, run) -> None:
         self._run, self.closed = run, False
 
-    def steps(self, job, take, aside=False):
+    def steps(self, job, asker, aside=False):
         yield from self._run(job)
 
     def close(self):

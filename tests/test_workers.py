@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
-from threading import Thread
+from threading import Event, Thread, Timer
 
 import numpy as np
 import pytest
@@ -23,9 +23,9 @@ from algorithms.handmade import Scales, refine
 from algorithms.methods import METHODS
 from algorithms.pose import Pose2
 from algorithms.steps import MergeResult, ObservationDetail, Step
+from app.bench import Asker
 from app.job import Job
 from app.parcels import Parcels
-from app.turns import Turns
 from app.workers import WorkerDiedError, Workers
 
 
@@ -49,7 +49,7 @@ def job(small_case) -> Job:
 
 
 def told(bench, job: Job, **how) -> list[Step]:
-    return list(bench.steps(job, Turns.get, **how))
+    return list(bench.steps(job, Asker(), **how))
 
 
 def end(steps: list[Step]) -> MergeResult:
@@ -167,7 +167,7 @@ def test_a_refinement_by_hand_runs_there_too(bench, job):
 
 
 def test_a_run_that_is_left_half_way_hinders_no_other(bench, job):
-    steps = bench.steps(job, Turns.get)
+    steps = bench.steps(job, Asker())
     assert isinstance(next(steps).detail, ObservationDetail)
     between = told(bench, replace(job, method="smm-window"))
     steps.close()
@@ -177,7 +177,7 @@ def test_a_run_that_is_left_half_way_hinders_no_other(bench, job):
 
 def test_two_tabs_at_one_worker_go_on_side_by_side(workers, bench, job):
     other = workers.bench()
-    one, two = bench.steps(job, Turns.get), other.steps(job, Turns.get)
+    one, two = bench.steps(job, Asker()), other.steps(job, Asker())
     both = [step for pair in zip(one, two, strict=True) for step in pair]
     assert end(both[::2]).T_ref_mov == end(both[1::2]).T_ref_mov
     assert len(workers.pids) == 1
@@ -207,7 +207,7 @@ def maps_held() -> Iterator[Step]:
 def test_a_process_that_is_killed_is_told_of_and_the_next_run_has_another(workers, bench, job, caplog):
     before = end(told(bench, job))
     neighbour = workers.bench()
-    steps, beside = bench.steps(job, Turns.get), neighbour.steps(job, Turns.get)
+    steps, beside = bench.steps(job, Asker()), neighbour.steps(job, Asker())
     next(steps), next(beside)
     (pid,) = workers.pids
     os.kill(pid, signal.SIGKILL)
@@ -253,6 +253,22 @@ def test_one_that_is_killed_in_the_middle_of_a_step_is_told_of_at_once(workers, 
     os.kill(pid, signal.SIGKILL)
     thread.join(20)
     assert failed
+
+
+def test_one_that_hangs_is_ended_once_nobody_wants_what_it_is_at(workers, bench, job, monkeypatch):
+    monkeypatch.setattr("app.workers.HANGS", 0.0)
+    wanted = Event()
+    wanted.set()
+    steps = bench.steps(job, Asker(wanted.is_set))
+    next(steps)
+    (pid,) = workers.pids
+    os.kill(pid, signal.SIGSTOP)
+    Timer(0.5, wanted.clear).start()
+    with pytest.raises(WorkerDiedError):
+        list(steps)
+    assert not wanted.is_set()
+    assert end(told(bench, job)).method == job.method
+    assert workers.pids != [pid]
 
 
 def stuck() -> Iterator[Step]:
@@ -337,7 +353,7 @@ def test_a_sighting_far_off_its_map_is_refused_as_it_is_here(bench, job):
 def test_closed_workers_die_in_silence(job, caplog):
     workers = Workers(most=1)
     bench = workers.bench()
-    steps = bench.steps(job, Turns.get)
+    steps = bench.steps(job, Asker())
     next(steps)
     workers.close()
     with pytest.raises(WorkerDiedError):
