@@ -128,13 +128,14 @@
     .mm-sending[hidden]{display:none}
     .mm-file{overflow:hidden;white-space:nowrap;text-overflow:ellipsis;font-weight:550}
     .mm-much{flex:none;min-width:216px;font-variant-numeric:tabular-nums;color:#6B7280} [data-theme=dark] .mm-much{color:#9CA3AF}
-    .mm-much:empty{display:none}
+    .mm-much:empty{display:none} .mm-file:has(+ .mm-much:empty){white-space:normal}
     .mm-leave{flex:none;pointer-events:auto;font:inherit;line-height:18px;width:20px;padding:0;border:0;border-radius:5px;background:transparent;color:inherit;cursor:pointer}
     .mm-leave:hover{background:rgba(0,114,178,.12)} [data-theme=dark] .mm-leave:hover{background:rgba(86,180,233,.2)}
     .mm-leave:focus-visible{outline:2px solid #0072B2;outline-offset:-2px} [data-theme=dark] .mm-leave:focus-visible{outline-color:#56B4E9}
     .mm-leave[hidden]{display:none}
     .mm-way{position:absolute;left:0;right:0;bottom:0;height:3px;background:rgba(0,114,178,.12)}
     .mm-way i{display:block;height:100%;background:#0072B2;transition:width .15s linear} [data-theme=dark] .mm-way i{background:#56B4E9}
-    .mm-way[hidden]{display:none}`;
+    .mm-way[hidden]{display:none}
+    @container (max-width:460px){.mm-sending{flex-wrap:wrap;row-gap:0} .mm-file{flex:1 1 100%} .mm-much{flex:1 1 0;min-width:0}}`;
   document.head.append(style);
 })();
