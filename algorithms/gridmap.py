@@ -24,10 +24,19 @@ OCCUPIED_FROM = 65
 FREE_UP_TO = 25
 
 MAX_CELLS = 100_000_000  # 10,000 x 10,000: 100 MB of cells, the stated bound of one map
+MAX_SIDE = 65_535  # cells; 3.3 km at 0.05 m, and no side of a JPEG or GIF is longer
 
 
 def check_size(width: int, height: int, what: str) -> None:
-    """Raise TooLargeError for a grid of more than MAX_CELLS cells."""
+    """Raise TooLargeError for a grid of more than MAX_CELLS cells, or of more than MAX_SIDE on a side.
+
+    A row costs time and memory of its own: 100 million rows of one cell took 8 s to read.
+    """
+    if max(width, height) > MAX_SIDE:
+        raise TooLargeError(
+            f"{what} would be {width} x {height} cells; the limit of a side is {MAX_SIDE:,} cells. "
+            "Use a coarser resolution, or crop the map to what was seen"
+        )
     if width * height > MAX_CELLS:
         raise TooLargeError(
             f"{what} would be {width} x {height} cells; the limit is {MAX_CELLS:,} cells. "

@@ -46,7 +46,7 @@ def _images() -> list[bytes]:
     images += [encoded(palette, "PNG", transparency=3), encoded(grey, "PNG", optimize=True)]
     images += [encoded(grey.convert(mode), "BMP") for mode in ("1", "L", "RGB")]
     images += [encoded(grey.convert(mode), "PPM") for mode in ("1", "L", "RGB")]
-    images += [b"P2\n2 2\n255\n0 205 254 # x\n9\n", b"P1\n2 2\n0 1\n1 0\n", b"P3\n1 1\n9\n1 2 3\n"]
+    images += [b"P2\n2 2\n255\n0 205 254 # x\n9\n", b"P1\n2 2\n0 1#\n#\n1 0\n", b"P3\n1 1\n9\n1 2 3\n"]
     images += [encoded(grey, "JPEG"), encoded(grey, "GIF"), encoded(grey.convert("CMYK"), "TIFF")]
     images += [encoded(Image.new("I;16", (3, 2)), "PNG")]
     return images
@@ -109,6 +109,11 @@ SHAPES: dict[str, bytes] = {
     "directives": b"%a\n" * (N // 3),
     "wide characters": b"\xff\xfe" + b"a\0" * (N // 2 - 1),
     "pixels after many comments": b"P2\n200 200\n255\n" + b"#\n" * (N // 2),
+    "bits after many comments": b"P1\n10000 10000\n" + b"#\n" * (N // 2),
+    "bits and comments in turn": b"P1\n100 100\n" + b"1#\n" * (N // 3),
+    "a header of comments": b"P1" + b"#\n" * N,
+    "pixels after a header of comments": b"P2" + b"#\n" * N + b"200 200\n9\n" + b"#\n" * N,
+    "an image one pixel wide": encoded(Image.new("1", (1, 15_000_000)), "PNG"),
     "a pixel of many digits": b"P2\n200 200\n255\n" + b"1" * N,
 }
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 from mapfiles import cells, encoded, load, pgm
 from PIL import Image
 
@@ -120,6 +121,19 @@ def test_a_black_and_white_image_is_a_map_too():
     image = Image.new("1", (2, 1))
     image.putdata([0, 255])
     assert all(cells(encoded(image, kind)) == [[100, 0]] for kind in ("PNG", "BMP", "PPM"))
+
+
+@given(
+    black=arrays(np.bool_, st.tuples(st.integers(1, 5), st.integers(1, 20))),
+    gap=st.sampled_from([b"", b" ", b"\r\n", b"# 0\n#1\n"]),
+)
+def test_a_pbm_means_the_same_as_text_and_as_bits(black, gap):
+    rows, columns = black.shape
+    text = b"P1 #\n%d %d\n" % (columns, rows) + gap.join(b"%d" % bit for bit in black.ravel())
+    bits = encoded(Image.fromarray(~black), "PPM")
+    assert bits.startswith(b"P4")
+    wanted = np.where(black, 100, 0)[::-1].tolist()
+    assert cells(text) == cells(bits) == wanted
 
 
 def test_a_pgm_whose_white_is_not_255_is_stretched():

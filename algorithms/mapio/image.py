@@ -2,33 +2,26 @@
 
 from __future__ import annotations
 
-import re
 from typing import BinaryIO
 
 import numpy as np
-from PIL import BmpImagePlugin, Image, ImageFile, PngImagePlugin, PpmImagePlugin
+from PIL import BmpImagePlugin, Image, ImageFile, PngImagePlugin
 
 from algorithms.errors import InputFileError, MapMergeError
 from algorithms.gridmap import MAX_CELLS, check_size
+from algorithms.mapio.netpbm import CONVERT, HEAD, is_netpbm, read_header, read_netpbm
 from algorithms.mapio.shading import GreyArray
 
 # An uncompressed image with alpha at the largest size, and 1 MB for what stands before the pixels.
 MAX_IMAGE_BYTES = 4 * MAX_CELLS + 1_000_000
-MAX_TEXT_BYTES = 16_000_000  # of a netpbm image written as text: 2000 x 2000 pixels
 MODES_READ = ("1", "L", "LA", "P", "PA", "RGB", "RGBA")
-CONVERT = "save it as an 8-bit PGM or PNG"
-
-_BREAK = rb"(?:\s|#[^\n\r]*[\n\r])+"
-_NETPBM = re.compile(
-    rb"P([2356])" + _BREAK + rb"(\d{1,9})" + _BREAK + rb"(\d{1,9})" + _BREAK + rb"(\d{1,9})\s"
-)
 
 
 def read_pixels(source: str, stream: BinaryIO) -> tuple[GreyArray, GreyArray | None]:
     """Decode a PGM, PPM, PBM, PNG or BMP image.
 
-    At the most 9 bytes per pixel are held (PNG with colour and alpha), 1 for a binary PGM; for one that
-    is written as text 60, and 4 million pixels are then the most.
+    At the most 12 bytes per pixel are held (PNG in colour with a transparent one), 1 for a binary PGM; for
+    one that is written as text 60, and 4 million grey pixels are then the most.
 
     source  : name of the file as the user knows it
     stream  : the file, at its start; seekable
@@ -46,13 +39,12 @@ def read_pixels(source: str, stream: BinaryIO) -> tuple[GreyArray, GreyArray | N
                 "crop the map, or make it coarser",
             )
         stream.seek(0)
-        head = stream.read(4096)
-        netpbm = _NETPBM.match(head)
-        if netpbm:
-            kind, width, height, maxval = (int(group) for group in netpbm.groups())
-            _check_header(source, width, height, bits=8 if maxval <= 255 else 16)
-            stream.seek(netpbm.end())
-            return _read_netpbm(source, stream, kind, width, height, maxval), None
+        head = stream.read(HEAD)
+        if is_netpbm(head):
+            header = read_header(source, head)
+            _check_header(source, header.width, header.height, bits=8 if header.maxval <= 255 else 16)
+            stream.seek(header.n_bytes)
+            return read_netpbm(source, stream, header), None
         stream.seek(0)
         return _decode(source, stream, head)
     except MapMergeError:
@@ -62,48 +54,6 @@ def read_pixels(source: str, stream: BinaryIO) -> tuple[GreyArray, GreyArray | N
         raise InputFileError(
             source, f"cannot be decoded ({cause})", "the file is damaged; save or copy it anew"
         ) from error
-
-
-def _read_netpbm(source: str, stream: BinaryIO, kind: int, width: int, height: int, maxval: int) -> GreyArray:
-    """The pixels of a PGM or PPM, which is what nearly every map is. Pillow would take a minute for a
-    large one whose maxval is not 255, or that is written as text.
-    """
-    if maxval == 0:
-        raise InputFileError(source, "says that its white is 0", CONVERT)
-    colours = 3 if kind in (3, 6) else 1
-    count = width * height * colours
-    body = _text_samples(source, stream, maxval, count) if kind in (2, 3) else stream.read(count)
-    if len(body) < count:
-        raise InputFileError(
-            source,
-            f"is cut off: {width} x {height} pixels are announced, {len(body) // colours} are there",
-            "copy it anew",
-        )
-    if maxval != 255:
-        stretched = np.minimum(np.floor(np.arange(256) * (255 / maxval) + 0.5), 255)
-        body = body.translate(stretched.astype(np.uint8).tobytes())
-    samples = np.frombuffer(body, dtype=np.uint8)
-    if colours == 1:
-        return samples.reshape(height, width)
-    return np.asarray(Image.fromarray(samples.reshape(height, width, 3)).convert("L"))
-
-
-def _text_samples(source: str, stream: BinaryIO, maxval: int, count: int) -> bytes:
-    """The first ``count`` samples of a netpbm file that is written as text, or as many as there are."""
-    text = stream.read(MAX_TEXT_BYTES + 1)
-    if len(text) > MAX_TEXT_BYTES:
-        raise InputFileError(
-            source, f"has more than {MAX_TEXT_BYTES / 1e6:,.0f} MB of pixels written as text", CONVERT
-        )
-    words = re.sub(rb"#[^\n\r]*", b" ", text).split(maxsplit=count)[:count]
-    if any(len(word) > 3 or not word.isdigit() for word in set(words)):
-        raise InputFileError(source, "holds something else than numbers among its pixels", CONVERT)
-    samples = np.array(words, dtype="S3").astype(np.int16)
-    if samples.size and samples.max() > maxval:
-        raise InputFileError(
-            source, f"has a pixel of {samples.max()}, and says that its white is {maxval}", CONVERT
-        )
-    return samples.astype(np.uint8).tobytes()
 
 
 def _decode(source: str, stream: BinaryIO, head: bytes) -> tuple[GreyArray, GreyArray | None]:
@@ -117,10 +67,8 @@ def _decode(source: str, stream: BinaryIO, head: bytes) -> tuple[GreyArray, Grey
         image = PngImagePlugin.PngImageFile(stream)
     elif head.startswith(b"BM"):
         image = BmpImagePlugin.BmpImageFile(stream)
-    elif re.match(rb"P[1-6]\s", head):
-        image = PpmImagePlugin.PpmImageFile(stream)
     else:
-        found = "is empty" if not head else "is not a PGM, PPM, PNG or BMP image"
+        found = "is empty" if not head else "is not a PGM, PPM, PBM, PNG or BMP image"
         raise InputFileError(source, found, f"{CONVERT}; what its name ends in does not count")
     _check_header(source, image.width, image.height, bits)
     if image.mode not in MODES_READ:
