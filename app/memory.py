@@ -1,17 +1,34 @@
-"""What nobody holds any more goes back to the system: left alone, the C library keeps most of it."""
+"""How much memory there is, and that what nobody holds any more goes back to the system."""
 
 from __future__ import annotations
 
 import ctypes
 import gc
+import os
+from collections.abc import Iterable
 from contextlib import suppress
+from pathlib import Path
 from threading import Lock, Timer
 
 SOON = 2.0  # seconds; many tabs that close together are cleared away once
 
+LIMITS = (  # of a container
+    Path("/sys/fs/cgroup/memory.max"),
+    Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"),
+)
+
+
+def whole(limits: Iterable[Path] = LIMITS) -> int:
+    """Bytes of memory that this machine has, or its container may have; raises where nobody tells."""
+    least = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    for path in limits:
+        with suppress(OSError, ValueError):  # not there, or "max"
+            least = min(least, int(path.read_text()))
+    return least
+
 
 def give_back() -> None:
-    """Find what only holds itself, and return free memory to the system where it takes any (glibc)."""
+    """Find what only holds itself, and return free memory to the system: glibc would keep it."""
     gc.collect()
     with suppress(AttributeError, OSError, TypeError):  # another C library, another system
         ctypes.CDLL(None).malloc_trim(0)

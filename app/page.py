@@ -52,6 +52,7 @@ from app.views.swarm_space import SwarmSpaceView
 log = logging.getLogger(__name__)
 
 LARGE = 2_000_000  # cells of a map that takes a while to draw
+FAR = 1e6  # metres from the scene's origin; no map reaches there
 
 
 class Page(Telling, Handling, Learning, Researching):
@@ -105,7 +106,7 @@ class Page(Telling, Handling, Learning, Researching):
     def _greet(self, initial: Inputs, key: str, again: bool) -> None:
         """The page is there: what it left behind comes back; otherwise it begins."""
         with self._turn:
-            if self._gone:
+            if self._gone or self._key:  # a page says so once
                 return
             self._key, kept = self._keep.enter(key, again, self._leave)
             self._stage.remember(self._key)
@@ -367,10 +368,13 @@ class Page(Telling, Handling, Learning, Researching):
         """What is known of the place under a click."""
         if self._run.view != MAP:
             return
-        start, along = np.array(event.ray_origin), np.array(event.ray_direction)
-        x, y, _ = start - along * start[2] / along[2]
+        (x, y, z), (right, up, along) = event.ray_origin, event.ray_direction
+        if along == 0:  # never meets the floor
+            return
         # viser's own frame is turned half round the y axis: see views/maps.py
-        place = np.array([-x, y])
+        place = np.array([right * z / along - x, y - up * z / along])
+        if not np.all(np.abs(place) < FAR):
+            return
         self._stage.hud(readout=self._maps.read_out(place, self._story))
         self._stage.layer("readout", [mark("cross", place, self._palette.text, r=6)])
         self._stage.flush()

@@ -10,7 +10,6 @@ import atexit
 import contextlib
 import itertools
 import logging
-import os
 import pickle
 import signal
 import traceback
@@ -27,7 +26,7 @@ from algorithms.errors import MapMergeError
 from algorithms.steps import Step
 from app.bench import Asker, Bench
 from app.job import Job
-from app.memory import give_back
+from app.memory import give_back, whole
 from app.parcels import Parcels
 from app.processes import SPAWN
 from app.turns import Turns
@@ -38,7 +37,7 @@ MOST = 4  # each takes 200 MB before it has done anything, and has threads for a
 HANGS = 10.0  # seconds that a step goes on, unwanted, until its process is ended
 HANGS_BESIDE = 60.0  # where other runs would end with it
 LOOK_S = 0.25  # how often it is looked
-SHARE = 0.75  # of this machine's memory that a worker may have; more is a MemoryError, not the end of others
+SHARE = 0.5  # of this machine's memory that a worker may have; more is a MemoryError, not the end of others
 
 
 class WorkerDiedError(MapMergeError):
@@ -365,7 +364,6 @@ def _bound_memory() -> None:
     try:
         import resource
 
-        whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-        resource.setrlimit(resource.RLIMIT_DATA, (int(SHARE * whole),) * 2)
-    except (ImportError, ValueError, OSError):  # not on every system
+        resource.setrlimit(resource.RLIMIT_DATA, (int(SHARE * whole()),) * 2)
+    except (ImportError, AttributeError, ValueError, OSError):  # not on every system
         log.debug("memory is not bounded", exc_info=True)

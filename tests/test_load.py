@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import io
 import os
 import signal
@@ -23,6 +24,7 @@ import app.server
 from algorithms.casefiles import Case
 from algorithms.errors import TooLargeError
 from app.budget import Budget
+from app.page import Page
 from app.server import make_server
 from app.takeaway import Takeaway
 from app.turns import Turns
@@ -88,6 +90,29 @@ def test_a_browser_that_is_killed_frees_its_session(server):
     assert len(server.get_clients()) == 1
     tab.socket.socket.shutdown(socket.SHUT_RDWR)  # no goodbye
     until(lambda: not server.get_clients(), "the session to end")
+
+
+def test_who_says_hello_again_and_again_gets_nothing_more_and_leaves_nothing_behind(server):
+    def pages() -> int:
+        gc.collect()
+        return sum(isinstance(thing, Page) for thing in gc.get_objects())
+
+    before = pages()
+    tab = WireTab(server.get_port())
+    key = tab.words["key"]
+    for key_then, again in [("", False), (key, True), (key, False), ("", True)]:
+        tab._tell(tab.words["channel"], "hello", key=key_then, again=again)
+    tab.choose("Instant")
+    tab.press("Merge")
+    assert merged(tab)
+    assert tab.mood == "accepted"
+    assert tab.words["key"] == key
+    tab.close()
+    until(lambda: not server.get_clients(), "the session to end")
+    came_back = WireTab(server.get_port(), key=key)  # what it left is kept for it alone, once
+    until(lambda: came_back.mood == "accepted", "what it left")
+    came_back.close()
+    until(lambda: pages() <= before, "its page to be let go of")
 
 
 def test_a_tab_too_many_is_told_so_and_has_no_session(small_case, monkeypatch):

@@ -9,6 +9,7 @@ import signal
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 from wire import WireTab, until
 
@@ -21,6 +22,8 @@ from app.mishap import OUT_OF_MEMORY, words
 from app.page import Page
 from app.panels.files import read_case as real_read_case
 from app.server import make_server
+from app.story import Story
+from app.views.maps import MapView
 
 
 @pytest.fixture(scope="module")
@@ -89,6 +92,23 @@ def test_a_merge_whose_process_is_killed_is_told_and_the_next_merge_works(tab, c
     assert "a process that merges has ended" in caplog.text
     tab.choose("Instant")
     assert merge(tab) == "accepted"
+
+
+@pytest.mark.parametrize("along", [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 1e-320], [0.0, 1e12, 1.0]])
+def test_a_click_that_meets_no_map_reads_nothing_out(tab, monkeypatch, along):
+    asked, read_out = [], MapView.read_out
+
+    def spy(view: MapView, place: np.ndarray, story: Story) -> str:
+        asked.append(place)
+        return read_out(view, place, story)
+
+    monkeypatch.setattr(MapView, "read_out", spy)
+    click = {"event_type": "click", "screen_pos": [[0.5, 0.5]], "modifier": None}
+    for direction in (along, [0.0, 0.0, -1.0]):
+        tab.send("ScenePointerMessage", ray_origin=[0.0, 0.0, 600.0], ray_direction=direction, **click)
+    until(lambda: asked, "a click to be read out")
+    assert merge(tab) == "accepted"  # by then the other one would have been, too
+    assert np.array(asked).tolist() == [[0.0, 0.0]]
 
 
 def test_files_that_cannot_be_made_are_told_of_and_can_be_asked_for_again(tab, monkeypatch):
