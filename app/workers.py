@@ -15,6 +15,7 @@ import signal
 import traceback
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
+from math import inf
 from multiprocessing.connection import Connection
 from threading import Lock
 from time import monotonic
@@ -35,7 +36,7 @@ log = logging.getLogger(__name__)
 
 MOST = 4  # each takes 200 MB before it has done anything, and has threads for all cores
 HANGS = 10.0  # seconds that a step goes on, unwanted, until its process is ended
-HANGS_BESIDE = 60.0  # where other runs would end with it
+HANGS_BESIDE = 60.0  # where other runs would end with it; and until it has to have heard what it is told
 LOOK_S = 0.25  # how often it is looked
 SHARE = 0.5  # of this machine's memory that a worker may have; more is a MemoryError, not the end of others
 
@@ -120,17 +121,20 @@ class _Worker:
         self._process, self._line = process, line
         self.life += 1
 
-    def ask(self, *order: Any, wanted: Callable[[], bool] = lambda: True) -> tuple[Any, ...]:
-        """Have it do something; raises WorkerDiedError, also where it goes on with what nobody wants."""
+    def ask(self, *order: Any, wanted: Callable[[], bool] | None = None) -> tuple[Any, ...]:
+        """Have it do something; raises WorkerDiedError, also where it hangs.
+
+        wanted : whether a step is still waited for; None: it is no step, and done in a moment
+        """
         if self._line is None:
             raise WorkerDiedError
         try:
             self._line.send(order)
-            until = None
+            until = monotonic() + HANGS_BESIDE if wanted is None else inf
             while not self._line.poll(LOOK_S):
-                if wanted():
-                    until = None
-                elif until is None:
+                if wanted is not None and wanted():
+                    until = inf
+                elif until == inf:
                     until = monotonic() + (HANGS if len(self.runs) <= 1 else HANGS_BESIDE)
                 elif monotonic() > until:
                     raise EOFError

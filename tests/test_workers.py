@@ -272,6 +272,16 @@ def test_one_that_hangs_is_ended_once_nobody_wants_what_it_is_at(workers, bench,
     assert workers.pids != [pid]
 
 
+def test_one_that_hears_nothing_any_more_is_ended_too(workers, bench, job, monkeypatch):
+    told(bench, job)
+    (pid,) = workers.pids
+    os.kill(pid, signal.SIGSTOP)
+    with monkeypatch.context() as patch, pytest.raises(WorkerDiedError):
+        patch.setattr("app.workers.HANGS_BESIDE", 0.5)
+        told(bench, job)
+    assert end(told(bench, job)).method == job.method
+
+
 def stuck() -> Iterator[Step]:
     signal.pause()
     yield Step("never", ObservationDetail(()), 0.0)
