@@ -25,7 +25,8 @@ from viser import _messages as messages
 from websockets.exceptions import ConnectionClosed
 
 from algorithms.errors import InputFileError
-from app.gate import CHUNK, MAX_NAME, MAX_UPLOAD, MAX_UPLOADS_OF_ALL, Gate
+from app.gate import MAX_NAME, MAX_UPLOAD, MAX_UPLOADS_OF_ALL, Gate
+from app.heard import CHUNK
 
 log = logging.getLogger(__name__)
 

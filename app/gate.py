@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import math
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from time import monotonic
 from typing import Any
 
-import msgspec
 from viser import _messages as messages
 from viser._gui_handles import GuiTabHandle, GuiUploadButtonHandle
+
+from app.heard import CHUNK, MAX_NUMBER, MAX_PARTS, MAX_TEXT, fault
 
 log = logging.getLogger(__name__)
 
@@ -26,26 +26,11 @@ MAX_UPLOADS = 2 * MAX_UPLOAD  # bytes on their way from one tab: two maps
 MAX_UPLOADS_OF_ALL = 5 * MAX_UPLOAD  # bytes on their way from all tabs
 MAX_OPEN_UPLOADS = 8
 MAX_NAME = 255  # letters of a file's name
-MAX_TEXT = 10_000  # letters in a control
-MAX_PARTS = 64  # numbers in a control
-MAX_NUMBER = 1e12
-CHUNK = 512 * 1024  # bytes of one part of an upload
 PATIENCE = 60.0  # seconds until a browser that reads nothing is given up
 RATE, BURST = 200.0, 400.0  # messages a second, and at once; a tab that is dragged over sends about 60
+WEIGHT = 32 * 1024  # bytes that count as one more: 6 MB a second
 
 TOLD_AT = frozenset(10**power for power in range(3, 10))  # how many things dropped make a line of the log
-
-# All that the page's own script ever sends
-HEARD: dict[str, type[messages.Message]] = {
-    kind.__name__: kind
-    for kind in (
-        messages.GuiUpdateMessage,
-        messages.ViewerCameraMessage,
-        messages.ScenePointerMessage,
-        messages.FileTransferStartUpload,
-        messages.FileTransferPart,
-    )
-}
 
 _unseen: set[str] = set()  # fields that are listened to though they lie on no panel
 
@@ -83,20 +68,16 @@ class Gate:
         async def recv(*how: Any, **more: Any) -> Any:
             while True:
                 raw = await hear(*how, **more)
-                wait = bucket.take()
+                wait = bucket.take(1 + len(raw) // WEIGHT)
                 if wait > 0:  # nothing is lost: whoever sends too fast waits for us
                     self.dropped["slowed"] += 1
                     await asyncio.sleep(wait)
-                message = readable(raw)
-                if message is None:
-                    self.drop("garbage")
-                    await connection.close(1007, "this is no message of the page")
-                elif message["type"] not in HEARD:
-                    self.drop("unasked")
-                elif not sound(message):
-                    self.drop("malformed")
-                else:
+                wrong = fault(raw)
+                if not wrong:
                     return raw
+                self.drop(wrong)
+                if wrong == "garbage":
+                    await connection.close(1007, "this is no message of the page")
 
         send = connection.send
 
@@ -162,87 +143,12 @@ class Bucket:
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock, self._left, self._at = clock, BURST, clock()
 
-    def take(self) -> float:
-        """One more; the seconds it has to wait."""
+    def take(self, weight: int) -> float:
+        """One more, that counts as so many; the seconds it has to wait."""
         now = self._clock()
-        self._left = min(BURST, self._left + (now - self._at) * RATE) - 1
+        self._left = min(BURST, self._left + (now - self._at) * RATE) - weight
         self._at = now
         return max(0.0, -self._left / RATE)
-
-
-def readable(raw: Any) -> dict[str, Any] | None:
-    """A frame as a mapping with a "type"; None where it is none."""
-    if not isinstance(raw, bytes):
-        return None
-    try:
-        message = msgspec.msgpack.decode(raw)
-    except (msgspec.DecodeError, RecursionError, ValueError):  # ValueError: a text that is no UTF-8
-        return None
-    if not isinstance(message, dict) or not isinstance(message.get("type"), str):
-        return None
-    return message
-
-
-def sound(message: Mapping[str, Any]) -> bool:
-    """Whether a message has the fields of its kind, all of them and no others, of their types."""
-    kind = HEARD[message["type"]]
-    fields = _FIELDS[kind.__name__]
-    return set(message) == {"type", *fields} and all(check(message[field]) for field, check in fields.items())
-
-
-def _number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= MAX_NUMBER
-
-
-def _count(value: Any) -> bool:
-    return _number(value) and value >= 0 and value == int(value)
-
-
-def _id(value: Any) -> bool:
-    return isinstance(value, str) and 0 < len(value) <= 64
-
-
-def _word(value: Any) -> bool:
-    return isinstance(value, str) and len(value) <= MAX_TEXT
-
-
-def _vector(length: int) -> Callable[[Any], bool]:
-    return lambda value: isinstance(value, list) and len(value) == length and all(map(_number, value))
-
-
-def _maybe(check: Callable[[Any], bool]) -> Callable[[Any], bool]:
-    return lambda value: value is None or check(value)
-
-
-_FIELDS: dict[str, dict[str, Callable[[Any], bool]]] = {
-    "GuiUpdateMessage": {
-        "uuid": _id,
-        "updates": lambda value: isinstance(value, dict) and all(isinstance(key, str) for key in value),
-    },
-    "ViewerCameraMessage": {
-        "wxyz": _vector(4),
-        **dict.fromkeys(("position", "look_at", "up_direction"), _vector(3)),
-        **dict.fromkeys(("fov", "near", "far"), _number),
-        **dict.fromkeys(("image_height", "image_width"), _count),
-    },
-    "ScenePointerMessage": {
-        "event_type": lambda value: value == "click",
-        **dict.fromkeys(("ray_origin", "ray_direction"), _vector(3)),
-        "screen_pos": lambda value: isinstance(value, list) and len(value) == 1 and _vector(2)(value[0]),
-        "modifier": _maybe(_word),
-    },
-    "FileTransferStartUpload": {
-        **dict.fromkeys(("source_component_uuid", "transfer_uuid"), _id),
-        **dict.fromkeys(("filename", "mime_type"), _word),
-        **dict.fromkeys(("part_count", "size_bytes"), _count),
-    },
-    "FileTransferPart": {
-        "source_component_uuid": _maybe(_id),
-        "transfer_uuid": _id,
-        "part_index": _count,
-        "content": lambda value: isinstance(value, bytes) and len(value) <= CHUNK,
-    },
-}
 
 
 def usable(gui: Any, handle: Any) -> bool:
@@ -281,9 +187,9 @@ def _fits(value: Any, now: Any) -> bool:
     if isinstance(now, bool):
         return isinstance(value, bool)
     if isinstance(now, int | float):
-        return _number(value) and math.isfinite(value)
+        return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= MAX_NUMBER
     if isinstance(now, str):
-        return _word(value)
+        return isinstance(value, str) and len(value) <= MAX_TEXT
     if isinstance(now, tuple):
         if not isinstance(value, list | tuple) or len(value) > MAX_PARTS:
             return False

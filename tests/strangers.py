@@ -16,7 +16,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 from wire import CAMERA, until
 
-from app.gate import CHUNK
+from app.heard import CHUNK
 
 PATIENCE = 20.0
 SPEAKS = [f"viser-v{viser.__version__}"]

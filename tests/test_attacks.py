@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import logging
 import math
+import struct
+import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import msgspec
 import pytest
 import viser
+from hypothesis import given
+from hypothesis import strategies as st
 from strangers import Stand, Visitor, standing
 from viser import _messages
 from wire import CAMERA, until
 
 from app.access import Access
-from app.gate import CHUNK, MAX_FRAME, MAX_UPLOAD
+from app.gate import MAX_FRAME, MAX_UPLOAD
 from app.guard import guarded_server
+from app.heard import CHUNK, MAX_PARTS, MAX_WORDS, fault
 
 
 @pytest.fixture(scope="module")
@@ -113,6 +118,84 @@ def test_a_message_that_the_page_never_sends_is_dropped_and_counted(ours, odd):
     assert visitor.has_been_heard()
     visitor.socket.close()
     assert sum((ours.server.gate.dropped - before).values()) == 1
+
+
+def colliding(count: int) -> bytes:
+    """A mapping of integers, which are their own hashes: each looks for its place where all others lie."""
+    size = 2**15
+    last, found, perturbed, place = (1 << 59) + 12345, {}, (1 << 59) + 12345, ((1 << 59) + 12345) % size
+    while len(found) < size * 5 // 8:  # in the order in which a dictionary would look for the last one
+        found[place] = None
+        perturbed >>= 5
+        place = (place * 5 + perturbed + 1) % size
+    pairs = [msgspec.msgpack.encode(key) + b"\xc0" for key in [*found, *[last] * count]]
+    return b"\xdf" + struct.pack(">I", len(pairs)) + b"".join(pairs)
+
+
+def update(value: bytes) -> bytes:
+    fields = {"type": "GuiUpdateMessage", "uuid": "x", "updates": {"value": msgspec.Raw(value)}}
+    return msgspec.msgpack.encode(fields)
+
+
+def seconds(do: Callable[[], object]) -> float:
+    began = time.thread_time()
+    do()
+    return time.thread_time() - began
+
+
+def test_no_mapping_is_built_of_what_a_stranger_chose(ours):
+    """viser reads it as it comes: a megabyte of it stops everything for a minute."""
+    slow = update(colliding(2000))
+    assert len(slow) < MAX_FRAME
+    theirs = seconds(lambda: msgspec.msgpack.decode(slow))
+    assert theirs > 20 * seconds(lambda: fault(slow))
+    assert fault(slow) == "too long"
+    assert fault(update(msgspec.msgpack.encode({1: 2}))) == "malformed"
+    visitor = Visitor(ours)
+    visitor.socket.send(slow)
+    assert visitor.has_been_heard()
+    visitor.socket.close()
+
+
+PLAIN = st.none() | st.booleans() | st.integers(-9, 9) | st.floats() | st.text(max_size=9)
+ANYTHING = st.recursive(
+    PLAIN | st.binary(max_size=9),
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(st.text(max_size=3) | st.integers(-9, 2**63), inner, max_size=3)
+    ),
+)
+
+
+@given(ANYTHING)
+def test_the_value_of_a_control_is_a_word_a_number_or_a_short_list_of_them(value):
+    plain = None | bool | int | float | str
+    flat = isinstance(value, plain) or (isinstance(value, list) and all(isinstance(v, plain) for v in value))
+    assert fault(update(msgspec.msgpack.encode(value))) == ("" if flat else "malformed")
+
+
+def test_what_brings_no_part_of_a_file_is_short():
+    for value, wrong in (
+        ([1.5] * MAX_PARTS, ""),
+        ([1.5] * (MAX_PARTS + 1), "malformed"),
+        ("x" * MAX_WORDS, "too long"),
+    ):
+        assert fault(update(msgspec.msgpack.encode(value))) == wrong
+    part = {"source_component_uuid": None, "transfer_uuid": "x", "part_index": 0, "type": "FileTransferPart"}
+    assert fault(msgspec.msgpack.encode({**part, "content": b"x" * CHUNK})) == ""
+    assert fault(msgspec.msgpack.encode({**part, "content": b"x" * (CHUNK + 1)})) == "malformed"
+
+
+def test_long_messages_count_as_several(ours):
+    nested = msgspec.msgpack.encode([[]] * 2**20)
+    before = ours.server.gate.dropped.copy()
+    visitor = Visitor(ours)
+    for _ in range(14):  # a megabyte each
+        visitor.socket.send(update(nested))
+    assert visitor.has_been_heard()
+    visitor.socket.close()
+    assert (ours.server.gate.dropped - before)["slowed"] >= 1
+    assert (ours.server.gate.dropped - before)["too long"] == 14
 
 
 def test_a_frame_larger_than_any_of_the_page_ends_its_connection(stock, ours):
