@@ -27,6 +27,7 @@ from app.access import HEADERS, PAGE_POLICY, Access, Answer, Asked
 from app.arrivals import PATH, Arrivals, may_come
 from app.entrance import served
 from app.gate import MAX_FRAME, Gate
+from app.logs import quiet_handshakes
 from app.mishap import watched
 
 TOO_MANY = Answer(503, "too many tabs are open here; close one, and reload")
@@ -40,6 +41,7 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
     most : connections of pages at a time, and so many of files
     """
     _harden_widgets()
+    quiet_handshakes()
     gate = Gate()
     real_serve = websockets.asyncio.server.serve
     live: set[Any] = set()

@@ -78,6 +78,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     if args.lesson is not None:
         _check_lesson(args.lesson)
     access = access_for(args.host, args.token_file, tuple(args.behind), args.certfile, args.keyfile)
+    logs.hide(access.token)
     server = make_server(args.host, args.port, _case(args), args.lesson, access)
     url = address(args.host, server.get_port(), access)
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # whoever asks it to end, it ends whole
