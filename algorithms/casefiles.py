@@ -16,6 +16,7 @@ from algorithms.mapio import fields, read_bytes, read_map
 from algorithms.mapio.fields import Fields, number_text, quoted
 from algorithms.observation import SIGMA_BEARING, SIGMA_RANGE, Observation
 from algorithms.pose import Pose2
+from algorithms.visible import visible
 
 OBSERVATION_FILE = "observation.yaml"
 ROUGH_OBSERVATION_FILE = "observation_rough.yaml"
@@ -233,7 +234,7 @@ def read_case(folder: Path, rough: bool = False) -> Case:
     observation_file = ROUGH_OBSERVATION_FILE if rough else OBSERVATION_FILE
     truth_path = folder / TRUTH_FILE
     return Case(
-        name=folder.resolve().name,
+        name=visible(folder.resolve().name),
         ref=read_map(folder / FIRST_MAP_FILE),
         mov=read_map(folder / SECOND_MAP_FILE),
         observations=read_observations(folder / observation_file),

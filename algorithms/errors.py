@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+from algorithms.visible import visible
+
 
 class MapMergeError(Exception):
-    """A mistake the user can mend. The message names the place, the finding and the remedy."""
+    """A mistake the user can mend. The message names the place, the finding and the remedy.
+
+    It may hold what a stranger wrote: hidden characters stand there as their numbers.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(visible(message))
 
 
 class InputFileError(MapMergeError):
@@ -16,7 +24,7 @@ class InputFileError(MapMergeError):
     """
 
     def __init__(self, source: object, found: str, remedy: str) -> None:
-        self.source, self.found, self.remedy = str(source), found, remedy
+        self.source, self.found, self.remedy = visible(str(source)), visible(found), visible(remedy)
         super().__init__(f"{source}: {found}; {remedy}")
 
     def __reduce__(self) -> tuple[type[InputFileError], tuple[str, str, str]]:

@@ -49,6 +49,15 @@ BAD_YAML = {
     "no occupied_thresh": (header(occupied_thresh=None), "occupied_thresh is missing"),
     "no free_thresh": (header(free_thresh=None), "free_thresh is missing"),
     "twice": (header() + b"resolution: 0.1\n", "resolution stands there twice"),
+    "half a character twice": (
+        header() + b'"\\ud800": 1\n' * 2,
+        "a text holds half a character, U+D800, line",
+    ),
+    "half a character": (header(image=None) + b'image: "m\\udfff.pgm"', "U+DFFF, line"),
+    "a key that turns the text round twice": (
+        header() + b'"\\u202e": 1\n' * 2,
+        "the key [U+202E] stands there twice",
+    ),
     "image empty": (header(image=""), "image is empty"),
     "image a list": (header(image=["m.pgm"]), "image is"),
     "resolution 0": (header(resolution=0), "positive"),

@@ -18,6 +18,7 @@ from algorithms.mapio import fields
 from algorithms.mapio.image import read_pixels
 from algorithms.mapio.shading import MODES, GreyArray, Shading, cells_of, greys_of
 from algorithms.pose import Pose2
+from algorithms.visible import visible
 
 __all__ = [
     "GreyImage",
@@ -239,7 +240,7 @@ def _read_image(path: Path, meta: MapMeta, name: str) -> GridMap:
 def _to_map(source: str, stream: BinaryIO, meta: MapMeta, name: str) -> GridMap:
     grey, alpha = read_pixels(source, stream)
     cells = cells_of(grey, alpha, meta.shading)
-    return GridMap(cells, meta.resolution, meta.origin, name or "map")
+    return GridMap(cells, meta.resolution, meta.origin, visible(name) or "map")
 
 
 def _opened(data: bytes | BinaryIO) -> BinaryIO:

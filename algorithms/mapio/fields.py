@@ -24,6 +24,7 @@ MAX_DEPTH = 20  # of lists and mappings in each other; ours are 3 deep
 MAX_ALIASES = 64
 MAX_VALUES = 5000  # keys count, too; 64 sightings have 2,000
 TRUE = ("true", "yes", "on", "y")
+HALVES = re.compile(r"[\ud800-\udfff]")  # of characters: no such text can be sent or saved
 FALSE = ("false", "no", "off", "n")
 
 
@@ -51,6 +52,15 @@ class _TextLoader(yaml.BaseLoader):
         if self._values > MAX_VALUES or self._aliases > MAX_ALIASES:
             raise yaml.composer.ComposerError(None, None, "it holds too many values", None)
         node: yaml.Node | None = super().compose_node(parent, index)
+        return node
+
+    def compose_scalar_node(self, anchor: Any) -> yaml.ScalarNode:
+        node: yaml.ScalarNode = super().compose_scalar_node(anchor)
+        half = HALVES.search(node.value)  # only an escape can write one
+        if half:
+            raise yaml.composer.ComposerError(
+                None, None, f"a text holds half a character, U+{ord(half[0]):04X}", node.start_mark
+            )
         return node
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:

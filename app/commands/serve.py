@@ -128,9 +128,7 @@ def _case(args: argparse.Namespace) -> Case | None:
 
     if args.map1 is not None:
         ref, mov, observations = read_inputs(args)
-        return Case(
-            f"{args.map1.stem} + {args.map2.stem}", ref, mov, observations, args.observation.name, None
-        )
+        return Case(f"{ref.name} + {mov.name}", ref, mov, observations, args.observation.name, None)
     known = samples()
     if not known:
         return None

@@ -14,6 +14,7 @@ from algorithms.casefiles import observations_from_bytes, read_case
 from algorithms.errors import MapMergeError
 from algorithms.gridmap import GridMap
 from algorithms.mapio import map_from_bytes, parse_meta
+from algorithms.visible import visible
 from app import paths
 from app.errand import Check, Errand, Left, Watched, unwatched
 from app.inputs import Files, Inputs, Upload
@@ -42,7 +43,7 @@ Known = dict[tuple[Upload, Upload], GridMap]
 
 def _short(name: str) -> str:
     """The last part of a file's name only, and not much of it: it is shown to a person, nothing else."""
-    return PurePath(name.replace("\\", "/")).name[:80]
+    return visible(PurePath(name.replace("\\", "/")).name)[:80]
 
 
 def _large(upload: Upload) -> bool:
