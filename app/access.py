@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import hmac
 import os
+import re
 import secrets
 import ssl
 import urllib.parse
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
 from html import escape
@@ -50,10 +51,20 @@ class Asked:
     path: str
     headers: Mapping[str, str]
 
+    @classmethod
+    def of(cls, path: str, headers: Iterable[tuple[str, str]]) -> Asked:
+        """From its headers one by one; one that is said twice is a list, as anywhere, and so is no host."""
+        said: dict[str, str] = {}
+        for key, value in headers:
+            name = key.lower()
+            between = "; " if name == "cookie" else ", "
+            said[name] = f"{said[name]}{between}{value}" if name in said else value
+        return cls(path, said)
+
     @property
     def upgrade(self) -> bool:
-        """Whether it asks for a websocket, the only way to do anything."""
-        return self.headers.get("upgrade", "").lower() == "websocket"
+        """Whether it could be taken to ask for a websocket, the only way to do anything."""
+        return "websocket" in self.headers.get("upgrade", "").lower()
 
 
 @dataclass(frozen=True)
@@ -117,7 +128,8 @@ class Access:
 
 def same(given: str, wanted: str) -> bool:
     """Whether two words are the same, in a time that does not tell where they differ."""
-    return hmac.compare_digest(given.encode(), wanted.encode())
+    # What is no UTF-8 on its way comes as halves of letters, which pass here, and are the same as nothing
+    return hmac.compare_digest(given.encode(errors="surrogatepass"), wanted.encode(errors="surrogatepass"))
 
 
 def is_local(host: str) -> bool:
@@ -204,26 +216,27 @@ def _tls(certfile: Path | None, keyfile: Path | None) -> ssl.SSLContext | None:
     return context
 
 
+_PLACE = re.compile(r"(\[[0-9a-f:.]+\]|[a-z0-9_][a-z0-9_.-]*)(?::([0-9]{1,5}))?")
+
+
+def _place(host: str) -> tuple[str, int | None]:
+    """Name and port, if any, of "name:port", "[::1]:port" or "name"; ("", None) where it is none."""
+    found = _PLACE.fullmatch(host.lower())
+    if found is None:
+        return "", None
+    return found[1].strip("[]"), int(found[2]) if found[2] else None
+
+
 def _name(host: str) -> str:
-    """The name in "name:port", "[::1]:port" or "name"; "" where it is none."""
-    try:
-        return urllib.parse.urlsplit(f"//{host}").hostname or ""
-    except ValueError:
-        return ""
+    return _place(host)[0]
 
 
 def _same(origin: str | None, host: str) -> bool:
     """Whether a page's origin is the host that it asks; without an origin it is no page's."""
-    try:
-        page = urllib.parse.urlsplit(origin or "")
-        usual = PORTS[page.scheme]
-        asked = urllib.parse.urlsplit(f"//{host}")
-        return bool(page.hostname) and (page.hostname, page.port or usual) == (
-            asked.hostname,
-            asked.port or usual,
-        )
-    except (KeyError, ValueError):
-        return False
+    scheme, _, place = (origin or "").partition("://")
+    usual = PORTS.get(scheme)
+    (name, port), (asked_name, asked_port) = _place(place), _place(host)
+    return bool(usual and name) and (name, port or usual) == (asked_name, asked_port or usual)
 
 
 def _asking(wrong: bool) -> Answer:

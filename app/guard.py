@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import http
 import io
+import logging
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
@@ -30,7 +31,11 @@ from app.gate import MAX_FRAME, Gate
 from app.logs import quiet_handshakes
 from app.mishap import watched
 
+log = logging.getLogger(__name__)
+
 TOO_MANY = Answer(503, "too many tabs are open here; close one, and reload")
+NOT_FOUND = Answer(404, "there is no such page here")
+NO_REQUEST = Answer(400, "this is no request of the page")
 
 
 def guarded_server(host: str, port: int, access: Access, most: int) -> viser.ViserServer:
@@ -50,14 +55,20 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
 
     def serve(handler: Any, at: str, on: int, *, process_request: Callable[..., Any], **options: Any) -> Any:
         async def ask(connection: Any, request: Any) -> Any:
-            asked = Asked(request.path, {key.lower(): value for key, value in request.headers.raw_items()})
-            answer = access.answer(asked)
-            if answer is None and asked.upgrade and len(files if asked.path == PATH else live) >= most:
-                answer = TOO_MANY
-            if answer is not None:
-                gate.drop(f"request, {answer.status}")
-                return _response(answer)
-            return _with_words(process_request(connection, request))
+            try:
+                asked = Asked.of(request.path, request.headers.raw_items())
+                answer = access.answer(asked)
+                if answer is None and asked.upgrade and len(files if asked.path == PATH else live) >= most:
+                    answer = TOO_MANY
+                if answer is None:
+                    return _with_words(process_request(connection, request))
+            except OSError:  # of a path that is longer than any file's
+                answer = NOT_FOUND
+            except Exception as error:  # its words are the stranger's
+                log.warning("a request could not be answered: %s", type(error).__name__)
+                answer = NO_REQUEST
+            gate.drop(f"request, {answer.status}")
+            return _response(answer)
 
         async def handle(connection: Any) -> None:
             brings = connection.request.path == PATH

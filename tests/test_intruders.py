@@ -119,3 +119,61 @@ def test_no_path_leads_out_of_the_page(ours, path):
     with socket.create_connection(("127.0.0.1", ours.port), timeout=PATIENCE) as raw:
         raw.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{ours.port}\r\n\r\n".encode())
         assert raw.recv(1000).startswith(b"HTTP/1.1 404 ")
+
+
+def said(port: int, *lines: str) -> bytes:
+    """The first words of the answer to a request of these lines, as they are."""
+    with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE) as raw:
+        raw.sendall("".join(f"{line}\r\n" for line in (*lines, "")).encode("latin-1"))
+        return raw.recv(1000)
+
+
+@pytest.mark.parametrize(
+    ("path", "cookie"), [("/?token=\xff", "a=b"), ("/", "{name}=\xff"), ("/?token=%ff", "\xff=\xff")]
+)
+def test_what_is_no_text_is_answered_as_a_wrong_token(locked, path, cookie):
+    name = Access(None, TOKEN).cookie
+    answer = said(locked.port, f"GET {path} HTTP/1.1", "Host: x", f"Cookie: {cookie.format(name=name)}")
+    assert answer.startswith(b"HTTP/1.1 401 ")
+
+
+def test_a_path_longer_than_any_file_is_one_that_is_not_there(stock, ours):
+    long = "/" + "a" * 300
+    assert get(stock.port, long)[0] == 500
+    assert get(ours.port, long)[0] == 404
+
+
+def test_a_request_that_nobody_understands_is_refused_counted_and_told_of_by_its_kind(stock, ours, caplog):
+    for stand, begins in ((stock, b"HTTP/1.1 500 "), (ours, b"HTTP/1.1 400 ")):
+        before = stand.server.gate.dropped["request, 400"] if stand is ours else 0
+        host = f"Host: 127.0.0.1:{stand.port}"
+        caplog.clear()
+        twice = said(stand.port, "GET / HTTP/1.1", host, "Accept-Encoding: gzip", "Accept-Encoding: br")
+        assert twice.startswith(begins)
+    assert ours.server.gate.dropped["request, 400"] == before + 1
+    assert [record.getMessage() for record in caplog.records if record.levelname == "WARNING"] == [
+        "a request could not be answered: MultipleValuesError"
+    ]
+
+
+TWICE = {
+    "two hosts, its own first": ("Host: 127.0.0.1:{port}", "Host: evil.example"),
+    "two hosts, its own last": ("Host: evil.example", "Host: 127.0.0.1:{port}"),
+    "two hosts in one": ("Host: 127.0.0.1:{port}, evil.example",),
+}
+
+
+@pytest.mark.parametrize("hosts", TWICE.values(), ids=TWICE)
+def test_a_page_is_asked_for_by_one_name(stock, ours, hosts):
+    for stand, begins in ((stock, b"HTTP/1.1 200 "), (ours, b"HTTP/1.1 421 ")):
+        named = [host.format(port=stand.port) for host in hosts]
+        assert said(stand.port, "GET / HTTP/1.1", *named).startswith(begins)
+
+
+@pytest.mark.parametrize("upgrades", [("websocket", "h2c"), ("h2c", "websocket"), (",websocket",)])
+def test_no_words_about_the_upgrade_lead_past_the_question_for_the_page(ours, upgrades):
+    lines = [f"Upgrade: {word}" for word in upgrades]
+    host = f"Host: 127.0.0.1:{ours.port}"
+    foreign = "Origin: http://evil.example"
+    answer = said(ours.port, "GET / HTTP/1.1", host, foreign, "Connection: Upgrade", *lines)
+    assert answer.startswith(b"HTTP/1.1 403 ")
