@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import pi, radians
+from math import inf, pi, radians
 from pathlib import Path
 from typing import Literal
 
@@ -14,7 +14,14 @@ from algorithms.errors import InputFileError, SettingError, unreadable
 from algorithms.gridmap import GridMap
 from algorithms.mapio import fields, read_bytes, read_map
 from algorithms.mapio.fields import Fields, number_text, quoted
-from algorithms.observation import SIGMA_BEARING, SIGMA_RANGE, Observation
+from algorithms.observation import (
+    MOST_RANGE,
+    SIGMA_BEARING,
+    SIGMA_BEARINGS,
+    SIGMA_RANGE,
+    SIGMA_RANGES,
+    Observation,
+)
 from algorithms.pose import Pose2
 from algorithms.visible import visible
 
@@ -100,19 +107,21 @@ def _observation(f: Fields) -> Observation:
     observed.refuse_unknown("pose")
     m = f.section("measurement", "add measurement: {range: m, bearing: rad}")
     m.refuse_unknown("range", "bearing", "sigma_range", "sigma_bearing", "bearing_back")
-    where = observed.numbers("pose", (2, 3), OBSERVED_POSE)
+    where = observed.pose("pose", (2, 3), OBSERVED_POSE)
     distance = m.number("range", "give the distance of robot 2 from robot 1 in metres")
     if distance < 0:
         raise m.error("range", f"is {distance:g} m", "a distance cannot be negative")
+    if distance > MOST_RANGE:
+        raise m.error("range", f"is {distance:g} m", f"give metres; {MOST_RANGE:,.0f} m is the most")
     return Observation(
-        observer=Pose2(*observer.numbers("pose", (3,), OBSERVER_POSE)),
+        observer=Pose2(*observer.pose("pose", (3,), OBSERVER_POSE)),
         observed_x=where[0],
         observed_y=where[1],
         observed_heading=where[2] if len(where) == 3 else None,
         range=distance,
         bearing=_bearing(m, "bearing", "give the direction of robot 2 from robot 1's heading in radians"),
-        sigma_range=_positive(m, "sigma_range", "m", SIGMA_RANGE),
-        sigma_bearing=_positive(m, "sigma_bearing", "rad", SIGMA_BEARING),
+        sigma_range=_positive(m, "sigma_range", "m", SIGMA_RANGE, SIGMA_RANGES),
+        sigma_bearing=_positive(m, "sigma_bearing", "rad", SIGMA_BEARING, SIGMA_BEARINGS),
         bearing_back=(
             _bearing(m, "bearing_back", "give radians, or leave it out")
             if "bearing_back" in m.values
@@ -278,12 +287,18 @@ def _optional(f: Fields, key: str, remedy: str) -> float | None:
     return f.number(key, remedy) if key in f.values else None
 
 
-def _positive(f: Fields, key: str, unit: str, default: float) -> float:
+def _positive(
+    f: Fields, key: str, unit: str, default: float, limits: tuple[float, float] = (0.0, inf)
+) -> float:
     value = _optional(f, key, f"give a positive number of {unit}, or leave it out")
     if value is None:
         return default
     if value <= 0:
         raise f.error(key, f"is {value:g} {unit}", "it must be positive; or leave it out")
+    low, high = limits
+    if not low <= value <= high:
+        remedy = f"it must be {low:g} to {high:.5g} {unit}; or leave it out"
+        raise f.error(key, f"is {value:g} {unit}", remedy)
     return value
 
 

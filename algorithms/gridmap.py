@@ -27,21 +27,26 @@ MAX_CELLS = 100_000_000  # 10,000 x 10,000: 100 MB of cells, the stated bound of
 MAX_SIDE = 65_535  # cells; 3.3 km at 0.05 m, and no side of a JPEG or GIF is longer
 
 
+FINEST, COARSEST = 0.0001, 100.0  # metres per cell; what lies outside is a mistake of units
+FARTHEST = 1e7  # metres from a frame's origin; UTM, in which maps of the open are kept, ends there
+MOST_TURN = 1000.0  # radians; a heading that was never wrapped may have grown large
+
+
 def check_size(width: int, height: int, what: str) -> None:
     """Raise TooLargeError for a grid of more than MAX_CELLS cells, or of more than MAX_SIDE on a side.
 
     A row costs time and memory of its own: 100 million rows of one cell took 8 s to read.
     """
-    if max(width, height) > MAX_SIDE:
-        raise TooLargeError(
-            f"{what} would be {width} x {height} cells; the limit of a side is {MAX_SIDE:,} cells. "
-            "Use a coarser resolution, or crop the map to what was seen"
-        )
     if width * height > MAX_CELLS:
-        raise TooLargeError(
-            f"{what} would be {width} x {height} cells; the limit is {MAX_CELLS:,} cells. "
-            "Use a coarser resolution, or crop the map to what was seen"
-        )
+        limit = f"{MAX_CELLS:,} cells"
+    elif max(width, height) > MAX_SIDE:
+        limit = f"{MAX_SIDE:,} cells on a side"
+    else:
+        return
+    raise TooLargeError(
+        f"{what} would be {width} x {height} cells; the limit is {limit}. "
+        "Use a coarser resolution, or crop the map to what was seen"
+    )
 
 
 def where(mask: BoolArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -74,8 +79,10 @@ class GridMap:
                 f"{self.name}: cells must be a non-empty (H, W) int8 array, "
                 f"not {self.cells.dtype} of shape {self.cells.shape}"
             )
-        if not (np.isfinite(self.resolution) and self.resolution > 0):
-            raise SettingError(f"{self.name}: resolution is {self.resolution} m; it must be > 0")
+        if not FINEST <= self.resolution <= COARSEST:
+            raise SettingError(
+                f"{self.name}: resolution is {self.resolution:g} m; it must be {FINEST:g} to {COARSEST:g} m"
+            )
         self.cells.flags.writeable = False
 
     def __reduce__(self) -> tuple[type[GridMap], tuple[CellArray, float, Pose2, str]]:

@@ -14,6 +14,9 @@ from algorithms.pose import FloatArray, Pose2, rotation, wrap_angle
 
 SIGMA_RANGE = 0.05  # metres; a laser range taken from the mean of a few salient points
 SIGMA_BEARING = 0.034907  # radians, 2°
+SIGMA_RANGES = (1e-6, 100.0)  # metres; what a deviation may be
+SIGMA_BEARINGS = (1e-6, pi)  # radians
+MOST_RANGE = 1e5  # metres
 OFF_THE_MAP = 5.0  # metres
 
 

@@ -67,6 +67,18 @@ BAD_YAML = {
     "resolution NaN": (header(resolution=math.nan), "resolution is '.nan', not a finite number"),
     "resolution infinite": (header(resolution=math.inf), "not a finite number"),
     "resolution huge": (header(resolution=None) + b"resolution: 1e999", "not a finite number"),
+    "resolution a kilometre": (
+        header(resolution=1000.0),
+        "resolution is 1000 m; give metres per pixel, 0.0001",
+    ),
+    "resolution beyond sense": (header(resolution=1e308), "resolution is 1e+308 m"),
+    "resolution a micrometre": (
+        header(resolution=1e-6),
+        "resolution is 1e-06 m; give metres per pixel, 0.0001",
+    ),
+    "resolution next to nothing": (header(resolution=5e-324), "resolution is 4.94066e-324 m"),
+    "origin far away": (header(origin=[1e308, 0, 0]), "which is more than 10,000 km away"),
+    "origin turned round and round": (header(origin=[0, 0, 1e300]), "turns by more than 1,000 rad"),
     "resolution null": (header(resolution=None) + b"resolution:\n", "resolution is empty"),
     "resolution a list": (header(resolution=[1]), "resolution"),
     "origin short": (header(origin=[0, 0]), "origin is [0, 0], not 3"),

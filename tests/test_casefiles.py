@@ -25,26 +25,34 @@ from algorithms.casefiles import (
     write_observations,
 )
 from algorithms.errors import InputFileError, SettingError
-from algorithms.gridmap import GridMap
+from algorithms.gridmap import FARTHEST, MOST_TURN, GridMap
 from algorithms.mapio import write_map
-from algorithms.observation import SIGMA_BEARING, SIGMA_RANGE, Observation
+from algorithms.observation import (
+    MOST_RANGE,
+    SIGMA_BEARING,
+    SIGMA_BEARINGS,
+    SIGMA_RANGE,
+    SIGMA_RANGES,
+    Observation,
+)
 from algorithms.pose import Pose2
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 positive = st.floats(min_value=0, exclude_min=True, allow_nan=False, allow_infinity=False)
 bearings = st.floats(-6.28, 6.28)
 maybe = st.one_of(st.none(), finite)
-poses = st.builds(Pose2, finite, finite, finite)
+places, turns = st.floats(-FARTHEST, FARTHEST), st.floats(-MOST_TURN, MOST_TURN)
+poses = st.builds(Pose2, places, places, turns)
 observations = st.builds(
     Observation,
     observer=poses,
-    observed_x=finite,
-    observed_y=finite,
-    range=st.floats(min_value=0, allow_infinity=False),
+    observed_x=places,
+    observed_y=places,
+    range=st.floats(0, MOST_RANGE),
     bearing=bearings,
-    observed_heading=maybe,
-    sigma_range=positive,
-    sigma_bearing=positive,
+    observed_heading=st.one_of(st.none(), turns),
+    sigma_range=st.floats(*SIGMA_RANGES),
+    sigma_bearing=st.floats(*SIGMA_BEARINGS),
     bearing_back=st.one_of(st.none(), bearings),
 )
 texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=30).map(str.strip)
@@ -166,6 +174,15 @@ BAD_OBSERVATION = {
     "sigma zero": (changed("0.1", "0"), "measurement.sigma_range is 0 m"),
     "sigma negative": (changed("0.2", "-0.2"), "measurement.sigma_bearing is -0.2 rad"),
     "bearing_back a word": (changed("1.2", "left"), "measurement.bearing_back is 'left'"),
+    "sigma tiny": (changed("0.1", "1e-320"), "sigma_range is 9.99989e-321 m; it must be 1e-06 to 100 m"),
+    "sigma huge": (changed("0.2", "1e300"), "sigma_bearing is 1e+300 rad; it must be 1e-06 to 3.1416 rad"),
+    "range huge": (changed("2.5", "1e308"), "measurement.range is 1e+308 m; give metres; 100,000 m"),
+    "observer far away": (
+        changed("1.0", "-1e308"),
+        "observer.pose is [-1e308, 2.0, 3.0], which is more than",
+    ),
+    "observed far away": (changed("5.0", "1e15"), "observed.pose is [4.0, 1e15, 6.0], which is more than"),
+    "observed turned round and round": (changed("6.0", "1e300"), "turns by more than 1,000 rad"),
     "misspelt": (changed("sigma_bearing", "sigma_bearnig"), "did you mean sigma_bearing?"),
     "capitals": (changed("observer", "Observer"), "did you mean observer?"),
     "pose misspelt": (changed("observed: {pose", "observed: {poes"), "did you mean pose?"),

@@ -29,7 +29,19 @@ def damaged(draw: st.DrawFn, good: list[bytes]) -> bytes:
                 data = data[:at] + draw(st.sampled_from(good))[at:]
             case "number":
                 put = draw(
-                    st.sampled_from([b"nan", b"1e9", b"-1", b"1e400", b"0x7", b"99999999999", b"\xff" * 4])
+                    st.sampled_from(
+                        [
+                            b"nan",
+                            b"1e9",
+                            b"-1",
+                            b"1e400",
+                            b"1e300",
+                            b"1e-310",
+                            b"0x7",
+                            b"99999999999",
+                            b"\xff" * 4,
+                        ]
+                    )
                 )
                 data = data[:at] + put + data[at:]
             case "text":

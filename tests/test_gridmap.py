@@ -49,7 +49,7 @@ def test_a_map_cannot_be_changed_behind_ones_back():
         grid([[0]]).cells[0, 0] = 100
 
 
-@pytest.mark.parametrize("resolution", [0.0, -1.0, float("nan"), float("inf")])
+@pytest.mark.parametrize("resolution", [0.0, -1.0, float("nan"), float("inf"), 1e308, 1e-320])
 def test_a_resolution_must_be_a_positive_number(resolution):
     with pytest.raises(SettingError, match="resolution"):
         grid([[0]], resolution=resolution)

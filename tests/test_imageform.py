@@ -10,7 +10,7 @@ import viser
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN
+from algorithms.gridmap import COARSEST, FINEST, FREE, MOST_TURN, OCCUPIED, UNKNOWN
 from algorithms.mapio import MapMeta, Shading, image_map_from_bytes, meta_to_bytes, parse_meta
 from algorithms.mapio.shading import MODES
 from algorithms.pose import Pose2
@@ -64,7 +64,7 @@ def desk(server):
 # ---- laws
 
 
-@given(names, st.floats(1e-4, 100), places, places, places, shadings)
+@given(names, st.floats(FINEST, COARSEST), places, places, st.floats(-MOST_TURN, MOST_TURN), shadings)
 def test_what_a_yaml_file_says_reads_back_to_the_bit(image, resolution, x, y, theta, shading):
     meta = MapMeta(image, resolution, Pose2(x, y, theta), shading)
     assert parse_meta("m.yaml", meta_to_bytes(meta)) == meta

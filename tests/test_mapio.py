@@ -16,7 +16,7 @@ from mapfiles import cells, encoded, header, load, pgm
 from PIL import Image
 
 from algorithms.errors import InputFileError
-from algorithms.gridmap import GridMap
+from algorithms.gridmap import COARSEST, FARTHEST, FINEST, MOST_TURN, GridMap
 from algorithms.mapio import (
     Shading,
     image_map_from_bytes,
@@ -28,15 +28,15 @@ from algorithms.mapio import (
 )
 from algorithms.pose import Pose2
 
-finite = st.floats(allow_nan=False, allow_infinity=False)
-positive = st.floats(min_value=0, exclude_min=True, allow_nan=False, allow_infinity=False)
+places, turns = st.floats(-FARTHEST, FARTHEST), st.floats(-MOST_TURN, MOST_TURN)
+origins = st.builds(Pose2, places, places, turns)
 shapes = hnp.array_shapes(min_dims=2, max_dims=2, max_side=9)
 greys = hnp.arrays(np.uint8, shapes)
 any_cells = st.one_of(
     hnp.arrays(np.int8, shapes, elements=st.integers(-1, 100)),
     hnp.arrays(np.int8, shapes, elements=st.sampled_from([-1, 0, 100])),
 )
-grids = st.builds(GridMap, any_cells, positive, st.builds(Pose2, finite, finite, finite))
+grids = st.builds(GridMap, any_cells, st.floats(FINEST, COARSEST), origins)
 
 
 # --- laws of the round trip ---

@@ -13,7 +13,7 @@ from typing import BinaryIO
 
 from algorithms.atomic import write_files
 from algorithms.errors import InputFileError, OutputError, SettingError, unreadable
-from algorithms.gridmap import CellArray, GridMap
+from algorithms.gridmap import COARSEST, FINEST, CellArray, GridMap
 from algorithms.mapio import fields
 from algorithms.mapio.image import read_pixels
 from algorithms.mapio.shading import MODES, GreyArray, Shading, cells_of, greys_of
@@ -98,7 +98,7 @@ def read_image(path: Path, resolution: float, origin: Pose2 = AT_ZERO, shading: 
 
     resolution : metres per pixel
     origin     : pose of the lower-left corner of the image in the map's frame
-    raises     : InputFileError, TooLargeError; SettingError where the resolution is not positive
+    raises     : InputFileError, TooLargeError; SettingError where the resolution is none
     """
     path = Path(path)
     return _read_image(path, MapMeta(path.name, resolution, origin, shading), path.stem)
@@ -186,7 +186,10 @@ def parse_meta(source: str, data: bytes) -> MapMeta:
     resolution = f.number("resolution", "give metres per pixel, e.g. 0.05")
     if resolution <= 0:
         raise f.error("resolution", f"is {resolution:g} m", "give a positive number, e.g. 0.05")
-    x, y, yaw = f.numbers("origin", (3,), "give [x, y, yaw] of the lower-left pixel; m, m, rad")
+    if not FINEST <= resolution <= COARSEST:
+        remedy = f"give metres per pixel, {FINEST:g} to {COARSEST:g}, e.g. 0.05"
+        raise f.error("resolution", f"is {resolution:g} m", remedy)
+    x, y, yaw = f.pose("origin", (3,), "give [x, y, yaw] of the lower-left pixel; m, m, rad")
     negate = f.flag("negate", "give 0, or 1 where white is occupied")
     occupied = f.number("occupied_thresh", "give a number in [0, 1], e.g. 0.65")
     free = f.number("free_thresh", "give a number in [0, 1], e.g. 0.196")

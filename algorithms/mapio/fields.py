@@ -18,6 +18,7 @@ from typing import Any
 import yaml
 
 from algorithms.errors import InputFileError
+from algorithms.gridmap import FARTHEST, MOST_TURN
 
 MAX_YAML_BYTES = 32 * 1024  # ours have 400 bytes, and 64 sightings less than 30,000
 MAX_DEPTH = 20  # of lists and mappings in each other; ours are 3 deep
@@ -123,6 +124,17 @@ class Fields:
             wanted = " or ".join(str(length) for length in lengths)
             raise self.error(key, f"is {shown(value)}, not {wanted} finite numbers", remedy)
         return finite
+
+    def pose(self, key: str, lengths: tuple[int, ...], remedy: str) -> list[float]:
+        """[x, y] or [x, y, yaw] within FARTHEST and MOST_TURN; metres, metres, radians."""
+        pose = self.numbers(key, lengths, remedy)
+        if any(abs(metres) > FARTHEST for metres in pose[:2]):
+            found = f"is {shown(self.values[key])}, which is more than {FARTHEST / 1000:,.0f} km away"
+            raise self.error(key, found, remedy)
+        if any(abs(yaw) > MOST_TURN for yaw in pose[2:]):
+            found = f"is {shown(self.values[key])}, which turns by more than {MOST_TURN:,.0f} rad"
+            raise self.error(key, found, remedy)
+        return pose
 
     def flag(self, key: str, remedy: str) -> bool:
         """True or false; a whole number counts as in C, and 0 is false."""

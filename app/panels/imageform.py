@@ -16,7 +16,7 @@ import numpy as np
 import viser
 
 from algorithms.errors import SettingError
-from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, CellArray
+from algorithms.gridmap import COARSEST, FARTHEST, FINEST, FREE, FREE_UP_TO, OCCUPIED_FROM, CellArray
 from algorithms.mapio import GreyImage, MapMeta, Shading, grey_image, meta_to_bytes, parse_meta
 from algorithms.mapio.shading import MODES
 from algorithms.pose import Pose2
@@ -72,13 +72,13 @@ class ImageForm:
             self._resolution = gui.add_number(
                 "resolution (m)",
                 RESOLUTION,
-                min=0.0001,
-                max=100.0,
+                min=FINEST,
+                max=COARSEST,
                 step=0.0001,
                 hint="Metres per pixel. 0.05 m is usual; a wrong one makes a wrong merge.",
             )
             corner = "of the image's lower left corner, in this robot's own frame. 0 where nobody knows."
-            wide = {"min": -1e6, "max": 1e6, "step": 0.0001}
+            wide = {"min": -FARTHEST, "max": FARTHEST, "step": 0.0001}
             self._x = gui.add_number("origin x (m)", 0.0, hint=f"x {corner}", **wide)
             self._y = gui.add_number("origin y (m)", 0.0, hint=f"y {corner}", **wide)
             self._yaw = gui.add_number(

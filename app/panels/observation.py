@@ -9,25 +9,30 @@ from typing import Any
 
 import viser
 
-from algorithms.observation import Encounter, Observation
+from algorithms.gridmap import FARTHEST
+from algorithms.observation import MOST_RANGE, SIGMA_BEARINGS, SIGMA_RANGES, Encounter, Observation
 from app import words
 from app.draft import Draft
 from app.inputs import Inputs
 from app.palette import LIGHT, QUIET
 from app.panels.tables import box, table
 
-FAR = 1e5  # metres
 # field -> label, hint, least, most, step; angles in degrees
 FIELDS: dict[str, tuple[str, str, float, float, float]] = {
-    "x1": ("robot 1: x (m)", "In map 1.", -FAR, FAR, 0.01),
-    "y1": ("robot 1: y (m)", "In map 1.", -FAR, FAR, 0.01),
+    "x1": ("robot 1: x (m)", "In map 1.", -FARTHEST, FARTHEST, 0.01),
+    "y1": ("robot 1: y (m)", "In map 1.", -FARTHEST, FARTHEST, 0.01),
     "turn1": ("robot 1: heading (°)", "Counter-clockwise from map 1's x axis.", -360, 360, 0.1),
-    "range": ("range r (m)", "Of robot 2 from robot 1.", 0, FAR, 0.01),
+    "range": ("range r (m)", "Of robot 2 from robot 1.", 0, MOST_RANGE, 0.01),
     "bearing": ("bearing β (°)", "Counter-clockwise from robot 1's heading.", -360, 360, 0.1),
-    "sigma_range": ("σ_r of the range (m)", "One standard deviation.", 0.001, 100, 0.005),
-    "sigma_bearing": ("σ_β of the bearing (°)", "One standard deviation.", 0.01, 180, 0.1),
-    "x2": ("robot 2: x (m)", "In map 2.", -FAR, FAR, 0.01),
-    "y2": ("robot 2: y (m)", "In map 2.", -FAR, FAR, 0.01),
+    "sigma_range": ("σ_r of the range (m)", "One standard deviation.", *SIGMA_RANGES, 0.005),
+    "sigma_bearing": (
+        "σ_β of the bearing (°)",
+        "One standard deviation.",
+        *map(degrees, SIGMA_BEARINGS),
+        0.1,
+    ),
+    "x2": ("robot 2: x (m)", "In map 2.", -FARTHEST, FARTHEST, 0.01),
+    "y2": ("robot 2: y (m)", "In map 2.", -FARTHEST, FARTHEST, 0.01),
     "turn2": ("robot 2: heading (°)", "From map 2's x axis; the method does not need it.", -360, 360, 0.1),
 }
 ANGLES = {"turn1", "bearing", "sigma_bearing", "turn2"}
