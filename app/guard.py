@@ -27,6 +27,7 @@ from websockets.http11 import Response
 from app.access import HEADERS, PAGE_POLICY, Access, Answer, Asked
 from app.arrivals import PATH, Arrivals, may_come
 from app.entrance import served
+from app.frames import bounded
 from app.gate import MAX_FRAME, Gate
 from app.logs import quiet_handshakes
 from app.mishap import watched
@@ -85,6 +86,7 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
                 among.discard(connection)
 
         options["max_size"] = MAX_FRAME
+        options["create_connection"] = bounded(gate)
         return real_serve(handle, at, on, process_request=ask, ssl=access.tls, **options)
 
     shim = SimpleNamespace(

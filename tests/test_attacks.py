@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import math
 import struct
@@ -16,9 +17,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strangers import Stand, Visitor, standing
 from viser import _messages
+from websockets.frames import Frame, Opcode
 from wire import CAMERA, until
 
 from app.access import Access
+from app.frames import EARNS, MOST, Allowance
 from app.gate import MAX_FRAME, MAX_UPLOAD
 from app.guard import guarded_server
 from app.heard import CHUNK, MAX_PARTS, MAX_WORDS, fault
@@ -216,6 +219,79 @@ def test_who_sends_too_fast_is_slowed_and_loses_nothing(ours):
     assert ours.server.gate.dropped["slowed"] > before
     assert visitor.room.slider.value == 599 % 11
     visitor.socket.close()
+
+
+# --- frames that are no messages --------------------------------------------------------------------
+
+
+def raw(opcode: Opcode, data: bytes = b"", fin: bool = True) -> bytes:
+    return Frame(opcode, data, fin).serialize(mask=True)
+
+
+def in_frames(message: bytes, between: int) -> bytes:
+    """A message in two frames, with empty ones between them."""
+    first, last = raw(Opcode.BINARY, message[:1], fin=False), raw(Opcode.CONT, message[1:])
+    return first + raw(Opcode.CONT, fin=False) * between + last
+
+
+EMPTY: dict[str, bytes] = {
+    "a message of empty frames": in_frames(b"\x80", 5000),
+    "pings": raw(Opcode.PING, b"x" * 10) * 5000,
+    "answers to no ping": raw(Opcode.PONG) * 5000,
+}
+
+
+@pytest.mark.parametrize("flood", EMPTY.values(), ids=EMPTY)
+def test_frames_that_say_nothing_end_their_connection_and_no_other(ours, flood):
+    other, visitor = Visitor(ours), Visitor(ours)
+    before = ours.server.gate.dropped["frames"]
+    with contextlib.suppress(OSError):  # it may end before all is sent
+        visitor.socket.socket.sendall(flood)
+    visitor.hears_out()
+    assert visitor.socket.close_code == 1006
+    assert other.has_been_heard()
+    other.socket.close()
+    assert ours.server.gate.dropped["frames"] == before + 1
+
+
+def test_viser_as_it_comes_takes_any_number_of_them(stock):
+    visitor = Visitor(stock)
+    fields = {"type": "GuiUpdateMessage", "uuid": visitor.room.slider._impl.uuid, "updates": {"value": 7}}
+    visitor.socket.socket.sendall(in_frames(msgspec.msgpack.encode(fields), 5000))
+    visitor.socket.socket.sendall(EMPTY["answers to no ping"])
+    assert visitor.has_been_heard()
+    assert visitor.room.slider.value == 7
+    visitor.socket.close()
+
+
+def test_a_message_may_come_in_pieces(ours):
+    visitor = Visitor(ours)
+    fields = {"type": "GuiUpdateMessage", "uuid": visitor.room.slider._impl.uuid, "updates": {"value": 7}}
+    visitor.socket.socket.sendall(in_frames(msgspec.msgpack.encode(fields), 500))
+    assert visitor.has_been_heard()
+    assert visitor.room.slider.value == 7
+    visitor.socket.close()
+
+
+def test_pieces_as_browsers_send_them_may_be_any_number_at_any_speed():
+    allowance = Allowance(clock=lambda: 0.0)  # no time goes by
+    for _ in range(200):
+        pieces = [Frame(Opcode.BINARY, bytes(4 * EARNS), fin=False)]
+        pieces += [Frame(Opcode.CONT, bytes(size), fin=False) for size in (1, 2 * EARNS) * 400]
+        assert all(map(allowance.bears, pieces))
+
+
+def test_who_sends_few_empty_ones_may_go_on_and_no_message_has_more_than_enough():
+    now = [0.0]
+    allowance = Allowance(clock=lambda: now[0])
+    borne = 0
+    while allowance.bears(Frame(Opcode.CONT, b"", fin=False)):
+        now[0] += 1.0
+        borne += 1
+    assert borne == MOST
+    for _ in range(3 * MOST):
+        now[0] += 1.0
+        assert not allowance.bears(Frame(Opcode.CONT, b"", fin=False))
 
 
 # --- what an upload may do --------------------------------------------------------------------------

@@ -11,6 +11,7 @@ import pytest
 import viser
 import viser.infra._infra as infra
 import websockets.asyncio.server
+import websockets.protocol
 from viser import _gui_handles, _messages
 from viser._gui_api import GuiApi, _FileUploadState
 
@@ -44,6 +45,20 @@ ASSUMPTIONS: dict[str, Callable[[], bool]] = {
     ),
     "frames come by recv, one at a time, and as bytes": lambda: (
         "raw = await websocket.recv()" in source(infra._message_consumer)
+    ),
+    "a connection is of a kind that can be given": lambda: (
+        "create_connection" in inspect.signature(websockets.asyncio.server.serve).parameters
+        and "self.protocol = protocol"
+        in source(websockets.asyncio.server.ServerConnection.__mro__[1].__init__)
+    ),
+    "every frame that comes is taken by recv_frame, which may refuse it": lambda: (
+        "self.recv_frame(frame)" in source(websockets.protocol.Protocol.parse)
+        and "except ProtocolError as exc:" in source(websockets.protocol.Protocol.parse)
+    ),
+    "a handshake that fails is told to this logger, in these words": lambda: (
+        'logging.getLogger("websockets.server")' in source(websockets.asyncio.server.Server.__init__)
+        and '"connection handler failed"' in source(websockets.asyncio.server.Server.conn_handler)
+        and '"opening handshake failed"' in source(websockets.asyncio.server.Server.conn_handler)
     ),
     "a tab's controls are found by their id": lambda: (
         "self._gui_input_handle_from_uuid.get(message.uuid, None)" in GUI
