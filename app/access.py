@@ -111,8 +111,10 @@ class Access:
                 return _asking(wrong=bool(given))
             secure = self.tls is not None or asked.headers.get("x-forwarded-proto") == "https"
             # No path: it is then that of the page, which behind a proxy may lie in a folder.
+            # No redirection either: whoever follows a link from elsewhere would come without the cookie.
             kept = f"{self.cookie}={self.token}; HttpOnly; SameSite=Strict{'; Secure' if secure else ''}"
-            return Answer(303, headers={"Location": "./", "Set-Cookie": kept, "Cache-Control": "no-store"})
+            told = {"Set-Cookie": kept, "Cache-Control": "no-store", "Content-Security-Policy": ASKING_POLICY}
+            return Answer(200, _GO_ON, told)
         if query and not asked.upgrade:
             # viser's page would connect to, or play, whatever another address in the query names
             return Answer(303, headers={"Location": "./"})
@@ -237,6 +239,10 @@ def _same(origin: str | None, host: str) -> bool:
     usual = PORTS.get(scheme)
     (name, port), (asked_name, asked_port) = _place(place), _place(host)
     return bool(usual and name) and (name, port or usual) == (asked_name, asked_port or usual)
+
+
+_GO_ON = """<!doctype html><html lang="en"><meta charset="utf-8"><title>mapmeld</title>
+<meta http-equiv="refresh" content="0;url=./"><p><a href="./">Go on</a></html>"""
 
 
 def _asking(wrong: bool) -> Answer:

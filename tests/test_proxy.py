@@ -56,7 +56,7 @@ class Outside:
     def enter(self):
         """The cookie that the token is changed for, and all that was said with it."""
         status, said = self.get(f"/maps/?token={TOKEN}")
-        assert status == 303
+        assert status == 200
         return re.search(r"(?i)^set-cookie: ([^;]*)", said, re.M)[1], said
 
 
@@ -88,7 +88,7 @@ def outside(request, page, certificate, tmp_path):
 def test_behind_the_example_the_token_lets_in_and_nothing_else_does(outside, tmp_path):
     assert outside.get("/maps/")[0] == 401
     cookie, said = outside.enter()
-    assert re.search(r"(?i)^location: \./\r", said, re.M)  # whatever the folder
+    assert 'content="0;url=./"' in said  # whatever the folder
     assert "; Secure" in said
     assert "Path=" not in said
     status, said = outside.get("/maps/", Cookie=cookie)

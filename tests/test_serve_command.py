@@ -11,6 +11,7 @@ import pytest
 from commandline import ROOT
 
 from app.cli import main
+from app.opening import browser
 
 
 def as_in_a_terminal():
@@ -59,3 +60,29 @@ def test_a_lesson_with_a_broken_text_is_refused_before_anyone_sees_it(tmp_path, 
     said = capsys.readouterr().err
     assert "01-mine.md: picture is 'hoof'; known are " in said
     assert said.count("\n") == 1
+
+
+def test_a_browser_that_is_opened_has_no_token_on_its_command_line(monkeypatch, tmp_path):
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    url = "http://127.0.0.1:8080/?token=a-token-that-nobody-guesses"
+    with browser(url, secret=True):
+        (told,) = opened
+        (page,) = tmp_path.glob("*/open.html")
+        assert told == page.as_uri()
+        assert f'content="0;url={url}"' in page.read_text()
+        if os.name == "posix":
+            assert page.stat().st_mode & 0o077 == 0
+            assert page.parent.stat().st_mode & 0o077 == 0
+    assert list(tmp_path.iterdir()) == []
+    with browser("http://127.0.0.1:8080/", secret=False):
+        assert opened[1:] == ["http://127.0.0.1:8080/"]
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_where_nothing_can_be_written_no_browser_is_opened_and_the_page_is_there(monkeypatch, tmp_path):
+    monkeypatch.setattr("webbrowser.open", lambda _: pytest.fail("with the token"))
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "gone"))
+    with browser("http://127.0.0.1:8080/?token=a-token-that-nobody-guesses", secret=True):
+        assert list(tmp_path.iterdir()) == []

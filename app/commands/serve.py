@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import signal
 import sys
 import threading
-import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -69,6 +69,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Serve until Ctrl-C."""
     from app import logs
+    from app.opening import browser
     from app.server import make_server
     from app.takeaway import TAKEAWAY
 
@@ -84,9 +85,9 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # whoever asks it to end, it ends whole
     try:
         print(f"mapmeld is at {url}   ({reach(args.host, access)}; Ctrl-C ends it)", flush=True)
-        if not args.no_browser and _has_display():
-            webbrowser.open(url)
-        threading.Event().wait()
+        wanted = not args.no_browser and _has_display()
+        with browser(url, secret=bool(access.token)) if wanted else contextlib.nullcontext():
+            threading.Event().wait()
     except KeyboardInterrupt:
         TAKEAWAY.finish()
         server.stop()

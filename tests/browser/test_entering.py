@@ -14,7 +14,9 @@ import viser
 from driver import PATIENCE, READY
 from playwright.sync_api import Browser, Page
 
+from app import opening
 from app.access import access_for
+from app.commands.serve import address
 from app.server import make_server
 
 pytestmark = pytest.mark.browser
@@ -62,6 +64,21 @@ def test_with_a_certificate_and_a_token_the_page_opens_for_who_has_it(page, samp
         page.reload()  # and the cookie lets it in again
         page.wait_for_function(READY, timeout=1000 * PATIENCE)
         assert [why for why in server.gate.dropped if not why.startswith("request")] == []
+    finally:
+        server.stop()
+
+
+def test_a_link_with_the_token_lets_in_whoever_follows_it_from_a_file_or_another_site(
+    page, sample, monkeypatch
+):
+    monkeypatch.setattr("webbrowser.open", page.goto)
+    monkeypatch.setenv("MAPMELD_TOKEN", TOKEN)
+    access = access_for("127.0.0.1")
+    server = make_server(port=0, initial=sample, access=access)
+    try:
+        with opening.browser(address("127.0.0.1", server.get_port(), access), secret=True):
+            page.wait_for_function(READY, timeout=1000 * PATIENCE)
+        assert page.url == f"http://127.0.0.1:{server.get_port()}/"
     finally:
         server.stop()
 
