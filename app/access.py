@@ -9,6 +9,7 @@ import hmac
 import os
 import re
 import secrets
+import socket
 import ssl
 import urllib.parse
 from collections.abc import Iterable, Mapping
@@ -136,10 +137,15 @@ def same(given: str, wanted: str) -> bool:
 
 def is_local(host: str) -> bool:
     """Whether an address to listen at is this machine's alone."""
+    return host.lower() == "localhost" or ip_address(numeric(host) or "0.0.0.0").is_loopback
+
+
+def numeric(host: str) -> str:
+    """An address as it is usually written, "127.0.0.1" for "127.1"; "" for a name, which anyone may own."""
     try:
-        return host == "localhost" or ip_address(host).is_loopback
-    except ValueError:
-        return False
+        return str(socket.getaddrinfo(host, None, flags=socket.AI_NUMERICHOST)[0][4][0]) if host else ""
+    except (OSError, UnicodeError):
+        return ""
 
 
 def access_for(
@@ -155,11 +161,18 @@ def access_for(
     names      : further host names, those of a proxy in front
     raises     : InputFileError, SettingError
     """
+    for name in names:
+        if not _name(name):
+            raise SettingError(
+                f"--behind {name!r}: this is no host name; "
+                "give that of the proxy alone, such as robots.example"
+            )
     token = _given_token(token_file)
     local = is_local(host)
     if not token and (names or not local):
         token = secrets.token_urlsafe(TOKEN_BYTES)
-    allowed = LOOPBACK | {host} | {_name(name) for name in names} if local else None
+    own = {host.lower(), numeric(host)} - {""}
+    allowed = LOOPBACK | own | {_name(name) for name in names} if local else None
     return Access(allowed, token, _tls(certfile, keyfile))
 
 

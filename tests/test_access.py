@@ -220,16 +220,46 @@ def test_the_start_line_says_where_and_for_whom():
     locked = Access(None, TOKEN)
     assert address("0.0.0.0", 80, locked) == f"http://127.0.0.1:80/?token={TOKEN}"
     assert address("::1", 80, Access()) == "http://[::1]:80/"
+    assert address("::", 80, Access()) == "http://[::1]:80/"
+    assert address("", 80, Access()) == "http://127.0.0.1:80/"
+    assert address("127.1", 80, Access()) == "http://127.0.0.1:80/"
+    assert address("robot.lan", 80, Access()) == "http://robot.lan:80/"
+    assert reach("LOCALHOST", Access(token=TOKEN)) == "for this machine with the token"
     assert reach("0.0.0.0", locked) == "for everyone on the network with the token, unencrypted"
     assert reach("127.0.0.1", locked) == "for this machine with the token"
 
 
 @pytest.mark.parametrize(
     ("host", "local"), [("127.0.0.1", True), ("127.9.9.9", True), ("::1", True), ("localhost", True),
+                        ("LOCALHOST", True), ("127.1", True), ("", False), ("0", False), ("a b", False),
                         ("0.0.0.0", False), ("192.168.1.4", False), ("robot.lan", False), ("::", False)]
 )  # fmt: skip
 def test_only_addresses_that_never_leave_this_machine_are_its_own(host, local):
     assert is_local(host) is local
+
+
+@pytest.mark.parametrize("host", ["127.1", "LOCALHOST", "127.9.9.9"])
+def test_a_page_for_this_machine_answers_to_the_name_it_was_started_with(host):
+    access = access_for(host)
+    assert access.token == ""
+    for name in (host, host.lower(), "127.0.0.1", "localhost"):
+        assert ask(access, host=f"{name}:8080") is None
+    assert ask(access, host="evil.example") == 421
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["", "*", "*.example", "https://x.example/maps", "x.example/maps", "a b", "a,b", "u@x.example", "::1"],
+)
+def test_what_is_no_host_name_is_not_taken_for_that_of_a_proxy(name):
+    with pytest.raises(SettingError, match="this is no host name; give that of the proxy alone, such as"):
+        access_for("127.0.0.1", names=("robots.example", name))
+
+
+@pytest.mark.parametrize("name", ["robots.example", "Robots.Example:8443", "10.0.0.7", "[::1]:80", "robot_1"])
+def test_a_proxy_has_a_name_or_an_address_and_a_port_if_it_likes(name):
+    access = access_for("127.0.0.1", names=(name,))
+    assert ask(access, host=name, cookie=f"{access.cookie}={access.token}") is None
 
 
 def test_a_taken_port_is_an_error_that_says_what_to_do():

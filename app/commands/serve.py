@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.access import TOKEN_VARIABLE, Access, access_for, is_local
+from app.access import TOKEN_VARIABLE, Access, access_for, is_local, numeric
 from app.usage import Parser
 
 if TYPE_CHECKING:
@@ -97,7 +97,8 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
 
 def address(host: str, port: int, access: Access) -> str:
     """Where a browser on this machine finds the page, with the token that lets it in."""
-    shown = LOCAL if host in ("0.0.0.0", "::", "") else host
+    named = numeric(host) or host
+    shown = {"0.0.0.0": LOCAL, "": LOCAL, "::": "::1"}.get(named, named)  # of all addresses this machine's
     at = f"{'https' if access.tls else 'http'}://{f'[{shown}]' if ':' in shown else shown}:{port}/"
     return f"{at}?token={access.token}" if access.token else at
 
