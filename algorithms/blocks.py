@@ -14,6 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from algorithms.errors import TooLargeError
 from algorithms.kernels import fast_kernel, spread
 from algorithms.objective import PAD, Float32Array, Lookup, Objective, Side
 from algorithms.pose import FloatArray, rotation, wrap_angles
@@ -21,6 +22,7 @@ from algorithms.window import CoupledWindow
 
 IntArray = NDArray[np.int64]
 
+MOST_ROOTS = 10_000_000  # blocks to begin with: half a gigabyte; a usual sighting makes thousands
 LEVELS = 4  # the coarsest blocks are 16 × 16 × 16 transforms
 RADII = (1, 2, 3, 4, 6, 8, 11, 16, 22, 32)  # cells; a table of maxima is made for each that is needed
 MERGE_FROM = 1  # from this level on, points that lie close together are looked up as one
@@ -104,9 +106,15 @@ class Lattice:
         )
 
     def roots(self) -> IntArray:
-        """(P, 3) the coarsest blocks."""
-        count = self.side // 2**self.levels
-        axes = np.arange(self.turns // 2**self.levels), np.arange(count), np.arange(count)
+        """(P, 3) the coarsest blocks; raises TooLargeError where they are too many."""
+        count, sectors = self.side // 2**self.levels, self.turns // 2**self.levels
+        blocks = sectors * count**2
+        if blocks > MOST_ROOTS:
+            raise TooLargeError(
+                f"the sighting leaves the seen robot {self.disc:.3g} m around its place, which is {blocks:,} "
+                f"blocks of transforms at a resolution of {self.cell:g} m; the limit is {MOST_ROOTS:,}. Use a coarser resolution, or smaller deviations of the sighting"
+            )
+        axes = np.arange(sectors), np.arange(count), np.arange(count)
         return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
 
     @staticmethod

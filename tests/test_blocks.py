@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drawn import (
@@ -20,6 +22,7 @@ from algorithms import kernels
 from algorithms.agreement import AgreementConfig, make_agreement
 from algorithms.augment import AugmentConfig
 from algorithms.blocks import Bounder, Lattice
+from algorithms.errors import TooLargeError
 from algorithms.gridmap import GridMap
 from algorithms.objective import Lookup
 from algorithms.observation import Encounter, encounter
@@ -93,6 +96,17 @@ def test_the_coarsest_blocks_hold_every_transform_once(problem):
     numbers = members_of(lattice.roots(), lattice.levels)
     flat = np.ravel_multi_index(tuple(numbers.T), (lattice.turns, lattice.side, lattice.side))
     assert np.array_equal(np.sort(flat), np.arange(lattice.turns * lattice.side**2))
+
+
+@settings(max_examples=20)
+@given(problems(side=8), st.floats(1e6, 1e9))
+def test_a_window_of_more_blocks_than_memory_holds_is_refused_with_a_remedy(problem, wide):
+    # the disc of a sighting of metres, in cells of a tenth of a millimetre
+    lattice = Lattice(problem.objective, replace(problem.window, k=wide))
+    with pytest.raises(
+        TooLargeError, match=r"blocks of transforms .* coarser resolution, or smaller deviations"
+    ):
+        lattice.roots()
 
 
 @settings(max_examples=60)
