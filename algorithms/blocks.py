@@ -112,7 +112,8 @@ class Lattice:
         if blocks > MOST_ROOTS:
             raise TooLargeError(
                 f"the sighting leaves the seen robot {self.disc:.3g} m around its place, which is {blocks:,} "
-                f"blocks of transforms at a resolution of {self.cell:g} m; the limit is {MOST_ROOTS:,}. Use a coarser resolution, or smaller deviations of the sighting"
+                f"blocks of transforms at a resolution of {self.cell:g} m; the limit is {MOST_ROOTS:,}. "
+                "Use a coarser resolution, or smaller deviations of the sighting"
             )
         axes = np.arange(sectors), np.arange(count), np.arange(count)
         return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
