@@ -53,6 +53,7 @@ def bounded(gate: Gate) -> type[ServerConnection]:
             def recv_frame(frame: Frame) -> None:
                 if not allowance.bears(frame):
                     gate.drop("frames")
+                    self.protocol.data_to_send()  # a thousand answers to pings, which nobody hears any more
                     self.transport.abort()
                     raise ProtocolError("more frames than a browser sends")
                 take(frame)

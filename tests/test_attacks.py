@@ -242,7 +242,7 @@ EMPTY: dict[str, bytes] = {
 
 
 @pytest.mark.parametrize("flood", EMPTY.values(), ids=EMPTY)
-def test_frames_that_say_nothing_end_their_connection_and_no_other(ours, flood):
+def test_frames_that_say_nothing_end_their_connection_and_no_other(ours, flood, caplog):
     other, visitor = Visitor(ours), Visitor(ours)
     before = ours.server.gate.dropped["frames"]
     with contextlib.suppress(OSError):  # it may end before all is sent
@@ -252,6 +252,7 @@ def test_frames_that_say_nothing_end_their_connection_and_no_other(ours, flood):
     assert other.has_been_heard()
     other.socket.close()
     assert ours.server.gate.dropped["frames"] == before + 1
+    assert caplog.text == ""
 
 
 def test_viser_as_it_comes_takes_any_number_of_them(stock):
