@@ -16,6 +16,7 @@ import traceback
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
 from math import inf
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from threading import Lock
 from time import monotonic
@@ -112,7 +113,8 @@ class _Worker:
         line, theirs = SPAWN.Pipe()
         process = SPAWN.Process(target=_serve, args=(theirs,), name="mapmeld-merge", daemon=True)
         try:
-            process.start()
+            with _deaf():
+                process.start()
         except BaseException:
             line.close()
             raise
@@ -160,6 +162,20 @@ class _Worker:
         process = self._process
         if process is not None:
             process.kill()
+
+
+@contextlib.contextmanager
+def _deaf() -> Iterator[None]:
+    """A process that starts here does not hear Ctrl-C, not even before its first line: this one ends it."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    resource_tracker.ensure_running()  # it would have this thread hear again
+    heard = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, heard)
 
 
 _numbers = itertools.count()
@@ -300,7 +316,7 @@ class _Tab:
 
 
 def _serve(line: Connection) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the first process hears it, and ends this one
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # see _deaf
     _bound_memory()
     tabs: dict[int, _Tab] = {}
     with contextlib.suppress(EOFError, OSError):  # the first process is gone
