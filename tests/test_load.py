@@ -95,7 +95,7 @@ def test_a_browser_that_is_killed_frees_its_session(server):
 def test_who_says_hello_again_and_again_gets_nothing_more_and_leaves_nothing_behind(server):
     def pages() -> int:
         gc.collect()
-        return sum(isinstance(thing, Page) for thing in gc.get_objects())
+        return sum(type(thing) is Page for thing in gc.get_objects())
 
     before = pages()
     tab = WireTab(server.get_port())

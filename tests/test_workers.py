@@ -198,7 +198,7 @@ def test_what_a_tab_had_is_let_go_of_when_it_goes(workers, bench, job):
 
 def maps_held() -> Iterator[Step]:
     """How many maps the process holds."""
-    maps = sum(isinstance(thing, GridMap) for thing in gc.get_objects())
+    maps = sum(type(thing) is GridMap for thing in gc.get_objects())
     yield Step("observe", ObservationDetail(()), float(maps))
 
 

@@ -178,19 +178,24 @@ def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(ta
     tab.press("Show everything")
     width = tab.page.locator("#mapmeld-ink").bounding_box()["width"]
     far = tab.page.get_by_label("T: Δx (m)", exact=True)
+
+    def lies() -> list[float]:
+        return tab.page.evaluate("() => [mapmeld.mov.x, mapmeld.mov.y]")
+
+    right = [lies()[0] - field(tab, "T: Δx (m)") + x, lies()[1] - field(tab, "T: Δy (m)") + y]
     far.fill(f"{x + 60:.2f}")
     far.press("Enter")
+    settle(lambda: lies()[0] == pytest.approx(right[0] + 60, abs=0.02), "the number")
     settle(
         lambda: ink["x"] < tab.page.evaluate("() => mapmeld.pixel([0, 0], 'mov')[0]") < ink["x"] + width,
         "the camera to take in a map that was typed out of the picture",
     )
-    lower = tab.page.evaluate("() => mapmeld.mov.y") - field(tab, "T: Δy (m)") + y
     for label, value in (("T: Δx (m)", x), ("T: Δy (m)", y)):
         box = tab.page.get_by_label(label, exact=True)
         box.fill(f"{value:.2f}")
         box.press("Enter")
+    settle(lambda: lies() == pytest.approx(right, abs=0.02), "both numbers")
     settle(lambda: tab.state.startswith("By hand, would be merged: "), "the right place, typed")
-    settle(lambda: tab.page.evaluate("() => mapmeld.mov.y") == pytest.approx(lower, abs=0.02), "both numbers")
     tab.page.evaluate("() => document.activeElement.blur()")
     tab.page.keyboard.press("ArrowRight")
     settle(lambda: field(tab, "T: Δx (m)") == pytest.approx(x + 0.05, abs=0.012), "one cell to the right")

@@ -7,8 +7,10 @@ from dataclasses import replace
 import pytest
 from driver import settle
 
-from algorithms.errors import NoAnswerError
+from algorithms.baselines.detectors import OrbConfig
+from algorithms.baselines.features import FeatureConfig, MatchConfig
 from algorithms.methods import METHODS
+from app.page import Page
 from app.palette import LIGHT, css
 
 pytestmark = pytest.mark.browser
@@ -45,16 +47,16 @@ def test_a_method_without_an_answer_refuses_and_takes_the_old_answer_away(tab, m
     tab.wait_for("accepted")
     assert "Difference" in tab.text
 
-    def blind(*_):
-        raise NoAnswerError("no two places of these maps are alike")
-        yield
-
-    monkeypatch.setitem(METHODS, "orb", replace(METHODS["orb"], run=blind))
+    job = Page._job
+    blind = FeatureConfig(detector=OrbConfig(contrast=100), match=MatchConfig(least=50))
+    monkeypatch.setattr(Page, "_job", lambda page, **how: replace(job(page, **how), config=blind))
     tab.choose("Method", METHODS["orb"].title)
     tab.wait_for("refused")
-    assert tab.state == "Refused: no two places of these maps are alike."
+    said = tab.state
+    assert said.startswith("Refused: ")
+    assert "agree on a transform, and 50 must" in said
     settle(lambda: "Difference" not in tab.text, "the comparison to go")
     settle(lambda: "After a merge it can be taken away" in tab.text, "nothing to take away")
-    settle(lambda: tab.text.count("Refused: no two places of these maps are alike.") == 2, "the reason")
+    settle(lambda: tab.text.count(said) == 2, "the reason")
     tab.page.get_by_role("button", name="Undo").click()
     tab.wait_for("accepted")
