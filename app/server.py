@@ -28,6 +28,7 @@ log = logging.getLogger(__name__)
 
 
 MOST_TABS = 64  # about 8 MB each, and what its maps and results take
+WARM = 2  # processes for merges that are there from the start: a second tab need not wait for its own
 SPARE = 8  # connections more, so that a tab too many is told so
 
 
@@ -97,10 +98,11 @@ def warm_up() -> None:
     cells[[0, -1], :], cells[:, [0, -1]] = OCCUPIED, OCCUPIED
     room = GridMap(cells, 0.1)
     seen = Observation(Pose2(2.0, 2.0), 3.0, 2.0, 1.0, 0.0)
-    bench = workers.COMMON.bench()
+    benches = [workers.COMMON.bench() for _ in range(WARM)]
     try:
-        for _ in bench.steps(Job(room, room, (seen,), None), Asker()):
-            pass
+        for bench in benches:  # each has a process of its own, as long as the others are there
+            for _ in bench.steps(Job(room, room, (seen,), None), Asker()):
+                pass
         for _ in Job(room, room, (seen,), None).run({}):  # here, too: for what a hand moves, and the lesson
             pass
     except MapMergeError:
@@ -108,7 +110,8 @@ def warm_up() -> None:
     except Exception:  # nobody asked for it: who merges is told then
         log.warning("warming up failed", exc_info=True)
     finally:
-        bench.close()
+        for bench in benches:
+            bench.close()
 
 
 def _taken(port: int) -> str:
