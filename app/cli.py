@@ -88,7 +88,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if error.errno not in OF_THE_MACHINE:
             return _a_bug()
         return _complain(_fault(error), EXIT_BAD_INPUT)
-    except Exception:
+    except Exception:  # of ours: told with its trace, and an exit status of its own
         return _a_bug()
 
 

@@ -7,13 +7,12 @@ from pathlib import Path
 from threading import RLock
 from typing import Any, Literal
 
-import numpy as np
 import viser
 
 from algorithms.casefiles import Case
 from algorithms.conflicts import Conflicts
 from algorithms.errors import InputFileError, MapMergeError, TooLargeError
-from algorithms.steps import MergeResult, RefineDetail
+from algorithms.steps import MergeResult
 from app import words, workers
 from app.arrivals import Arrivals, Recipient
 from app.budget import Budget
@@ -28,22 +27,22 @@ from app.keep import Keep, Kept
 from app.layout import lay_out
 from app.learning import Learning
 from app.legend import legend
-from app.palette import DARK, LIGHT, Palette
+from app.looking import Looking
+from app.palette import LIGHT, Palette
 from app.panels.export import ExportPanel
 from app.panels.files import FilesPanel
 from app.panels.observation import ObservationPanel
 from app.panels.result import result_html
-from app.panels.run import HEIGHTS, MAP, SWARM, RunPanel, Wishes
+from app.panels.run import MAP, RunPanel, Wishes
 from app.panels.tuning import TuningPanel
 from app.researching import Researching
 from app.session import Session
-from app.stage import Stage, TabStage, mark
+from app.stage import Stage, TabStage
 from app.story import Story
 from app.takeaway import TAKEAWAY
 from app.telling import Telling
 from app.timeline import Timeline
 from app.views.closer import Closeness
-from app.views.ground import Mode
 from app.views.heights import HeightsView
 from app.views.maps import MapView
 from app.views.plots import PlotDock
@@ -52,10 +51,9 @@ from app.views.swarm_space import SwarmSpaceView
 log = logging.getLogger(__name__)
 
 LARGE = 2_000_000  # cells of a map that takes a while to draw
-FAR = 1e6  # metres from the scene's origin; no map reaches there
 
 
-class Page(Telling, Handling, Learning, Researching):
+class Page(Looking, Telling, Handling, Learning, Researching):
     """Listens to its session and draws; the callbacks of its widgets only ask."""
 
     def __init__(
@@ -175,16 +173,6 @@ class Page(Telling, Handling, Learning, Researching):
         self._research_with(gui)
         client.scene.on_click()(self._read_out)
         self._channel.on("resized", self._forget_place)
-
-    def _theme(self) -> None:
-        self._client.gui.configure_theme(
-            show_logo=False,
-            show_share_button=False,
-            control_width="medium",
-            dark_mode=self._palette.dark,
-            brand_color=LIGHT.ref,
-        )
-        self._stage.theme(self._palette)
 
     # --- what a person asks for -------------------------------------------------------------------
 
@@ -358,74 +346,6 @@ class Page(Telling, Handling, Learning, Researching):
     def _set_speed(self) -> None:
         self.session.set_pace(self._run.pace or 0.01)  # a run that is told at a pace comes to its end so
         self._press()
-
-    def _press(self) -> None:
-        """Let the page show which button of each group is the chosen one."""
-        self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
-        self._stage.flush()
-
-    def _read_out(self, event: viser.SceneClickEvent) -> None:
-        """What is known of the place under a click."""
-        if self._run.view != MAP:
-            return
-        (x, y, z), (right, up, along) = event.ray_origin, event.ray_direction
-        if along == 0:  # never meets the floor
-            return
-        # viser's own frame is turned half round the y axis: see views/maps.py
-        place = np.array([right * z / along - x, y - up * z / along])
-        if not np.all(np.abs(place) < FAR):
-            return
-        self._stage.hud(readout=self._maps.read_out(place, self._story))
-        self._stage.layer("readout", [mark("cross", place, self._palette.text, r=6)])
-        self._stage.flush()
-
-    def _forget_place(self) -> None:
-        """What was read out at a click goes: the view is another."""
-        self._stage.hud(readout="")
-        self._stage.layer("readout", None)
-        self._stage.flush()
-
-    def _fit(self) -> None:
-        if self._run.view != MAP:
-            self._turn_view()
-        else:
-            placed = self._result is not None or self._hand.active or self._story.reached(RefineDetail)
-            self._stage.look_down(self._maps.extent() if placed else self._maps.layout.view(), follow=True)
-        self._stage.flush()
-
-    def _compare(self, mode: Mode) -> None:
-        """Look at both maps in another way."""
-        with self.session.drawing:
-            if self._run.view == MAP and self._comparison.choose(mode):
-                if not self._hand.active:
-                    self._maps.show(self._story, self._tuning.config, camera=False, live=False)
-                self._tell_legend()
-                self._stage.flush()
-
-    def _switch(self, dark: bool) -> None:
-        with self.session.drawing:
-            self._palette = DARK if dark else LIGHT
-            self._theme()
-            self._maps.recolour(self._palette, self._story)
-            self._comparison.recolour(self._palette)
-            self._turn_view()
-            self._lesson.recolour()
-            self._research_recolours()
-
-    def _turn_view(self) -> None:
-        """Show the chosen view of the newest state."""
-        with self.session.drawing:
-            view = self._run.view
-            self._maps.visible(view == MAP)
-            if view != HEIGHTS:
-                self._heights.hide()
-            if view != SWARM:
-                self._swarm.hide()
-            self._draw(self._story, live=False, look=True)
-            result = self._story.get(MergeResult)
-            if result is not None and self._stage.mood in ("accepted", "refused"):
-                self._say(self._story, result)
-            self._stage.flush()
 
     def _report(self, error: MapMergeError) -> None:
         """Tell the person what is wrong with an input, in this tab."""

@@ -168,3 +168,11 @@ class Part(ABC):
     @abstractmethod
     def _research_changes(self) -> None:
         """A setting, the method or the seed is another."""
+
+    @abstractmethod
+    def _say(self, story: Story, result: MergeResult) -> None:
+        """Say in a sentence what has come out."""
+
+    @abstractmethod
+    def _research_recolours(self) -> None:
+        """Light has become dark, or the other way round."""

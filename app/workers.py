@@ -240,7 +240,7 @@ class _Place(Bench):
             self._anew()
             self._life = worker.life
         maps = job.ref, job.mov
-        others = any(now is not before for now, before in zip(maps, self._maps, strict=True))
+        others = any(new is not old for new, old in zip(maps, self._maps, strict=True))
         self._maps = maps
         turns = 2 if others else 1  # what was made of other maps is not met again
         for _ in range(turns):

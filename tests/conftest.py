@@ -1,16 +1,18 @@
-"""Case folders drawn in code: two maps of one flat whose transform is known, and two of different places."""
+"""What several test modules need: case folders drawn in code, and two servers to attack."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import viser
 from drawn import flat_pair
 from hypothesis import HealthCheck, settings
+from strangers import Stand, standing
 
 from algorithms.atomic import write_files
 from algorithms.casefiles import (
@@ -27,6 +29,8 @@ from algorithms.mapio import map_to_bytes
 from algorithms.methods import merge
 from algorithms.pose import Pose2
 from algorithms.steps import MergeResult
+from app.access import Access
+from app.guard import guarded_server
 from app.inputs import Inputs
 
 # A machine that is busy with other things must not fail a test; where CI runs, the same examples every time.
@@ -110,3 +114,17 @@ def strangers_folder(strangers: Case, tmp_path_factory: pytest.TempPathFactory) 
 def case_maker(tmp_path: Path) -> Callable[[Case, str], Path]:
     """``case_maker(case, name)`` writes a case into the folder ``cases`` of this test."""
     return lambda case, name: write_case(case, tmp_path / "cases" / name)
+
+
+@pytest.fixture(scope="module")
+def stock() -> Iterator[Stand]:
+    """A server of viser's as it comes."""
+    with standing(viser.ViserServer(host="127.0.0.1", port=0, verbose=False)) as stand:
+        yield stand
+
+
+@pytest.fixture(scope="module")
+def ours() -> Iterator[Stand]:
+    """A guarded one, with the same page."""
+    with standing(guarded_server("127.0.0.1", 0, Access(), 40)) as stand:
+        yield stand

@@ -7,36 +7,21 @@ import logging
 import math
 import struct
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import msgspec
 import pytest
-import viser
 from hypothesis import given
 from hypothesis import strategies as st
-from strangers import Stand, Visitor, standing
+from strangers import Stand, Visitor
 from viser import _messages
 from websockets.frames import Frame, Opcode
 from wire import CAMERA, until
 
-from app.access import Access
 from app.frames import EARNS, MOST, Allowance
 from app.gate import MAX_FRAME, MAX_UPLOAD
-from app.guard import guarded_server
 from app.heard import CHUNK, MAX_PARTS, MAX_WORDS, fault
-
-
-@pytest.fixture(scope="module")
-def stock() -> Iterator[Stand]:
-    with standing(viser.ViserServer(host="127.0.0.1", port=0, verbose=False)) as stand:
-        yield stand
-
-
-@pytest.fixture(scope="module")
-def ours() -> Iterator[Stand]:
-    with standing(guarded_server("127.0.0.1", 0, Access(), 40)) as stand:
-        yield stand
 
 
 def told(stand: Stand, do: Callable[[Visitor], None]) -> tuple[list[tuple[str, Any]], Visitor]:

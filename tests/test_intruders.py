@@ -6,24 +6,11 @@ import socket
 from collections.abc import Iterator
 
 import pytest
-import viser
 from strangers import PATIENCE, TOKEN, Stand, Visitor, get, join, standing
 from websockets.exceptions import InvalidStatus
 
 from app.access import Access
 from app.guard import guarded_server
-
-
-@pytest.fixture(scope="module")
-def stock() -> Iterator[Stand]:
-    with standing(viser.ViserServer(host="127.0.0.1", port=0, verbose=False)) as stand:
-        yield stand
-
-
-@pytest.fixture(scope="module")
-def ours() -> Iterator[Stand]:
-    with standing(guarded_server("127.0.0.1", 0, Access(), 40)) as stand:
-        yield stand
 
 
 @pytest.fixture(scope="module")
