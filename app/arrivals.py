@@ -4,8 +4,8 @@ viser sends a file in one go by the connection that carries everything else: on 
 of the page comes through until it has arrived, Stop neither. Here a part is sent once earlier ones have
 arrived, nothing else waits for it, and to leave a file is to close its connection.
 
-What comes is kept where viser keeps its own uploads, so that the same limits hold for both, and a tab that
-goes takes its files along.
+viser's own way is closed (heard.py). What comes is kept where viser would keep it: a tab that goes takes
+its files along.
 """
 
 from __future__ import annotations
@@ -21,17 +21,15 @@ from uuid import uuid4
 
 import msgspec
 import viser
-from viser import _messages as messages
 from websockets.exceptions import ConnectionClosed
 
 from algorithms.errors import InputFileError
-from app.gate import MAX_NAME, MAX_UPLOAD, MAX_UPLOADS_OF_ALL, Gate
-from app.heard import CHUNK
+from app.gate import MAX_FRAME, MAX_NAME, MAX_UPLOAD, MAX_UPLOADS_OF_ALL, Gate
 
 log = logging.getLogger(__name__)
 
 PATH = "/upload"
-LEAST, MOST = 64 * 1024, 1024 * 1024  # bytes of a part; the last one may be shorter
+LEAST, MOST = 64 * 1024, MAX_FRAME  # bytes of a part; the last one may be shorter
 AHEAD = 4 * 1024 * 1024  # bytes that may be on their way: enough for a line that is fast and long
 SILENCE = 60.0  # seconds until a connection that says nothing is given up
 SHORT = 0.5  # seconds; what takes less can be left by nobody
@@ -144,10 +142,7 @@ class Arrivals:
         return None  # its button is gone
 
     def _begun(self, one: Arrival, said: Announced) -> Arrival | None:
-        start = messages.FileTransferStartUpload(
-            said.button, one.id, said.name, said.kind, part_count=-(-said.size // CHUNK), size_bytes=said.size
-        )
-        if not may_come(self._gate, one.gui, start):
+        if not self._has_room(one):
             recipient = self._recipients.get(one.tab)
             if recipient is not None:  # told in a thread: it may have to wait for a picture that is drawn
                 one.gui._thread_executor.submit(recipient.refuse, refusal(said.name, said.size))
@@ -165,6 +160,13 @@ class Arrivals:
         with self._lock:
             self._coming.append(one)
         return one
+
+    def _has_room(self, one: Arrival) -> bool:
+        """Whether a file may come now."""
+        if _coming(one.gui) + one.size > MAX_UPLOADS_OF_ALL:
+            self._gate.drop("uploads of all")
+            return False
+        return self._gate.takes_upload(one.gui, one.button, one.size)
 
     async def _watched(self, one: Arrival) -> bool:
         """Take it in, and have its tab know where that takes long; whether it is there."""
@@ -229,15 +231,7 @@ async def _over(connection: Any, why: str) -> None:
         connection.transport.abort()
 
 
-def may_come(gate: Gate, gui: Any, start: messages.FileTransferStartUpload) -> bool:
-    """Whether a browser may send this file now."""
-    if coming(gui) + start.size_bytes > MAX_UPLOADS_OF_ALL:
-        gate.drop("uploads of all")
-        return False
-    return gate.takes_upload(gui, start)
-
-
-def coming(gui: Any) -> int:
+def _coming(gui: Any) -> int:
     """Bytes of all files that are on their way, of every tab."""
     tabs = gui._root_server()._connected_clients.values()
     return sum(

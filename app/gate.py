@@ -16,11 +16,11 @@ from typing import Any
 from viser import _messages as messages
 from viser._gui_handles import GuiTabHandle, GuiUploadButtonHandle
 
-from app.heard import CHUNK, MAX_NUMBER, MAX_PARTS, MAX_TEXT, fault
+from app.heard import MAX_NUMBER, MAX_PARTS, MAX_TEXT, fault
 
 log = logging.getLogger(__name__)
 
-MAX_FRAME = 2 * 2**20  # bytes: four parts of an upload
+MAX_FRAME = 2**20  # bytes: a part of a file
 MAX_UPLOAD = 200 * 2**20  # bytes of one file: a map of the largest size there may be
 MAX_UPLOADS = 2 * MAX_UPLOAD  # bytes on their way from one tab: two maps
 MAX_UPLOADS_OF_ALL = 5 * MAX_UPLOAD  # bytes on their way from all tabs
@@ -105,36 +105,19 @@ class Gate:
             return True
         return False
 
-    def takes_upload(self, gui: Any, message: messages.FileTransferStartUpload) -> bool:
-        """Whether a browser may send this file."""
-        handle = gui._gui_input_handle_from_uuid.get(message.source_component_uuid)
+    def takes_upload(self, gui: Any, button: str, size: int) -> bool:
+        """Whether a browser may send a file of so many bytes to a button of its tab."""
+        handle = gui._gui_input_handle_from_uuid.get(button)
         coming = gui._current_file_upload_states.values()
-        size = message.size_bytes
-        if handle is None:
-            return False
         if not isinstance(handle, GuiUploadButtonHandle) or not usable(gui, handle):
             self.drop("upload unasked")
-        elif message.transfer_uuid in gui._current_file_upload_states or len(coming) >= MAX_OPEN_UPLOADS:
-            self.drop("upload again")
-        elif not 0 <= size <= MAX_UPLOAD or message.part_count != -(-size // CHUNK):
-            self.drop("upload size")
-        elif len(message.filename) > MAX_NAME or len(message.mime_type) > MAX_NAME:
-            self.drop("upload name")
-        elif size + sum(state["total_bytes"] for state in coming) > MAX_UPLOADS:
+        elif len(coming) >= MAX_OPEN_UPLOADS:
+            self.drop("uploads")
+        elif size > MAX_UPLOAD or size + sum(state["total_bytes"] for state in coming) > MAX_UPLOADS:
             self.drop("upload size")
         else:
             return True
         return False
-
-    def takes_part(self, gui: Any, client: int, message: messages.FileTransferPart) -> bool:
-        """Whether this is a part of a file that this browser is sending."""
-        state = gui._current_file_upload_states.get(message.transfer_uuid)
-        if state is None or state["client_id"] != client:
-            return False
-        if len(message.content) != min(CHUNK, state["total_bytes"] - CHUNK * message.part_index):
-            self.drop("upload size")
-            return False
-        return True
 
 
 class Bucket:

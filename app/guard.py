@@ -25,7 +25,7 @@ from viser._gui_api import GuiApi
 from websockets.http11 import Response
 
 from app.access import HEADERS, PAGE_POLICY, Access, Answer, Asked
-from app.arrivals import PATH, Arrivals, may_come
+from app.arrivals import PATH, Arrivals
 from app.entrance import served
 from app.frames import bounded
 from app.gate import MAX_FRAME, Gate
@@ -143,30 +143,11 @@ def _harden_widgets() -> None:
     if getattr(GuiApi, "_mapmeld_hardened", False):
         return
     GuiApi._mapmeld_hardened = True  # type: ignore[attr-defined]
-    update, start, part = (
-        GuiApi._handle_gui_updates,
-        GuiApi._handle_file_transfer_start,
-        GuiApi._handle_file_transfer_part,
-    )
-
-    def gate_of(gui: Any) -> Gate | None:  # None: a server that is not ours, as tests start one
-        return getattr(gui._root_server(), "gate", None)
+    update = GuiApi._handle_gui_updates
 
     async def safe_update(self: Any, client_id: Any, message: Any) -> None:
-        gate = gate_of(self)
+        gate = getattr(self._root_server(), "gate", None)  # none: of a server that tests start
         if gate is None or gate.takes(self, message):
             await update(self, client_id, message)
 
-    def safe_start(self: Any, client_id: Any, message: Any) -> None:
-        gate = gate_of(self)
-        if gate is None or may_come(gate, self, message):
-            start(self, client_id, message)
-
-    def safe_part(self: Any, client_id: Any, message: Any) -> None:
-        gate = gate_of(self)
-        if gate is None or gate.takes_part(self, client_id, message):
-            part(self, client_id, message)
-
     GuiApi._handle_gui_updates = safe_update  # type: ignore[method-assign]
-    GuiApi._handle_file_transfer_start = safe_start  # type: ignore[method-assign]
-    GuiApi._handle_file_transfer_part = safe_part  # type: ignore[method-assign]

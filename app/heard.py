@@ -3,6 +3,8 @@
 viser reads a frame into mappings and lists before it looks at it, and a mapping whose keys were chosen for
 it takes a minute to be read, in which nothing else runs. Here a frame is read as what it says it is: keys
 are the names of fields, values are shallow, and nothing of the sender's choice is ever built.
+
+Files come by connections of their own (arrivals.py): viser's messages for them are none of the page's.
 """
 
 from __future__ import annotations
@@ -11,8 +13,7 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
-CHUNK = 512 * 1024  # bytes of one part of an upload
-MAX_WORDS = 64 * 1024  # bytes of a message that brings no part of a file
+MAX_WORDS = 64 * 1024  # bytes of a message
 MAX_TEXT = 10_000  # letters in a control
 MAX_PARTS = 64  # numbers in a control
 MAX_NUMBER = 1e12
@@ -65,26 +66,6 @@ class ScenePointerMessage(Message):
     modifier: Text | None
 
 
-class FileTransferStartUpload(Message):
-    """A file that is to come, by viser's own way."""
-
-    source_component_uuid: Id
-    transfer_uuid: Id
-    filename: Text
-    mime_type: Text
-    part_count: Count
-    size_bytes: Count
-
-
-class FileTransferPart(Message):
-    """A part of it."""
-
-    source_component_uuid: Id | None
-    transfer_uuid: Id
-    part_index: Count
-    content: Annotated[bytes, msgspec.Meta(max_length=CHUNK)]
-
-
 class _Kind(msgspec.Struct):
     """Of a message the kind alone; what else it holds is skipped, not read."""
 
@@ -93,14 +74,7 @@ class _Kind(msgspec.Struct):
 
 # All that the page's own script ever sends
 HEARD: dict[str, type[Message]] = {
-    kind.__name__: kind
-    for kind in (
-        GuiUpdateMessage,
-        ViewerCameraMessage,
-        ScenePointerMessage,
-        FileTransferStartUpload,
-        FileTransferPart,
-    )
+    kind.__name__: kind for kind in (GuiUpdateMessage, ViewerCameraMessage, ScenePointerMessage)
 }
 
 
@@ -115,7 +89,7 @@ def fault(raw: Any) -> str:
             return "garbage"
         if kind not in HEARD:
             return "unasked"
-        if kind != FileTransferPart.__name__ and len(raw) > MAX_WORDS:
+        if len(raw) > MAX_WORDS:
             return "too long"
         try:
             msgspec.msgpack.decode(raw, type=HEARD[kind])

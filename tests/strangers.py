@@ -16,9 +16,8 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 from wire import CAMERA, until
 
-from app.heard import CHUNK
-
 PATIENCE = 20.0
+CHUNK = 512 * 1024  # bytes of a part of an upload, by viser's own way
 SPEAKS = [f"viser-v{viser.__version__}"]
 
 
@@ -72,18 +71,32 @@ class Visitor:
     def write(self, handle: Any, **updates: Any) -> None:
         self.send("GuiUpdateMessage", uuid=handle._impl.uuid, updates=updates)
 
-    def start_upload(self, name: str, size: int, parts: int | None = None) -> str:
+    def start_upload(self, name: str, size: int, control: str = "upload") -> str:
+        """Announce a file by viser's own way."""
         transfer = f"t{time.monotonic_ns()}"
         self.send(
             "FileTransferStartUpload",
-            source_component_uuid=self.room.upload._impl.uuid,
+            source_component_uuid=self.find(control),
             transfer_uuid=transfer,
             filename=name,
             mime_type="text/yaml",
-            part_count=-(-size // CHUNK) if parts is None else parts,
+            part_count=max(1, -(-size // CHUNK)),
             size_bytes=size,
         )
         return transfer
+
+    @property
+    def port(self) -> int:
+        return self.stand.port
+
+    def find(self, label: str) -> str:
+        """The id of the control of this label."""
+        return str(getattr(self.room, label)._impl.uuid)
+
+    @property
+    def coming(self) -> list[Any]:
+        """What the server keeps of files on their way."""
+        return list(self.room.client.gui._current_file_upload_states.values())
 
     def hears_out(self) -> None:
         """Take what comes until the connection is closed."""

@@ -17,11 +17,11 @@ from hypothesis import strategies as st
 from strangers import Stand, Visitor
 from viser import _messages
 from websockets.frames import Frame, Opcode
-from wire import CAMERA, until
+from wire import CAMERA, WireFile
 
 from app.frames import EARNS, MOST, Allowance
 from app.gate import MAX_FRAME, MAX_UPLOAD
-from app.heard import CHUNK, MAX_PARTS, MAX_WORDS, fault
+from app.heard import MAX_PARTS, MAX_WORDS, fault
 
 
 def told(stand: Stand, do: Callable[[Visitor], None]) -> tuple[list[tuple[str, Any]], Visitor]:
@@ -162,20 +162,17 @@ def test_the_value_of_a_control_is_a_word_a_number_or_a_short_list_of_them(value
     assert fault(update(msgspec.msgpack.encode(value))) == ("" if flat else "malformed")
 
 
-def test_what_brings_no_part_of_a_file_is_short():
+def test_a_message_is_short():
     for value, wrong in (
         ([1.5] * MAX_PARTS, ""),
         ([1.5] * (MAX_PARTS + 1), "malformed"),
         ("x" * MAX_WORDS, "too long"),
     ):
         assert fault(update(msgspec.msgpack.encode(value))) == wrong
-    part = {"source_component_uuid": None, "transfer_uuid": "x", "part_index": 0, "type": "FileTransferPart"}
-    assert fault(msgspec.msgpack.encode({**part, "content": b"x" * CHUNK})) == ""
-    assert fault(msgspec.msgpack.encode({**part, "content": b"x" * (CHUNK + 1)})) == "malformed"
 
 
 def test_long_messages_count_as_several(ours):
-    nested = msgspec.msgpack.encode([[]] * 2**20)
+    nested = msgspec.msgpack.encode([[]] * (MAX_FRAME - 1000))
     before = ours.server.gate.dropped.copy()
     visitor = Visitor(ours)
     for _ in range(14):  # a megabyte each
@@ -283,69 +280,71 @@ def test_who_sends_few_empty_ones_may_go_on_and_no_message_has_more_than_enough(
 # --- what an upload may do --------------------------------------------------------------------------
 
 
-SIZES: dict[str, tuple[int, int | None]] = {
-    "larger than any map": (MAX_UPLOAD + 1, None),
-    "less than nothing": (-5, 1),
-    "in more parts than it has": (10, 10**9),
-}
-
-
-@pytest.mark.parametrize(("size", "parts"), SIZES.values(), ids=SIZES)
-def test_an_upload_says_how_large_it_is_and_keeps_to_it(stock, ours, size, parts):
+@pytest.mark.parametrize("size", [10, MAX_UPLOAD + 1, -5])
+def test_no_file_comes_by_the_connection_of_the_page(stock, ours, size):
     for stand, begun in ((stock, 1), (ours, 0)):
         visitor = Visitor(stand)
-        visitor.start_upload("map.pgm", size, parts)
+        transfer = visitor.start_upload("map.pgm", size)
+        visitor.send(
+            "FileTransferPart",
+            source_component_uuid=None,
+            transfer_uuid=transfer,
+            part_index=7,
+            content=b"x" * 10,
+        )
         assert visitor.has_been_heard()
-        assert len(visitor.room.client.gui._current_file_upload_states) == begun
+        assert len(visitor.coming) == begun
         visitor.socket.close()
+
+
+def test_a_file_is_no_larger_than_any_map(stock, ours):
+    visitor = Visitor(stock)
+    visitor.start_upload("map.pgm", 1000 * MAX_UPLOAD)
+    assert visitor.has_been_heard()
+    assert len(visitor.coming) == 1
+    visitor.socket.close()
+    visitor = Visitor(ours)
+    assert WireFile(visitor, "upload", "map.pgm", b"", size=MAX_UPLOAD + 1).over() == "refused"
+    assert not visitor.coming
+    assert "most" in WireFile(visitor, "upload", "map.pgm", b"", size=MAX_UPLOAD).hear()
+    visitor.socket.close()
 
 
 def test_no_tab_makes_the_server_hold_more_than_two_large_files(stock, ours):
-    for stand, most in ((stock, 6), (ours, 2)):
-        visitor = Visitor(stand)
-        for _ in range(6):
-            visitor.start_upload("map.pgm", MAX_UPLOAD)
-        assert visitor.has_been_heard()
-        assert len(visitor.room.client.gui._current_file_upload_states) == most
-        visitor.socket.close()
-
-
-def test_a_part_is_as_long_as_it_was_announced(stock, ours):
-    for stand, kept in ((stock, 1), (ours, 0)):
-        visitor = Visitor(stand)
-        transfer = visitor.start_upload("map.pgm", 2 * CHUNK)
-        long = {"source_component_uuid": None, "transfer_uuid": transfer, "part_index": 1}
-        visitor.send("FileTransferPart", **long, content=b"x" * (CHUNK - 1))
-        assert visitor.has_been_heard()
-        (state,) = visitor.room.client.gui._current_file_upload_states.values()
-        assert len(state["parts"]) == kept
-        visitor.socket.close()
-
-
-def test_an_upload_that_keeps_to_the_rules_arrives(ours):
+    visitor = Visitor(stock)
+    for _ in range(6):
+        visitor.start_upload("map.pgm", MAX_UPLOAD)
+    assert visitor.has_been_heard()
+    assert len(visitor.coming) == 6
+    visitor.socket.close()
     visitor = Visitor(ours)
-    data = bytes(CHUNK + 10)
-    transfer = visitor.start_upload("map.pgm", len(data))
-    for k in range(2):
-        visitor.send(
-            "FileTransferPart",
-            source_component_uuid=visitor.room.upload._impl.uuid,
-            transfer_uuid=transfer,
-            part_index=k,
-            content=data[k * CHUNK : (k + 1) * CHUNK],
-        )
-    until(lambda: ("upload", "map.pgm") in ours.done, "the upload")
+    files = [WireFile(visitor, "upload", "map.pgm", b"", size=MAX_UPLOAD) for _ in range(2)]
+    assert all("most" in file.hear() for file in files)
+    assert WireFile(visitor, "upload", "map.pgm", b"", size=1).over() == "refused"
+    assert len(visitor.coming) == 2
     visitor.socket.close()
 
 
 def test_no_file_is_taken_by_a_control_that_takes_none(stock, ours):
-    for stand, begun in ((stock, 1), (ours, 0)):
-        visitor = Visitor(stand)
-        visitor.room.upload = visitor.room.slider
-        visitor.start_upload("map.pgm", 10)
-        assert visitor.has_been_heard()
-        assert len(visitor.room.client.gui._current_file_upload_states) == begun
-        visitor.socket.close()
+    visitor = Visitor(stock)
+    visitor.start_upload("map.pgm", 10, control="slider")
+    assert visitor.has_been_heard()
+    assert len(visitor.coming) == 1
+    visitor.socket.close()
+    visitor = Visitor(ours)
+    for control in ("slider", "text", "hidden"):
+        assert WireFile(visitor, control, "map.pgm", b"P5").over() == "refused"
+    visitor.socket.close()
+
+
+def test_a_file_that_keeps_to_the_rules_arrives(ours):
+    visitor = Visitor(ours)
+    file = WireFile(visitor, "upload", "map.pgm", bytes(MAX_FRAME + 10))
+    for size in (MAX_FRAME, 10):
+        file.part(size)
+    assert file.over() == "arrived"
+    assert ("upload", "map.pgm") in ours.done
+    visitor.socket.close()
 
 
 def test_the_messages_that_are_let_in_are_those_of_viser():

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable
 from threading import Event, Thread
 from time import monotonic, sleep
-from typing import Any
+from typing import Any, Protocol
 
 import msgspec
 import viser
@@ -176,10 +176,20 @@ class WireTab:
         self.socket.close()
 
 
+class Sender(Protocol):
+    """Who sends a file."""
+
+    @property
+    def port(self) -> int: ...
+
+    def find(self, label: str) -> str:
+        """The id of the button of this label."""
+
+
 class WireFile:
     """A file on its way, sent as by the page's script."""
 
-    def __init__(self, tab: WireTab, label: str, name: str, content: bytes, **other: Any) -> None:
+    def __init__(self, tab: Sender, label: str, name: str, content: bytes, **other: Any) -> None:
         """other : fields of the first word in place of the right ones"""
         self.content, self.sent = content, 0
         self.socket = connect(
