@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from threading import RLock
 from time import perf_counter
 from typing import Protocol
@@ -85,12 +86,14 @@ class ByHand:
         self._at = Pose2()  # where map 2's anchor lies; scene
         self._slow = 0.0  # seconds that weighing took last
         self.active = False
-        wishes = HandWishes(self._toggle, self._type, self._refine, self._snap, self._take)
+        typed = partial(channel.then, self._type)  # in order with what the page tells of the hand
+        wishes = HandWishes(self._toggle, typed, self._refine, self._snap, self._take)
         self.panel = HandPanel(gui, wishes)
         self._work = Newest(self._weigh, "mapmeld-hand")
         where = {"x": float, "y": float, "theta": float}
         channel.on("carry", lambda **at: self._carry(Pose2(**at)), latest=True, **where)
-        channel.on("put", lambda stepped, **at: self._put(Pose2(**at), stepped), stepped=bool, **where)
+        channel.on("put", lambda knew, **at: self._put(Pose2(**at), knew), knew=int, **where)
+        channel.on("nudge", self._nudge, knew=int, **where)
 
     def close(self) -> None:
         """The tab is gone."""
@@ -161,20 +164,19 @@ class ByHand:
                 self.panel.show(self._maps.layout.transform(at))
                 self._work.ask((at, False))
 
-    def _put(self, at: Pose2, stepped: bool) -> None:
-        """Map 2 was put down by the hand, or stepped by a key: then the camera takes it in."""
+    def _put(self, at: Pose2, knew: int) -> None:
+        """Map 2 was put down by the hand."""
         with self._turn:
             if self.active:
-                self._at = at
-                self._maps.carried(at)
-                T = self._maps.layout.transform(at)
-                self.panel.show(T)
-                if stepped and self._host.follows:
-                    with self._drawing:
-                        self._stage.look_down(self._maps.extent(), need=True)
-                        self._stage.flush()
-                self._work.ask((at, True))
-                self._host.hand_moved(T)
+                self._rest(at, self._known(knew))
+
+    def _nudge(self, x: float, y: float, theta: float, knew: int) -> None:
+        """Map 2 was stepped by a key, from where it lies: perhaps not where the page took it to be."""
+        with self._turn:
+            if self.active:
+                lay = self._at
+                at = Pose2(lay.x + x, lay.y + y, wrap_angle(lay.theta + theta))
+                self._rest(at, self._known(knew), look=True)
 
     def _type(self, field: str, value: float) -> None:
         """One number of T was typed; a turn is about robot 2, so it leaves robot 2 where it is."""
@@ -182,20 +184,34 @@ class ByHand:
             if not self.active:
                 return
             if field == "theta":
-                self._at = replace(self._at, theta=wrap_angle(value))
+                at = replace(self._at, theta=wrap_angle(value))
             else:
                 T = self._maps.layout.transform(self._at)
-                self._at = self._maps.layout.placed(replace(T, **{field: value}))
-            T_ref_mov = self._maps.layout.transform(self._at)
-            with self._drawing:
-                self._maps.carried(self._at)
-                self._stage.place_mov(self._at, GLIDE)
-                if self._host.follows:
-                    self._stage.look_down(self._maps.extent(), need=True)
-                self._stage.flush()
-            self.panel.show(T_ref_mov)
-            self._work.ask((self._at, True))
-            self._host.hand_moved(T_ref_mov)
+                at = self._maps.layout.placed(replace(T, **{field: value}))
+            self._rest(at, GLIDE, look=True)
+
+    def _known(self, knew: int) -> float | None:
+        """The time in which the page has to be put right, if it went by an older word than the last."""
+        return None if knew == self._stage.placed else GLIDE
+
+    def _rest(self, at: Pose2, glide: float | None, look: bool = False) -> None:
+        """Map 2 lies there from now on; whoever calls has the turn.
+
+        glide : milliseconds in which the page takes it there; None where it did so by itself
+        look  : the camera takes it in
+        """
+        self._at = at
+        self._maps.carried(at)
+        T = self._maps.layout.transform(at)
+        with self._drawing:
+            if glide is not None:
+                self._stage.place_mov(at, glide)
+            if look and self._host.follows:
+                self._stage.look_down(self._maps.extent(), need=True)
+            self._stage.flush()
+        self.panel.show(T)
+        self._work.ask((at, True))
+        self._host.hand_moved(T)
 
     def _refine(self) -> None:
         with self._turn:

@@ -12,6 +12,7 @@ import logging
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from threading import Condition, Thread
 from typing import Any
 
@@ -114,10 +115,21 @@ class Channel:
             self._last = number
             if event.latest and self._waiting and self._waiting[-1][0] is event:
                 self._waiting.pop()
-            if self._closed or len(self._waiting) >= MOST_WAITING:
-                return False
-            self._waiting.append((event, fields))
-            self._wake.notify()
+            return self._queue(event, fields)
+
+    def then(self, callback: Callable[..., None], *told: Any) -> None:
+        """Call back with that after all that was told before it, and before what comes later.
+
+        For what a widget tells, from a callback in viser's own loop: in a thread it would be overtaken.
+        """
+        with self._wake:
+            self._queue(_Event(partial(callback, *told), latest=False, fields={}), {})
+
+    def _queue(self, event: _Event, fields: dict[str, Any]) -> bool:
+        if self._closed or len(self._waiting) >= MOST_WAITING:
+            return False
+        self._waiting.append((event, fields))
+        self._wake.notify()
         return True
 
     def close(self) -> None:

@@ -40,7 +40,8 @@
   //   grips  [{id, f, p, a, vague}]: signs at p in frame f that can be carried; with a heading a, turned
   //          too; a vague one is not known before it is turned
   //   place  {id, f}: the next touch puts this sign down, and a drag from there turns it
-  // While something is held the browser draws it by itself; Python is told 15 times a second, and at the end.
+  // While something is held the browser draws it by itself; Python is told 15 times a second, and at the end,
+  // by which of its own words on where map 2 lies the browser went.
   const REACH = 15, ARM = 34, EVERY = 66; // px to a sign, px from it to its knob, ms between two words
   let hold = null, said = 0, late = null;
   const wrap = (a) => a - 2 * Math.PI * Math.round(a / (2 * Math.PI));
@@ -87,9 +88,9 @@
     clearTimeout(late); late = null;
     if (!last && now - said < EVERY) { late = setTimeout(() => report(false), EVERY - (now - said)); return; }
     said = now;
-    if (!hold || hold.kind === "carry" || hold.kind === "turn") {
+    if (hold.kind === "carry" || hold.kind === "turn") {
       const at = { x: round(S.mov.x), y: round(S.mov.y), theta: round(wrap(S.mov.theta)) };
-      if (last) S.tell("put", { ...at, stepped: !hold }); else S.tell("carry", at);
+      if (last) S.tell("put", { ...at, knew: S.placed }); else S.tell("carry", at);
     } else {
       const known = hold.a !== null && hold.a !== undefined && !(hold.vague && hold.kind === "body");
       S.tell(last ? "drop" : "drag", { id: hold.id, at: hold.p.map(round), heading: known ? [round(wrap(hold.a))] : [] });
@@ -162,11 +163,9 @@
     stop(e);
     const at = S.tween ? S.tween.to : S.mov; // on its way it is stepped from where it is going
     const cell = S.hand.mov.cell, length = e.shiftKey ? Math.min(0.01, cell) : cell, degrees = e.shiftKey ? 0.1 : 0.5;
-    S.carry({
-      x: at.x + (step ? step[0] * length : 0), y: at.y + (step ? step[1] * length : 0),
-      theta: at.theta + (way ? way * degrees * Math.PI / 180 : 0),
-    });
-    report(true);
+    const by = { x: step ? step[0] * length : 0, y: step ? step[1] * length : 0, theta: way ? way * degrees * Math.PI / 180 : 0 };
+    S.carry({ x: at.x + by.x, y: at.y + by.y, theta: at.theta + by.theta });
+    S.tell("nudge", { ...by, knew: S.placed });
   }, true);
   const KEYS = [["← → ↑ ↓", "one cell; with Shift 1 cm"], ["[ ]", "turn by 0.5°; with Shift 0.1°"], ["Shift drag", "turn about robot 2"]];
   S.heard.push((message) => {

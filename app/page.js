@@ -12,7 +12,7 @@
 
   const blank = () => ({
     layers: {}, view: "map", follow: true, look: null, dark: false, hud: {}, dirty: true,
-    mov: { x: 0, y: 0, theta: 0 }, tween: null, applied: 0,
+    mov: { x: 0, y: 0, theta: 0 }, tween: null, placed: 0, applied: 0,
   });
   const S = blank();
   let hooked = null, canvas = null, ink = null, hud = null, pointer = null, seen = "", painted = "";
@@ -288,6 +288,7 @@
       const from = { ...movNow(now) }, to = message.mov;
       S.tween = message.mov.ms ? { from, to, turn: wrap(to.theta - from.theta), began: now, ms: to.ms } : null;
       if (!S.tween) S.mov = { x: to.x, y: to.y, theta: to.theta };
+      S.placed = to.number;
       S.moved = true;
     }
     if (message.dark !== undefined) S.dark = message.dark;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from threading import RLock
 from typing import Protocol
 
@@ -62,9 +63,8 @@ class Placing:
         self._chosen = 0
         self._layout = lay_out(None, None, None)
         self.active = False
-        panel.listen(
-            PlacingWishes(self._toggle, self._type, self._choose, self._add, self._remove, self._save)
-        )
+        typed = partial(channel.then, self._type)  # in order with what the page tells of the signs
+        panel.listen(PlacingWishes(self._toggle, typed, self._choose, self._add, self._remove, self._save))
         sign = {"id": PARTS, "at": Numbers(2, 2), "heading": Numbers(0, 1)}
         channel.on("drag", lambda **to: self._move(**to, rests=False), latest=True, **sign)
         channel.on("drop", lambda **to: self._move(**to, rests=True), **sign)

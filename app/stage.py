@@ -38,6 +38,7 @@ class Stage(ABC):
     def __init__(self) -> None:
         self._pending: dict[str, Any] = {}
         self._hud: dict[str, Any] = {}
+        self.placed = 0  # how often map 2 was put anywhere
         self._lock = RLock()  # widgets call from many threads; what gathers while one sends is not lost
 
     @abstractmethod
@@ -70,7 +71,14 @@ class Stage(ABC):
     def place_mov(self, at: Pose2, milliseconds: float = 0) -> None:
         """Turn and slide map 2's anchor to a pose of the scene, in this time."""
         with self._lock:
-            self._pending["mov"] = {"x": at.x, "y": at.y, "theta": at.theta, "ms": milliseconds}
+            self.placed += 1
+            self._pending["mov"] = {
+                "x": at.x,
+                "y": at.y,
+                "theta": at.theta,
+                "ms": milliseconds,
+                "number": self.placed,
+            }
 
     def look_down(self, rect: Rect, follow: bool = False, need: bool = False) -> None:
         """Show a rectangle of the map from above, north up.

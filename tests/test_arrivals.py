@@ -146,7 +146,7 @@ def broken_off(tab: WireTab, file: WireFile) -> str:
 
 
 def unsent(tab: WireTab, file: WireFile) -> str:
-    tab._tell(tab.words["channel"], "unsend")
+    tab.tell("unsend")
     return file.over()
 
 

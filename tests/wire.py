@@ -73,8 +73,8 @@ class WireTab:
         )
         Thread(target=self._read, daemon=True).start()
         self.send("ViewerCameraMessage", **CAMERA)
-        field = until(lambda: self.words.get("channel"), "the channel", patience)
-        self._tell(field, "hello", key=key, again=again)
+        until(lambda: self.words.get("channel"), "the channel", patience)
+        self.tell("hello", key=key, again=again)
         until(lambda: self.words.get("state"), "the page")
 
     def _read(self) -> None:
@@ -113,7 +113,7 @@ class WireTab:
             elif kind == "RunJavascriptMessage" and (told := _HUD.match(message["source"])):
                 said = json.loads(told[1])
                 self.words.update(said.get("hud", {}))
-                for name in ("channel", "key"):
+                for name in ("channel", "key", "mov"):
                     if name in said:
                         self.words[name] = said[name]
 
@@ -152,7 +152,9 @@ class WireTab:
         return found
 
     def write(self, label: str, value: Any, kind: str = "") -> None:
-        self.send("GuiUpdateMessage", uuid=self.find(label, kind), updates={"value": value})
+        uuid = self.find(label, kind)
+        self.props[uuid]["value"] = value  # whoever writes is not told of it
+        self.send("GuiUpdateMessage", uuid=uuid, updates={"value": value})
 
     def press(self, label: str) -> None:
         self.write(label, True, "GuiButtonMessage")
@@ -166,10 +168,11 @@ class WireTab:
         )
         self.send("GuiUpdateMessage", uuid=row, updates={"value": option})
 
-    def _tell(self, field: str, event: str, **fields: Any) -> None:
+    def tell(self, event: str, **fields: Any) -> None:
+        """Tell of something that the page does by itself."""
         self._said += 1
         text = json.dumps([self._said, event, fields])
-        self.send("GuiUpdateMessage", uuid=field, updates={"value": text})
+        self.send("GuiUpdateMessage", uuid=self.words["channel"], updates={"value": text})
 
     def close(self) -> None:
         self._reads.set()

@@ -29,7 +29,7 @@ class HandWishes:
     """What a person can ask for here."""
 
     toggle: Callable[[], None]
-    typed: Callable[[str, float], None]  # x, y or theta: its new value; metres, radians
+    typed: Callable[[str, float], None]  # x, y or theta: its new value; metres, radians; in viser's loop
     refine: Callable[[], None]
     snap: Callable[[], None]
     take: Callable[[], None]
@@ -98,7 +98,7 @@ class HandPanel:
         """Show what the walls say."""
         self._says.content = html
 
-    def _read(self, event: viser.GuiEvent[Any]) -> None:
+    async def _read(self, event: viser.GuiEvent[Any]) -> None:  # in the loop: nothing overwrites it before
         if event.client_id is None:
             return  # set by ``show``
         fields = {"x": self._x, "y": self._y, "theta": self._turn}

@@ -43,7 +43,7 @@ class PlacingWishes:
     """What a person can ask for here."""
 
     toggle: Callable[[], None]
-    typed: Callable[[str, float], None]  # a field and its new value; metres, radians
+    typed: Callable[[str, float], None]  # a field and its new value; metres, radians; in viser's loop
     choose: Callable[[int], None]
     add: Callable[[], None]
     remove: Callable[[], None]
@@ -95,7 +95,7 @@ class ObservationPanel:
 
         for name, handle in self._fields.items():
 
-            def typed(event: viser.GuiEvent[Any], name: str = name) -> None:
+            async def typed(event: viser.GuiEvent[Any], name: str = name) -> None:  # before it is overwritten
                 if event.client_id is not None:  # not set from here
                     value = float(event.target.value)
                     wishes.typed(name, radians(value) if name in ANGLES else value)

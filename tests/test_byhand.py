@@ -1,0 +1,92 @@
+"""Map 2 in a person's hand: the page and the server hold it at one place, whatever overtakes what."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import radians
+from typing import Any
+
+import pytest
+import viser
+from wire import WireTab, until
+
+from algorithms.casefiles import Case
+from algorithms.pose import Pose2
+from app.inputs import Inputs
+from app.layout import Layout, lay_out
+from app.server import make_server
+
+X, Y, TURN = "T: Δx (m)", "T: Δy (m)", "T: Δθ (°)"
+
+
+@pytest.fixture(scope="module")
+def server(small_case: Case) -> Iterator[viser.ViserServer]:
+    server = make_server(port=0, initial=small_case)
+    yield server
+    server.stop()
+
+
+@pytest.fixture
+def tab(server) -> Iterator[WireTab]:
+    tab = WireTab(server.get_port())
+    tab.press("Move map 2 by hand")
+    until(lambda: tab.state.startswith("By hand"), "map 2 in the hand")
+    yield tab
+    tab.close()
+
+
+def shown(tab: WireTab) -> tuple[float, float, float]:
+    """The numbers beside map 2."""
+    x, y, turn = (tab.props[tab.find(label)]["value"] for label in (X, Y, TURN))
+    return x, y, turn
+
+
+def numbers(layout: Layout, at: Pose2) -> Any:
+    """What the numbers are for map 2 at a place of the scene."""
+    T = layout.transform(at)
+    return pytest.approx((T.x, T.y, T.theta / radians(1)), abs=2e-3)
+
+
+def told(tab: WireTab) -> Pose2:
+    """Where the page was last told to put map 2."""
+    word = tab.words["mov"]
+    return Pose2(word["x"], word["y"], word["theta"])
+
+
+@pytest.fixture
+def layout(small_case) -> Layout:
+    return lay_out(small_case.ref, small_case.mov, Inputs.of(small_case).at)
+
+
+def test_a_step_by_a_key_goes_from_where_the_page_shows_map_2_and_no_word_comes_back(tab, layout):
+    before, knew = told(tab), tab.words["mov"]["number"]
+    for _ in range(3):
+        tab.tell("nudge", x=0.5, y=-0.25, theta=radians(1), knew=knew)
+    after = Pose2(before.x + 1.5, before.y - 0.75, before.theta + radians(3))
+    until(lambda: shown(tab) == numbers(layout, after), "three steps")
+    assert tab.words["mov"]["number"] == knew
+
+
+def test_a_step_that_overtakes_the_word_of_a_typed_number_is_added_to_it_and_the_page_put_right(tab, layout):
+    x, y, _ = shown(tab)
+    knew = tab.words["mov"]["number"]
+    tab.write(X, x + 20)
+    tab.tell("nudge", x=0.0, y=0.5, theta=0.0, knew=knew)
+    until(lambda: shown(tab)[:2] == pytest.approx((x + 20, y + 0.5), abs=2e-3), "both")
+    until(lambda: shown(tab) == numbers(layout, told(tab)), "the page to be put right")
+
+
+def test_a_drag_that_overtakes_the_word_of_a_typed_number_counts_and_the_page_is_put_right(tab, layout):
+    x, _, _ = shown(tab)
+    knew = tab.words["mov"]["number"]
+    tab.write(X, x + 20)
+    tab.tell("put", x=3.0, y=4.0, theta=0.5, knew=knew)
+    until(lambda: told(tab) == Pose2(3.0, 4.0, 0.5), "the page to be put right")
+    until(lambda: shown(tab) == numbers(layout, Pose2(3.0, 4.0, 0.5)), "the numbers")
+
+
+def test_a_drag_of_what_the_page_knew_brings_no_word_back(tab, layout):
+    knew = tab.words["mov"]["number"]
+    tab.tell("put", x=3.0, y=4.0, theta=0.5, knew=knew)
+    until(lambda: shown(tab) == numbers(layout, Pose2(3.0, 4.0, 0.5)), "the numbers")
+    assert tab.words["mov"]["number"] == knew
