@@ -198,8 +198,12 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         """Leave what is read, or else what is run, or else what is on its way."""
         if self._errand.stop():
             return
-        if self.session.busy or not self._arrivals.stop(self._client.client_id):
-            self.session.stop()
+        if not self.session.busy:
+            self._arrivals.stop(self._client.client_id)
+            return
+        self.session.stop()  # at once, whatever else is being carried out
+        with self._turn:
+            self._timeline.leave()
 
     def _save(self, name: str, content: bytes) -> None:
         TAKEAWAY.send(self._client, name, content)

@@ -59,6 +59,12 @@ class Timeline:
             self.history.amend(replace(self.history.desk, outcome=outcome))
             self._panel.show(self.history)
 
+    def leave(self) -> None:
+        """What was asked for is not wanted any more: whoever comes back to it finds what it began with."""
+        desk = self.desk
+        if self.history is not None and desk is not None and desk.outcome is None and not desk.held:
+            self.history.amend(replace(desk, goal=None))
+
     @property
     def desk(self) -> Desk | None:
         """The desk at hand."""

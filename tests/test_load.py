@@ -115,6 +115,23 @@ def test_who_says_hello_again_and_again_gets_nothing_more_and_leaves_nothing_beh
     until(lambda: pages() <= before, "its page to be let go of")
 
 
+def test_what_was_stopped_is_not_begun_again_by_a_reload(server):
+    tab = WireTab(server.get_port())
+    tab.choose("Slow")
+    tab.press("Merge")
+    until(lambda: tab.mood == "running", "the run")
+    tab.press("Stop")
+    until(lambda: tab.mood == "stopped", "its end")
+    tab.close()
+    until(lambda: not server.get_clients(), "the session to end")
+    came_back = WireTab(server.get_port(), key=tab.words["key"])
+    until(lambda: came_back.state == "Ready. Press Merge.", "the maps")
+    came_back.choose("Instant")
+    came_back.press("Merge")
+    assert merged(came_back)
+    came_back.close()
+
+
 def test_a_tab_too_many_is_told_so_and_has_no_session(small_case, monkeypatch):
     monkeypatch.setattr(app.server, "MOST_TABS", 1)
     server = make_server(port=0, initial=small_case)
