@@ -23,14 +23,15 @@ def write_files(files: Mapping[Path, bytes]) -> None:
     """Write all files, each whole or not at all; missing folders are made.
 
     Every file is written in full before the first takes its place, so a full disk leaves all the
-    old ones as they were, and no new folder. They take their places in the order given: put a file
-    that names another after the other.
+    old ones as they were, and no new folder; an interrupt leaves all the old ones or all the new.
+    They take their places in the order given: put a file that names another after the other.
 
     files  : what to write where; a link is written through, not replaced
     raises : OutputError that names the file, the cause and the remedy
     """
     written: list[tuple[Path, Path]] = []
     made: list[Path] = []
+    placing = False
     path = Path()
     try:
         for path, data in files.items():
@@ -38,19 +39,27 @@ def write_files(files: Mapping[Path, bytes]) -> None:
             made += [folder for folder in target.parents if not folder.exists()]
             target.parent.mkdir(parents=True, exist_ok=True)
             beside = target.parent / f".{secrets.token_hex(8)}.tmp"
+            written.append((beside, target))  # before it is there: an interrupt may come at any time
             with beside.open("xb") as stream:
-                written.append((beside, target))
                 stream.write(data)
                 stream.flush()
                 os.fsync(stream.fileno())  # or a power cut may leave the name on an empty file
+        placing = True
         for beside, path in written:
             os.replace(beside, path)
         made.clear()
+    except KeyboardInterrupt:
+        if placing:  # a moment at the most: rather all of the new files than some of them
+            for beside, path in written:
+                if beside.exists():
+                    os.replace(beside, path)
+            made.clear()
+        raise
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         raise OutputError(path, f"cannot be written ({_cause(error)})", REMEDY) from error
     finally:
         for beside, _ in written:
-            with suppress(OSError):  # it has its place by now, or the disk lets nobody do anything any more
+            with suppress(OSError):  # never made, or in its place by now, or the disk bears nothing any more
                 beside.unlink()
         for folder in sorted(made, key=lambda folder: -len(folder.parts)):
             with suppress(OSError):  # never made, or something is in it

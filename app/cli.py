@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import signal
 import sys
 import traceback
 from collections.abc import Sequence
@@ -97,6 +98,7 @@ def entry() -> None:
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:  # closed by whoever started us, as for work in the background
             setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # whoever asks it to end, it ends whole
     status = main()
     if status == EXIT_INTERRUPTED:
         # not by the ordinary way out, which waits for threads that the interrupt may have caught

@@ -23,8 +23,7 @@ def usage_error(*words):
     return left.value.code
 
 
-def in_a_process(*words, **kwargs):
+def in_a_process(*words, run=("-m", "app"), **kwargs):
     """What the command ended with, and said."""
-    return subprocess.run(
-        [sys.executable, "-m", "app", *map(str, words)], capture_output=True, text=True, cwd=ROOT, **kwargs
-    )
+    command = [sys.executable, *run, *map(str, words)]
+    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, **kwargs)

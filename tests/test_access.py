@@ -227,6 +227,8 @@ def test_the_start_line_says_where_and_for_whom():
     assert reach("LOCALHOST", Access(token=TOKEN)) == "for this machine with the token"
     assert reach("0.0.0.0", locked) == "for everyone on the network with the token, unencrypted"
     assert reach("127.0.0.1", locked) == "for this machine with the token"
+    behind = reach("127.0.0.1", locked, ["robots.example"])
+    assert behind == "for this machine, and whom the proxy at robots.example lets through, with the token"
 
 
 @pytest.mark.parametrize(

@@ -46,6 +46,28 @@ def test_a_full_disk_at_the_second_file_leaves_the_first_as_it_was(tmp_path, mon
     assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [("first", b"old")]
 
 
+@pytest.mark.parametrize("before", [True, False], ids=["before", "behind"])
+@pytest.mark.parametrize("call", [1, 2, 3])
+@pytest.mark.parametrize("step", ["fsync", "replace"])
+def test_an_interrupt_leaves_all_the_old_files_or_all_the_new(tmp_path, monkeypatch, step, call, before):
+    old, new = ({tmp_path / name: word for name in "abc"} for word in (b"old", b"new"))
+    atomic.write_files(old)
+    real, calls = getattr(atomic.os, step), []
+
+    def interrupted(*what: object) -> None:
+        calls.append(what)
+        if len(calls) == call and before:
+            raise KeyboardInterrupt
+        real(*what)
+        if len(calls) == call:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(atomic.os, step, interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        atomic.write_files(new)
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == (old if step == "fsync" else new)
+
+
 def test_a_place_that_cannot_be_written_is_named(tmp_path, grid):
     (tmp_path / "file").write_bytes(b"")
     with pytest.raises(OutputError, match="file"):

@@ -116,6 +116,30 @@ def test_an_interrupt_ends_with_130_one_line_and_no_files(case_folder, tmp_path,
     assert not (tmp_path / "out").exists()
 
 
+ENDED_WHILE_WRITING = """
+import os, signal, sys
+from app.cli import entry
+sync, calls = os.fsync, []
+def ended(*what):
+    calls.append(what)
+    if len(calls) == 3:
+        os.kill(os.getpid(), signal.SIGTERM)
+    sync(*what)
+os.fsync = ended
+entry()
+"""
+
+
+def test_who_is_told_to_end_while_writing_leaves_everything_as_it_was(case_folder, tmp_path):
+    (tmp_path / "merged.yaml").write_text("an older one")
+    words = ["merge", *inputs(case_folder), "--out", tmp_path]
+    told = in_a_process(*words, run=["-c", ENDED_WHILE_WRITING])
+    assert told.returncode == 130
+    assert told.stderr == "mapmeld: interrupted; nothing half-written is left\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["merged.yaml"]
+    assert (tmp_path / "merged.yaml").read_text() == "an older one"
+
+
 def test_python_m_app_is_the_same_command(strangers_folder, tmp_path):
     told = in_a_process("merge", *inputs(strangers_folder), "--out", tmp_path, "--json")
     assert told.returncode == 1

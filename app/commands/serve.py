@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import os
-import signal
+import socket
 import sys
 import threading
 from collections.abc import Sequence
@@ -36,8 +36,9 @@ Examples:
 
 The page is for this machine alone ({LOCAL}). At any other --host it is for those who have the
 token, which is part of the address that is printed: a new one at each start, or the one in
---token-file or ${TOKEN_VARIABLE}, which holds on this machine, too. Without --certfile what is
-sent can be read on the network, the token with it. SECURITY.md tells more. Ctrl-C ends it."""
+--token-file or ${TOKEN_VARIABLE}, which holds on this machine, too. With --behind it is for those
+who have the token and come through the proxy of that name. Without --certfile what is sent can be
+read on the network, the token with it. SECURITY.md tells more. Ctrl-C ends it."""
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
@@ -81,10 +82,12 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     access = access_for(args.host, args.token_file, tuple(args.behind), args.certfile, args.keyfile)
     logs.hide(access.token)
     server = make_server(args.host, args.port, _case(args), args.lesson, access)
-    url = address(args.host, server.get_port(), access)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # whoever asks it to end, it ends whole
+    port = server.get_port()
+    url = address(args.host, port, access)
     try:
-        print(f"mapmeld is at {url}   ({reach(args.host, access)}; Ctrl-C ends it)", flush=True)
+        print(f"mapmeld is at {url}   ({reach(args.host, access, args.behind)}; Ctrl-C ends it)", flush=True)
+        if everywhere(args.host):
+            print(f"from other machines: {address(socket.gethostname(), port, access)}", flush=True)
         wanted = not args.no_browser and _has_display()
         with browser(url, secret=bool(access.token)) if wanted else contextlib.nullcontext():
             threading.Event().wait()
@@ -103,13 +106,22 @@ def address(host: str, port: int, access: Access) -> str:
     return f"{at}?token={access.token}" if access.token else at
 
 
-def reach(host: str, access: Access) -> str:
-    """Who may open the page, in words."""
+def everywhere(host: str) -> bool:
+    """Whether a host stands for all addresses of this machine."""
+    return (numeric(host) or host) in ("", "0.0.0.0", "::")
+
+
+def reach(host: str, access: Access, behind: Sequence[str] = ()) -> str:
+    """Who may open the page, in words.
+
+    behind : names of proxies in front of it
+    """
     if not access.token:
         return "for this machine alone"
-    who = "this machine" if is_local(host) else "everyone on the network"
-    open_ = "" if access.tls or is_local(host) else ", unencrypted"
-    return f"for {who} with the token{open_}"
+    if not is_local(host):
+        return f"for everyone on the network with the token{'' if access.tls else ', unencrypted'}"
+    whom = f", and whom the proxy at {' or '.join(behind)} lets through," if behind else ""
+    return f"for this machine{whom} with the token"
 
 
 def _check_lesson(folder: Path) -> None:
