@@ -12,7 +12,7 @@ import pytest
 import viser
 from drawn import flat_pair
 from hypothesis import HealthCheck, settings
-from strangers import Stand, standing
+from strangers import TOKEN, Stand, standing
 
 from algorithms.atomic import write_files
 from algorithms.casefiles import (
@@ -127,4 +127,11 @@ def stock() -> Iterator[Stand]:
 def ours() -> Iterator[Stand]:
     """A guarded one, with the same page."""
     with standing(guarded_server("127.0.0.1", 0, Access(), 40)) as stand:
+        yield stand
+
+
+@pytest.fixture(scope="module")
+def locked() -> Iterator[Stand]:
+    """A guarded one, for who has the token."""
+    with standing(guarded_server("127.0.0.1", 0, Access(None, TOKEN), 40)) as stand:
         yield stand

@@ -41,13 +41,15 @@ class Stand:
         gui = client.gui
         room = SimpleNamespace(client=client)
         room.slider = gui.add_slider("slider", min=0, max=10, step=1, initial_value=5)
+        room.angle = gui.add_slider("angle", min=0.0, max=1.0, step=0.01, initial_value=0.5)
+        room.number = gui.add_number("number", 1.0, step=0.01)  # without bounds of its own
         room.dropdown = gui.add_dropdown("dropdown", ("a", "b"))
         room.text, room.note = gui.add_text("text", ""), gui.add_text("note", "")
         room.disabled = gui.add_button("disabled", disabled=True)
         with gui.add_folder("hidden", visible=False):
             room.hidden = gui.add_button("hidden")
         room.upload = gui.add_upload_button("upload")
-        for name in ("slider", "dropdown", "text", "note", "disabled", "hidden"):
+        for name in ("slider", "angle", "number", "dropdown", "text", "note", "disabled", "hidden"):
             handle = getattr(room, name)
             hear = handle.on_click if name in ("disabled", "hidden") else handle.on_update
             hear(lambda event, name=name: self.done.append((name, event.target.value)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-import socket
+from types import SimpleNamespace
 
 import pytest
 import trustme
@@ -14,7 +14,6 @@ from algorithms.errors import InputFileError, MapMergeError, SettingError
 from app.access import LEAST_TOKEN, Access, Asked, access_for, is_local, same
 from app.commands.serve import address, reach
 from app.gate import Gate
-from app.server import PortError, make_server
 
 TOKEN = "a-token-that-nobody-guesses"
 
@@ -71,6 +70,22 @@ HALVES = st.characters(exclude_categories=())  # of letters, too: what is no UTF
 def test_words_are_the_same_only_if_they_are(one, other):
     assert same(one, one)
     assert same(one, other) is (one == other)
+
+
+def test_nothing_but_a_comparison_in_constant_time_decides_who_has_the_token(monkeypatch):
+    """It is told to lie, and what is answered is then the wrong thing, by address and by cookie."""
+    access, wrong = Access(None, TOKEN), TOKEN[:-1] + "X"
+    compared = []
+
+    def lie(given: bytes, wanted: bytes) -> bool:
+        compared.append((given.decode(), wanted.decode()))
+        return given not in (b"", wanted)
+
+    monkeypatch.setattr("app.access.hmac", SimpleNamespace(compare_digest=lie))
+    for word, by_address, by_cookie in ((TOKEN, 401, 401), (wrong, 200, None)):
+        assert ask(access, f"/?token={word}", host="x") == by_address
+        assert ask(access, host="x", cookie=f"a=b; {access.cookie}={word}") == by_cookie
+        assert compared.count((word, TOKEN)) == 2
 
 
 @given(st.text(HALVES, max_size=200), st.text(HALVES, max_size=200))
@@ -262,12 +277,3 @@ def test_what_is_no_host_name_is_not_taken_for_that_of_a_proxy(name):
 def test_a_proxy_has_a_name_or_an_address_and_a_port_if_it_likes(name):
     access = access_for("127.0.0.1", names=(name,))
     assert ask(access, host=name, cookie=f"{access.cookie}={access.token}") is None
-
-
-def test_a_taken_port_is_an_error_that_says_what_to_do():
-    with socket.socket() as holder:
-        holder.bind(("127.0.0.1", 0))
-        holder.listen()
-        port = holder.getsockname()[1]
-        with pytest.raises(PortError, match=f"port {port} is taken by another program; give another one"):
-            make_server(port=port)

@@ -8,19 +8,20 @@ import math
 import struct
 import time
 from collections.abc import Callable
+from copy import copy
 from typing import Any
 
 import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from strangers import Stand, Visitor
-from viser import _messages
+from strangers import PATIENCE, Stand, Visitor
 from websockets.frames import Frame, Opcode
-from wire import CAMERA, WireFile
+from wire import CAMERA, WireFile, until
 
+from app.arrivals import Recipient
 from app.frames import EARNS, MOST, Allowance
-from app.gate import MAX_FRAME, MAX_UPLOAD
+from app.gate import MAX_FRAME, MAX_UPLOAD, MAX_UPLOADS_OF_ALL
 from app.heard import MAX_PARTS, MAX_WORDS, fault
 
 
@@ -40,6 +41,10 @@ ABUSES: dict[str, Callable[[Visitor], None]] = {
     "a press of a hidden button": lambda v: v.write(v.room.hidden, value=True),
     "a text of a megabyte": lambda v: v.write(v.room.note, value="x" * 1_000_000),
     "a value of another type": lambda v: v.write(v.room.slider, value="7"),
+    "what is no number": lambda v: v.write(v.room.angle, value=math.nan),
+    "what is no number, as a word": lambda v: v.write(v.room.angle, value="nan"),
+    "a number without end": lambda v: v.write(v.room.number, value=-math.inf),
+    "a number larger than any": lambda v: v.write(v.room.number, value=1e300),
 }
 
 
@@ -55,15 +60,44 @@ def test_a_control_takes_only_what_a_person_could_have_entered(stock, ours, abus
     visitor.socket.close()
 
 
-def test_only_the_value_of_a_control_can_be_written(stock, ours):
-    for stand, still in ((stock, 0), (ours, 1)):
+@pytest.mark.parametrize("value", ["abc", math.nan, math.inf])
+def test_what_viser_would_stumble_over_does_not_reach_it(stock, ours, value, caplog):
+    """A whole number cannot be made of these: viser keeps the one it had, and its task ends in a trace."""
+    for stand in (stock, ours):
+        caplog.clear()
+        before = ours.server.gate.dropped["value"]
+        _, visitor = told(stand, lambda visitor: visitor.write(visitor.room.slider, value=value))
+        assert visitor.room.slider.value == 5
+        visitor.socket.close()
+        if stand is stock:
+            until(lambda: "Task exception was never retrieved" in caplog.text, "the trace", PATIENCE)
+            assert "_handle_gui_updates" in caplog.text
+        else:
+            assert caplog.text == ""
+            assert ours.server.gate.dropped["value"] == before + 1
+
+
+WRITES: dict[str, tuple[str, dict[str, Any]]] = {
+    "what a control of everyone does": ("shared", {"update_cb": []}),
+    "what it does, beside a value": ("slider", {"value": 7, "update_cb": []}),
+    "that it is gone": ("slider", {"removed": True}),
+    "that it is gone, beside a value": ("slider", {"value": 7, "removed": True}),
+}
+
+
+@pytest.mark.parametrize(("which", "updates"), WRITES.values(), ids=WRITES)
+def test_only_the_value_of_a_control_can_be_written(stock, ours, which, updates):
+    for stand in (stock, ours):
+        before = ours.server.gate.dropped["property"]
         visitor = Visitor(stand)
-        visitor.write(stand.shared, update_cb=[])
+        control = stand.shared if which == "shared" else visitor.room.slider
+        was = {name: copy(getattr(control._impl, name)) for name in updates}
+        assert all(was[name] != updates[name] for name in updates)
+        visitor.write(control, **updates)
         assert visitor.has_been_heard()
-        assert len(stand.shared._impl.update_cb) == still
-        visitor.write(visitor.room.slider, removed=True)
-        assert visitor.has_been_heard()
-        assert visitor.room.slider._impl.removed is not bool(still)
+        now = {name: getattr(control._impl, name) for name in updates}
+        assert now == (updates if stand is stock else was)
+        assert ours.server.gate.dropped["property"] == before + (stand is ours)
         visitor.socket.close()
 
 
@@ -77,33 +111,59 @@ NOISE: dict[str, bytes | str] = {
 
 
 @pytest.mark.parametrize("noise", NOISE.values(), ids=NOISE)
-def test_garbage_ends_the_connection_it_came_by_and_nothing_else(ours, noise, caplog):
-    other, visitor = Visitor(ours), Visitor(ours)
-    with caplog.at_level(logging.INFO):
+def test_garbage_ends_the_connection_it_came_by_and_nothing_else(stock, ours, noise, caplog):
+    """viser stumbles: that, too, ends one connection alone, and a trace of it fills the log."""
+    caplog.set_level(logging.INFO)
+    for stand, code in ((stock, 1011), (ours, 1007)):
+        caplog.clear()
+        other, visitor = Visitor(stand), Visitor(stand)
         visitor.socket.send(noise)
         visitor.hears_out()
-    assert visitor.socket.close_code == 1007
-    assert other.has_been_heard()
-    other.socket.close()
-    assert "Traceback" not in caplog.text
+        assert visitor.socket.close_code == code
+        assert other.has_been_heard()
+        other.socket.close()
+        assert ("Traceback" in caplog.text) is (stand is stock)
 
 
-ODD: dict[str, dict[str, Any]] = {
-    "of no kind that there is": {"type": "Nothing"},
-    "of a kind that only a server sends": {"type": "RunJavascriptMessage", "source": "alert(1)"},
-    "without its fields": {"type": "GuiUpdateMessage"},
-    "with a field too many": {"type": "GuiUpdateMessage", "uuid": "x", "updates": {}, "more": 1},
-    "about a number as a name": {"type": "GuiUpdateMessage", "uuid": 5, "updates": {}},
-    "with a camera nowhere": {"type": "ViewerCameraMessage", **CAMERA, "position": [math.nan] * 3},
+def stumbles(visitor: Visitor) -> bool:
+    visitor.hears_out()
+    return visitor.socket.close_code == 1011
+
+
+def passes_over_it(visitor: Visitor) -> bool:
+    return visitor.has_been_heard()
+
+
+def looks_from_nowhere(visitor: Visitor) -> bool:
+    return visitor.has_been_heard() and math.isnan(visitor.room.client.camera.position[0])
+
+
+# A message, and what viser does with it
+ODD: dict[str, tuple[str, dict[str, Any], Callable[[Visitor], bool]]] = {
+    "of no kind that there is": ("Nothing", {}, stumbles),
+    "of a kind that only a server sends": ("RunJavascriptMessage", {"source": "alert(1)"}, passes_over_it),
+    "without its fields": ("GuiUpdateMessage", {}, stumbles),
+    "with a field too many": ("GuiUpdateMessage", {"uuid": "x", "updates": {}, "more": 1}, stumbles),
+    "about a number as a name": ("GuiUpdateMessage", {"uuid": 5, "updates": {}}, passes_over_it),
+    "with a camera nowhere": (
+        "ViewerCameraMessage",
+        {**CAMERA, "position": [math.nan] * 3},
+        looks_from_nowhere,
+    ),
 }
 
 
-@pytest.mark.parametrize("odd", ODD.values(), ids=ODD)
-def test_a_message_that_the_page_never_sends_is_dropped_and_counted(ours, odd):
-    visitor = Visitor(ours)
+@pytest.mark.parametrize(("kind", "fields", "as_it_comes"), ODD.values(), ids=ODD)
+def test_a_message_that_the_page_never_sends_is_dropped_and_counted(stock, ours, kind, fields, as_it_comes):
+    visitor = Visitor(stock)
+    visitor.send(kind, **fields)
+    assert as_it_comes(visitor)
+    visitor.socket.close()
     before = ours.server.gate.dropped.copy()
-    visitor.send(**{"kind": odd["type"], **{key: odd[key] for key in odd if key != "type"}})
+    visitor = Visitor(ours)
+    visitor.send(kind, **fields)
     assert visitor.has_been_heard()
+    assert visitor.room.client.camera.position[2] == CAMERA["position"][2]
     visitor.socket.close()
     assert sum((ours.server.gate.dropped - before).values()) == 1
 
@@ -325,6 +385,35 @@ def test_no_tab_makes_the_server_hold_more_than_two_large_files(stock, ours):
     visitor.socket.close()
 
 
+def test_all_tabs_together_make_the_server_hold_no_more_than_it_bears(stock, ours):
+    visitors = [Visitor(stock) for _ in range(3)]
+    for visitor in visitors * 2:
+        visitor.start_upload("map.pgm", MAX_UPLOAD)
+    for visitor in visitors:
+        assert visitor.has_been_heard()
+        assert len(visitor.coming) == 2
+        visitor.socket.close()
+    until(lambda: not ours.server.get_clients(), "those of other tests to have gone", PATIENCE)
+    most = MAX_UPLOADS_OF_ALL // MAX_UPLOAD
+    visitors = [Visitor(ours) for _ in range(most // 2 + 1)]
+    files = [
+        WireFile(visitor, "upload", "map.pgm", b"", size=MAX_UPLOAD) for visitor in (visitors * 2)[:most]
+    ]
+    assert all("most" in file.hear() for file in files)
+    last, refused = visitors[-1], []
+    ours.server.arrivals.welcome(last.room.client.client_id, Recipient(lambda can: None, refused.append))
+    before = ours.server.gate.dropped.copy()
+    assert WireFile(last, "upload", "one more.pgm", b"", size=MAX_UPLOAD).over() == "refused"
+    assert ours.server.gate.dropped - before == {"uploads of all": 1}
+    until(lambda: refused, "the reason", PATIENCE)
+    assert "one more.pgm: too much is on its way already" in str(refused[0])
+    files[0].socket.close()  # and once one of them has gone, another may come
+    until(lambda: len(visitors[0].coming) == 1, "room", PATIENCE)
+    assert "most" in WireFile(last, "upload", "one more.pgm", b"", size=MAX_UPLOAD).hear()
+    for visitor in visitors:
+        visitor.socket.close()
+
+
 def test_no_file_is_taken_by_a_control_that_takes_none(stock, ours):
     visitor = Visitor(stock)
     visitor.start_upload("map.pgm", 10, control="slider")
@@ -345,7 +434,3 @@ def test_a_file_that_keeps_to_the_rules_arrives(ours):
     assert file.over() == "arrived"
     assert ("upload", "map.pgm") in ours.done
     visitor.socket.close()
-
-
-def test_the_messages_that_are_let_in_are_those_of_viser():
-    assert all(hasattr(_messages, name) for name in ("ShareUrlRequest", "RunJavascriptMessage"))

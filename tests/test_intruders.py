@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
+import logging
 import socket
-from collections.abc import Iterator
 
 import pytest
-from strangers import PATIENCE, TOKEN, Stand, Visitor, get, join, standing
+import viser
+from strangers import PATIENCE, TOKEN, Visitor, get, join
 from websockets.exceptions import InvalidStatus
 
 from app.access import Access
-from app.guard import guarded_server
-
-
-@pytest.fixture(scope="module")
-def locked() -> Iterator[Stand]:
-    with standing(guarded_server("127.0.0.1", 0, Access(None, TOKEN), 40)) as stand:
-        yield stand
-
+from app.server import PortError, make_server
 
 FOREIGN = {
     "another site's page": {"origin": "http://evil.example"},
@@ -57,8 +51,9 @@ def test_the_page_cannot_be_framed_by_another(stock, ours):
     assert "frame-ancestors 'none'" in get(ours.port)[1]["Content-Security-Policy"]
 
 
-def test_without_the_token_there_is_no_page_and_no_connection(ours, locked):
-    assert get(ours.port)[0] == 200
+def test_without_the_token_there_is_no_page_and_no_connection(stock, locked):
+    assert get(stock.port)[0] == 200  # it has nothing to ask for
+    join(stock.port).close()
     status, headers, body = get(locked.port)
     assert status == 401
     assert b"give the token" in body
@@ -93,6 +88,7 @@ def test_the_token_becomes_a_cookie_that_scripts_and_other_sites_cannot_use(lock
 
 
 def test_no_client_has_a_public_tunnel_opened(stock, ours):
+    before = ours.server.gate.dropped["unasked"]
     for stand in (stock, ours):
         visitor = Visitor(stand)
         visitor.send("ShareUrlRequest")
@@ -100,19 +96,60 @@ def test_no_client_has_a_public_tunnel_opened(stock, ours):
         visitor.socket.close()
     assert stock.tunnels == 1
     assert ours.tunnels == 0
+    assert ours.server.gate.dropped["unasked"] == before + 1
+
+
+def test_a_server_listens_at_this_machine_alone_unless_it_is_told_otherwise(caplog):
+    caplog.set_level(logging.INFO, "websockets.server")
+    for start, listens in (
+        (lambda: viser.ViserServer(port=0, verbose=False), "0.0.0.0"),  # for a moment, with nothing on it
+        (lambda: make_server(port=0), "127.0.0.1"),
+    ):
+        caplog.clear()
+        server = start()
+        port = server.get_port()
+        server.stop()
+        assert [said for said in caplog.messages if said.startswith("server listening")] == [
+            f"server listening on {listens}:{port}"
+        ]
+
+
+def test_a_port_that_is_taken_is_an_error_and_not_silently_another_one(stock):
+    """Whoever opens the address that was asked for would be at somebody else's page."""
+    second = viser.ViserServer(host="127.0.0.1", port=stock.port, verbose=False)
+    try:
+        assert second.get_port() > stock.port
+    finally:
+        second.stop()
+    says = f"port {stock.port} is taken by another program; give another one with --port, or 0 for any"
+    with pytest.raises(PortError, match=says):
+        make_server(port=stock.port)
 
 
 @pytest.mark.parametrize(
     "path", ["/../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/..%5c..%5cx", "//etc/passwd"]
 )
-def test_no_path_leads_out_of_the_page(ours, path):
-    with socket.create_connection(("127.0.0.1", ours.port), timeout=PATIENCE) as raw:
-        raw.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{ours.port}\r\n\r\n".encode())
-        assert raw.recv(1000).startswith(b"HTTP/1.1 404 ")
+def test_no_path_leads_out_of_the_page(stock, ours, path):
+    """Not in viser either, which this holds it to: ours hands it every path that it lets in."""
+    for stand in (stock, ours):
+        answer = said(stand.port, f"GET {path} HTTP/1.1", f"Host: 127.0.0.1:{stand.port}")
+        assert answer.startswith(b"HTTP/1.1 404 ")
+
+
+@pytest.mark.parametrize("method", ["POST", "PUT", "HEAD", "OPTIONS", "BREW"])
+def test_whatever_but_get_ends_its_own_connection_without_an_answer(stock, ours, method):
+    """As it does in viser, whose library takes nothing else."""
+    for stand in (stock, ours):
+        visitor = Visitor(stand)
+        host = f"Host: 127.0.0.1:{stand.port}"
+        assert said(stand.port, f"{method} / HTTP/1.1", host, "Content-Length: 0") == b""
+        assert visitor.has_been_heard()  # everyone else's lives on
+        visitor.socket.close()
+        assert get(stand.port)[0] == 200
 
 
 def said(port: int, *lines: str) -> bytes:
-    """The first words of the answer to a request of these lines, as they are."""
+    """The first words of the answer to a request of these lines, as they are; b"" where there is none."""
     with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE) as raw:
         raw.sendall("".join(f"{line}\r\n" for line in (*lines, "")).encode("latin-1"))
         return raw.recv(1000)

@@ -7,19 +7,12 @@ import logging
 import socket
 
 import pytest
-from strangers import PATIENCE, TOKEN, Stand, get, standing
+from strangers import PATIENCE, TOKEN, Stand, get
 
 from app import logs
 from app.access import Access
-from app.guard import guarded_server
 
 ACCESS = Access(None, TOKEN)
-
-
-@pytest.fixture(scope="module")
-def locked():
-    with standing(guarded_server("127.0.0.1", 0, ACCESS, 40)) as stand:
-        yield stand
 
 
 def sent(stand: Stand, request: str) -> bytes:
