@@ -5,31 +5,30 @@ from __future__ import annotations
 import contextlib
 import math
 import struct
-import zlib
 from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from mapfiles import encoded, header, load, pgm
+from imagefiles import COLOUR, GREY_ALPHA, SIGNATURE, bmp, chunk, ihdr, png
+from mapfiles import cells, encoded, header, load, pgm
 from PIL import Image
 
 from algorithms.errors import InputFileError, MapMergeError, TooLargeError
-from algorithms.mapio import map_from_bytes, read_image, read_map
+from algorithms.mapio import image, map_from_bytes, read_image, read_map
+from algorithms.mapio.fields import MAX_ALIASES, MAX_DEPTH, MAX_VALUES, MAX_YAML_BYTES
 
 
-def chunk(kind: bytes, body: bytes) -> bytes:
-    return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-
-
-def png_header(width: int, height: int, bits: int = 8, colour: int = 0) -> bytes:
-    body = struct.pack(">IIBBBBB", width, height, bits, colour, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", body)
+def indented(levels: int) -> bytes:
+    """Mappings in each other by indentation."""
+    return b"".join(b" " * k + b"a:\n" for k in range(levels)) + b" " * levels + b"a: 1\n"
 
 
 GOOD_PNG = encoded(Image.effect_noise((64, 64), 50), "PNG")
-SIXTEEN_BIT_RGB = png_header(1, 1, 16, 2) + chunk(b"IDAT", zlib.compress(bytes(7))) + chunk(b"IEND", b"")
+SIXTEEN_BIT_RGB = png(ihdr(1, 1, 16, COLOUR), bytes(7))
+OLD_BMP = b"BM" + struct.pack("<IHHI", 26, 0, 0, 26) + struct.pack("<IHHHH", 12, 0, 5, 1, 24)
 
 BAD_YAML = {
     "empty": (b"", "is empty"),
@@ -66,6 +65,11 @@ BAD_YAML = {
     "resolution with unit": (header(resolution="0.05 m"), "resolution"),
     "resolution NaN": (header(resolution=math.nan), "resolution is '.nan', not a finite number"),
     "resolution infinite": (header(resolution=math.inf), "not a finite number"),
+    "resolution a thousand million": (
+        header(resolution=None) + b"resolution: 1e9\n",
+        "resolution is 1e+09 m; give metres per pixel, 0.0001 to 100",
+    ),
+    "resolution nan": (header(resolution=None) + b"resolution: nan\n", "resolution is 'nan', not a finite"),
     "resolution huge": (header(resolution=None) + b"resolution: 1e999", "not a finite number"),
     "resolution a kilometre": (
         header(resolution=1000.0),
@@ -78,13 +82,21 @@ BAD_YAML = {
     ),
     "resolution next to nothing": (header(resolution=5e-324), "resolution is 4.94066e-324 m"),
     "origin far away": (header(origin=[1e308, 0, 0]), "which is more than 10,000 km away"),
+    "origin a metre too far": (
+        header(origin=[0, -10_000_001, 0]),
+        "origin is [0, -10000001, 0], which is more than 10,000 km away",
+    ),
+    "origin overflows": (
+        header(origin=None) + b"origin: [0, 1e999, 0]\n",
+        "origin is [0, 1e999, 0], not 3 finite numbers",
+    ),
     "origin turned round and round": (header(origin=[0, 0, 1e300]), "turns by more than 1,000 rad"),
     "resolution null": (header(resolution=None) + b"resolution:\n", "resolution is empty"),
     "resolution a list": (header(resolution=[1]), "resolution"),
     "origin short": (header(origin=[0, 0]), "origin is [0, 0], not 3"),
     "origin long": (header(origin=[0, 0, 0, 0]), "not 3 finite numbers"),
     "origin a number": (header(origin=0), "origin"),
-    "origin NaN": (header(origin=[0, 0, math.nan]), "origin"),
+    "origin NaN": (header(origin=[0, 0, math.nan]), "origin is [0, 0, .nan], not 3 finite numbers"),
     "origin of words": (header(origin=["a", "b", "c"]), "origin is [a, b, c]"),
     "origin nested": (header(origin=[[0], 0, 0]), "origin"),
     "negate a word": (header(negate="maybe"), "negate is 'maybe'"),
@@ -94,7 +106,10 @@ BAD_YAML = {
     "threshold NaN": (header(occupied_thresh=math.nan), "occupied_thresh"),
     "threshold above 1": (header(occupied_thresh=65), "[0, 1]"),
     "threshold below 0": (header(free_thresh=-0.1), "[0, 1]"),
-    "thresholds swapped": (header(occupied_thresh=0.196, free_thresh=0.65), "smaller"),
+    "thresholds swapped": (
+        header(occupied_thresh=0.196, free_thresh=0.65),
+        "free_thresh is 0.65 and occupied_thresh 0.196; free_thresh must be the smaller one",
+    ),
     "thresholds equal": (header(occupied_thresh=0.5, free_thresh=0.5), "smaller"),
 }
 
@@ -110,6 +125,29 @@ def test_a_bad_yaml_file_is_refused_in_words(case):
     assert len(message.splitlines()) == 1
     assert len(message) < 400
     assert caught.value.remedy
+
+
+# name -> a file with so many of something, the most that are read, and what is said of one more
+YAML_LIMITS = {
+    "aliases": (lambda n: header() + b"a: &a x\nb: [" + b"*a, " * n + b"]", MAX_ALIASES, "too many values"),
+    "values": (lambda n: header() + b"a: [" + b"1, " * (n - 18) + b"]", MAX_VALUES, "too many values"),
+    "lists in each other": (lambda n: header() + b"a: " + b"[" * (n - 1) + b"]" * (n - 1), MAX_DEPTH, "deep"),
+    "mappings in each other": (lambda n: header() + indented(n - 1), MAX_DEPTH, "nested too deeply"),
+    "lists and mappings in turn": (
+        lambda n: header() + b"a: " + b"{b: " * 9 + b"[" * (n - 10) + b"]" * (n - 10) + b"}" * 9,
+        MAX_DEPTH,
+        "nested too deeply",
+    ),
+    "bytes": (lambda n: header().ljust(n, b"\n"), MAX_YAML_BYTES, "bytes, which is too long"),
+}
+
+
+@pytest.mark.parametrize("what", YAML_LIMITS)
+def test_a_yaml_file_at_a_limit_is_read_and_one_step_beyond_it_is_refused(what):
+    made, most, words = YAML_LIMITS[what]
+    assert map_from_bytes("m.yaml", made(most), "m.pgm", pgm([[0]])).cells.tolist() == [[100]]
+    with pytest.raises(InputFileError, match=rf"^m.yaml: .*{words}"):
+        map_from_bytes("m.yaml", made(most + 1), "m.pgm", pgm([[0]]))
 
 
 BAD_IMAGE = {
@@ -138,6 +176,8 @@ BAD_IMAGE = {
     "ASCII PBM of words": (b"P1\n3 1\n0 one 1", "something else than 0 and 1"),
     "ASCII PBM of numbers": (b"P1\n3 1\n0 2 1", "something else than 0 and 1"),
     "ASCII PBM too long": (b"P1\n1000 1000\n" + b"0 " * 8_000_001, "16 MB of pixels written as text"),
+    "PGM without height": (b"P5\n5 0\n255\n", "has 5 x 0 pixels; give an image with pixels"),
+    "ASCII PGM without width": (b"P2\n0 5\n255\n", "0 x 5 pixels"),
     "PBM cut": (b"P4\n9 3\n" + bytes(5), "cut off: 9 x 3"),
     "PBM without height": (b"P4\n9 0\n" + bytes(5), "9 x 0 pixels"),
     "PGM of comments": (b"P5\n" + b"#\n" * 40_000 + b"1 1\n255\n\0", "decoded"),
@@ -148,7 +188,22 @@ BAD_IMAGE = {
     "PNG cut": (GOOD_PNG[: len(GOOD_PNG) // 2], "decoded"),
     "PNG head only": (GOOD_PNG[:8], "decoded"),
     "PNG damaged": (GOOD_PNG[:60] + bytes(40) + GOOD_PNG[100:], "decoded"),
-    "PNG without width": (png_header(0, 5), "m.png"),
+    "PNG 16 bit by its second header": (png(ihdr(1, 1), bytes(7), ihdr(1, 1, 16, COLOUR)), "16 bits"),
+    "PNG 16 bit with alpha": (png(ihdr(1, 1, 16, GREY_ALPHA), bytes(5)), "16 bits"),
+    "PNG without width": (png(ihdr(0, 5), bytes(5)), "has 0 x 5 pixels; give an image with pixels"),
+    "PNG without height": (png(ihdr(5, 0), b""), "has 5 x 0 pixels"),
+    "PNG without pixels by its second header": (png(ihdr(1, 1), bytes(2), ihdr(0, 1)), "m.png"),
+    "PNG without data": (SIGNATURE + ihdr(3, 2) + chunk(b"IEND"), "decoded"),
+    "CMYK": (encoded(Image.new("CMYK", (8, 8)), "JPEG"), "m.png: is not a PGM, PPM, PBM, PNG or BMP"),
+    "BMP without width": (bmp(0, 5, b""), "has 0 x 5 pixels; give an image with pixels"),
+    "BMP without height": (bmp(5, 0, b""), "has 5 x 0 pixels"),
+    "BMP of a negative width": (bmp(-5, 5, b""), "has -5 x 5 pixels"),
+    "old BMP without width": (OLD_BMP, "has 0 x 5 pixels"),
+    "BMP of run lengths": (
+        bmp(2001, 2000, b"\0\1", 8, 1),
+        "BMP of run lengths with 2001 x 2000 pixels; at most 4,000,000",
+    ),
+    "BMP of short run lengths": (bmp(65_000, 1500, b"\0\1", 4, 2), "BMP of run lengths with 65000 x 1500"),
     "BMP cut": (encoded(Image.new("RGB", (9, 9)), "BMP")[:-40], "decoded"),
     "BMP head only": (b"BM", "decoded"),
 }
@@ -166,19 +221,35 @@ def test_a_bad_image_is_refused_in_words(case):
     assert caught.value.remedy
 
 
+def test_pixels_of_a_kind_that_only_another_pillow_makes_are_refused(monkeypatch):
+    """Which kinds there are has changed from one Pillow to the next; of CMYK it would make some grey."""
+    monkeypatch.setattr(image.BmpImagePlugin, "BmpImageFile", lambda _: Image.new("CMYK", (8, 8)))
+    with pytest.raises(InputFileError, match=r"^m.pgm: has pixels of the kind CMYK; save it as an 8-bit PGM"):
+        load(bmp(8, 8, bytes(192)))
+
+
+def test_an_image_that_memory_does_not_suffice_for_is_not_called_damaged(monkeypatch):
+    monkeypatch.setattr(image, "read_netpbm", Mock(side_effect=MemoryError))
+    with pytest.raises(InputFileError, match=r"^m.pgm: needs more memory than there is; crop the map"):
+        load(pgm([[0]]))
+
+
+def test_a_bmp_of_run_lengths_is_read():
+    runs = b"\3\0\0\0" + b"\1\377\2\0" + b"\0\1"  # black black black; white black black
+    assert cells(bmp(3, 2, runs, 8, 1)) == [[100, 100, 100], [0, 100, 100]]
+
+
 HUGE = {
     "PGM": b"P5\n20000 20000\n255\n",
     "ASCII PGM": b"P2\n20000 20000\n255\n",
     "PBM": b"P4\n20000 20000\n",
     "ASCII PBM": b"P1\n20000 20000\n",
     "PGM of one column": b"P5\n1 65536\n255\n" + bytes(65536),
-    "PNG of one column": png_header(1, 100_000_000, 1) + chunk(b"IDAT", b"") + chunk(b"IEND", b""),
-    "PNG of one row": png_header(50_000_000, 1, 8, 6) + chunk(b"IDAT", b"") + chunk(b"IEND", b""),
-    "PNG": png_header(20000, 20000) + chunk(b"IDAT", b"") + chunk(b"IEND", b""),
-    "PNG at its format's limit": png_header(2**31 - 1, 2**31 - 1) + chunk(b"IDAT", b""),
-    "BMP": b"BM"
-    + struct.pack("<IHHI", 54, 0, 0, 54)
-    + struct.pack("<IiiHHIIiiII", 40, 20000, 20000, 1, 24, 0, 0, 0, 0, 0, 0),
+    "PNG of one column": SIGNATURE + ihdr(1, 100_000_000, 1) + chunk(b"IDAT", b"") + chunk(b"IEND", b""),
+    "PNG of one row": SIGNATURE + ihdr(50_000_000, 1, 8, 6) + chunk(b"IDAT", b"") + chunk(b"IEND", b""),
+    "PNG": SIGNATURE + ihdr(20000, 20000) + chunk(b"IDAT", b"") + chunk(b"IEND", b""),
+    "PNG at its format's limit": SIGNATURE + ihdr(2**31 - 1, 2**31 - 1) + chunk(b"IDAT", b""),
+    "BMP": bmp(20000, 20000, b""),
 }
 
 

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from imagefiles import interlaced_png
 from mapfiles import cells, encoded, load, pgm
 from PIL import Image
 
@@ -115,6 +116,19 @@ def test_a_transparent_grey_of_a_png_is_unknown():
     image = Image.new("L", (2, 1))
     image.putdata([0, 254])
     assert cells(encoded(image, "PNG", transparency=0)) == [[-1, 0]]
+
+
+@given(
+    grey=arrays(np.uint8, st.tuples(st.integers(1, 17), st.integers(1, 17))),
+    channels=st.sampled_from([1, 2, 3, 4]),
+)
+def test_an_interlaced_png_is_the_plain_one(grey, channels):
+    pixels = grey if channels == 1 else np.stack([grey, grey[::-1], grey[:, ::-1], 255 - grey][:channels], 2)
+    plain = encoded(Image.fromarray(pixels), "PNG")
+    interlaced = interlaced_png(pixels)
+    assert (plain[28], interlaced[28]) == (0, 1)  # the header's word for it
+    assert cells(interlaced, mode="raw") == cells(plain, mode="raw")
+    assert cells(interlaced) == cells(plain)
 
 
 def test_a_black_and_white_image_is_a_map_too():

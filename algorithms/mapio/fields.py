@@ -32,27 +32,22 @@ FALSE = ("false", "no", "off", "n")
 class _TextLoader(yaml.BaseLoader):
     """Mappings, lists and texts only; a key given twice is an error, not a silent choice.
 
-    The scanner takes a time that grows with the square of the depth: there is an end to that.
+    Composing takes what the scanner finds as it comes, so its bounds end the scanning, too: that takes a
+    time that grows with the square of the depth.
     """
 
-    _aliases = _values = 0
-
-    def fetch_flow_collection_start(self, token: type[yaml.Token]) -> None:
-        if self.flow_level >= MAX_DEPTH:
-            raise RecursionError
-        super().fetch_flow_collection_start(token)
-
-    def add_indent(self, column: int) -> bool:
-        if len(self.indents) > MAX_DEPTH:
-            raise RecursionError
-        return bool(super().add_indent(column))
+    _aliases = _values = _depth = 0
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
         self._values += 1
         self._aliases += self.check_event(yaml.AliasEvent)
         if self._values > MAX_VALUES or self._aliases > MAX_ALIASES:
             raise yaml.composer.ComposerError(None, None, "it holds too many values", None)
+        if self._depth >= MAX_DEPTH and self.check_event(yaml.CollectionStartEvent):
+            raise RecursionError
+        self._depth += 1
         node: yaml.Node | None = super().compose_node(parent, index)
+        self._depth -= 1
         return node
 
     def compose_scalar_node(self, anchor: Any) -> yaml.ScalarNode:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from typing import BinaryIO
 
 import numpy as np
@@ -14,7 +15,14 @@ from algorithms.mapio.shading import GreyArray
 
 # An uncompressed image with alpha at the largest size, and 1 MB for what stands before the pixels.
 MAX_IMAGE_BYTES = 4 * MAX_CELLS + 1_000_000
-MODES_READ = ("1", "L", "LA", "P", "PA", "RGB", "RGBA")
+PNG, BMP = b"\x89PNG\r\n\x1a\n", b"BM"
+OS2 = b"\x0c"  # length of the oldest header of a BMP, with sides of two bytes
+# Pillow fills a BMP of run lengths byte by byte: 13 s for 100 million.
+MAX_RUN_CELLS = 4_000_000
+RUN_LENGTHS = (1, 2)  # kinds of compression: of 8 bits and of 4
+# All that Pillow 13 opens a PNG or BMP of 8 bits to. It is not pinned, and of another kind it would make
+# grey without a word, cut off at 255.
+MODES_READ = ("1", "L", "LA", "P", "RGB", "RGBA")
 
 
 def read_pixels(source: str, stream: BinaryIO) -> tuple[GreyArray, GreyArray | None]:
@@ -49,6 +57,10 @@ def read_pixels(source: str, stream: BinaryIO) -> tuple[GreyArray, GreyArray | N
         return _decode(source, stream, head)
     except MapMergeError:
         raise
+    except MemoryError as error:
+        raise InputFileError(
+            source, "needs more memory than there is", "crop the map, or make it coarser"
+        ) from error
     except Exception as error:  # decoders raise nearly anything on a damaged file
         cause = (str(error) or type(error).__name__).splitlines()[0]
         raise InputFileError(
@@ -60,31 +72,49 @@ def _decode(source: str, stream: BinaryIO, head: bytes) -> tuple[GreyArray, Grey
     """An image by its decoder. The class is called by name, not through Image.open: so no other
     format can be meant, and the bound on the size is ours.
     """
-    bits = 8
     image: ImageFile.ImageFile
-    if head.startswith(b"\x89PNG\r\n\x1a\n"):
-        bits = head[24] if len(head) > 24 else 8  # Pillow would quietly keep the upper 8 of 16
+    if head.startswith(PNG):
+        _check_announced(source, head, ">II", at=16)
         image = PngImagePlugin.PngImageFile(stream)
-    elif head.startswith(b"BM"):
+        # Of 16 bits Pillow would quietly keep the upper 8. Its own word for them counts, for of several
+        # headers it goes by the last.
+        bits = 16 if any("16" in str(tile[3]) for tile in image.tile) else 8
+    elif head.startswith(BMP):
+        _check_announced(source, head, "<HH" if head[14:15] == OS2 else "<ii", at=18)
         image = BmpImagePlugin.BmpImageFile(stream)
+        bits = 8
     else:
         found = "is empty" if not head else "is not a PGM, PPM, PBM, PNG or BMP image"
         raise InputFileError(source, found, f"{CONVERT}; what its name ends in does not count")
     _check_header(source, image.width, image.height, bits)
     if image.mode not in MODES_READ:
         raise InputFileError(source, f"has pixels of the kind {image.mode}", CONVERT)
+    if image.info.get("compression") in RUN_LENGTHS and image.width * image.height > MAX_RUN_CELLS:
+        found = f"is a BMP of run lengths with {image.width} x {image.height} pixels"
+        raise InputFileError(source, f"{found}; at most {MAX_RUN_CELLS:,} are read", CONVERT)
     image.load()
     flat: Image.Image = image
-    if "transparency" in image.info or image.mode == "PA":
+    if "transparency" in image.info:
         flat = image.convert("RGBA")
     alpha = np.asarray(flat.getchannel("A")) if flat.mode in ("LA", "RGBA") else None
     return np.asarray(flat.convert("L")), alpha
 
 
-def _check_header(source: str, width: int, height: int, bits: int) -> None:
-    """Raise where the image that a header announces is not worth decoding."""
+def _check_announced(source: str, head: bytes, sides: str, at: int) -> None:
+    """Raise where a header says that there are no pixels: to Pillow that is an image of an unknown kind."""
+    if len(head) >= at + struct.calcsize(sides):
+        width, height = struct.unpack_from(sides, head, at)
+        _check_pixels(source, width, abs(height))  # of a BMP it is negative where the top row is the first
+
+
+def _check_pixels(source: str, width: int, height: int) -> None:
     if width <= 0 or height <= 0:
         raise InputFileError(source, f"has {width} x {height} pixels", "give an image with pixels")
+
+
+def _check_header(source: str, width: int, height: int, bits: int) -> None:
+    """Raise where the image that a header announces is not worth decoding."""
+    _check_pixels(source, width, height)
     if bits > 8:
         raise InputFileError(source, f"has {bits} bits for each grey or colour of a pixel", CONVERT)
     check_size(width, height, source)
