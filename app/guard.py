@@ -7,14 +7,13 @@ memory with uploads. What this leans on of viser's insides, tests/test_canaries.
 
 from __future__ import annotations
 
-import contextlib
 import http
-import io
 import logging
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
+import rich
 import viser
 import viser.infra._infra as infra
 import websockets.asyncio.server
@@ -34,6 +33,7 @@ from app.mishap import watched
 
 log = logging.getLogger(__name__)
 
+SPEAKS = f"viser-v{viser.__version__}"
 TOO_MANY = Answer(503, "too many tabs are open here; close one, and reload")
 NOT_FOUND = Answer(404, "there is no such page here")
 NO_REQUEST = Answer(400, "this is no request of the page")
@@ -48,6 +48,9 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
     """
     _harden_widgets()
     quiet_handshakes()
+    # viser prints what it thinks of, words of strangers among them, in the loop that serves everybody:
+    # where nobody reads what is printed, that loop waits for ever
+    rich.reconfigure(quiet=True)
     gate = Gate()
     real_serve = websockets.asyncio.server.serve
     live: set[Any] = set()
@@ -75,6 +78,10 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
             brings = connection.request.path == PATH
             among = files if brings else live
             if not brings:
+                if connection.subprotocol != SPEAKS:  # a tab from before an upgrade; it is told to reload
+                    gate.drop("version")
+                    await connection.close(1002, "another version is served here: reload the page")
+                    return
                 gate.guard(connection)
             among.add(connection)
             try:
@@ -104,8 +111,7 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
     real = infra.websockets
     infra.websockets = shim  # viser's own name for the library; it is looked up once, in the constructor
     try:
-        with contextlib.redirect_stdout(io.StringIO()):  # a box with viser's name, even where not verbose
-            server = viser.ViserServer(host=host, port=port, verbose=False)
+        server = viser.ViserServer(host=host, port=port, verbose=False)
     finally:
         infra.websockets = real
     for kind in (messages.ShareUrlRequest, messages.ShareUrlDisconnect):

@@ -243,6 +243,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
     def _show_inputs(self, inputs: Inputs) -> bool:
         if self._gone:
             return False
+        self.session.stop()  # a run of others may have been asked for while this waited for its turn
         try:
             grids = [grid for grid in (inputs.ref, inputs.mov) if grid is not None]
             self._budget.claim(self, sum(grid.cells.size for grid in grids))
@@ -304,12 +305,12 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         )
 
     def _merge(self) -> None:
-        self._lesson.leave()
-        self._tuning.sync()
-        job = self._job(pace=self._run.pace, again=True)
-        if job is None:
-            return
         with self._turn, self.session.drawing:
+            self._lesson.leave()
+            self._tuning.sync()
+            job = self._job(pace=self._run.pace, again=True)
+            if job is None:
+                return
             self._hand.end()
             self._placing_done()
             self._merged = self._asked = True

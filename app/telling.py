@@ -78,6 +78,9 @@ class Telling(Part):
 
     def ended(self, job: Job, story: Story) -> None:
         """The run came to its goal."""
+        i = self._inputs
+        if job.ref is not i.ref or job.mov is not i.mov or job.observations != i.observations:
+            raise RuntimeError("an answer of other maps than those on the page")  # never shown as theirs
         self._run.stoppable("run", False)
         result = story.get(MergeResult)
         with self._client.atomic():

@@ -15,15 +15,17 @@ from pathlib import Path
 from threading import Event, Thread
 from time import sleep
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 import viser
 from wire import PATIENCE, WireTab, until
 
 import app.server
-from algorithms.casefiles import Case
+from algorithms.casefiles import Case, read_case
 from algorithms.errors import TooLargeError
 from app.budget import Budget
+from app.job import Job
 from app.page import Page
 from app.server import make_server
 from app.takeaway import Takeaway
@@ -61,6 +63,44 @@ def test_ten_tabs_merge_at_once_and_each_comes_out_as_alone(server):
     for tab in (*tabs, idle):
         tab.close()
     until(lambda: not server.get_clients(), "all sessions to end")
+
+
+def test_merge_pressed_between_two_loads_gives_no_pair_the_answer_of_another(server, monkeypatch):
+    came, goes_on = Event(), Event()
+
+    def slowly(folder: Path) -> Case:
+        if folder.name == "apartment_r2_r1":
+            came.set()
+            assert goes_on.wait(PATIENCE)
+        return read_case(folder)
+
+    make = Page._job
+
+    def late(page: Page, **how: Any) -> Job | None:
+        job = make(page, **how)
+        sleep(0.5)  # in which others get their turn where they can
+        return job
+
+    monkeypatch.setattr("app.panels.files.read_case", slowly)
+    monkeypatch.setattr(Page, "_job", late)
+    tab = WireTab(server.get_port())
+    tab.choose("Instant")
+    tab.write("Sample", "office_r2_r1")
+    until(lambda: tab.words["case"] == "office_r2_r1", "the first pair")
+    tab.write("Sample", "apartment_r2_r1")
+    assert came.wait(PATIENCE)
+    tab.press("Merge")
+    sleep(0.2)  # until it waits for its turn
+    tab.write("Sample", "office_r2_r1")
+    sleep(0.2)
+    goes_on.set()
+    until(lambda: tab.words["case"] == "apartment_r2_r1", "the second pair")
+    until(lambda: tab.words["case"] == "office_r2_r1", "the first pair again")
+    sleep(1.0)  # in which a run of the second would come to its end
+    assert tab.state == "Ready. Press Merge."
+    tab.press("Merge")
+    assert "202 m of wall" in merged(tab)
+    tab.close()
 
 
 def test_a_tab_that_stops_reading_is_given_up_and_hinders_no_other(server, monkeypatch):

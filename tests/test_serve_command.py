@@ -9,6 +9,8 @@ import urllib.request
 
 import pytest
 from commandline import ROOT
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import connect
 
 from app.cli import main
 from app.opening import browser
@@ -34,6 +36,34 @@ def test_serve_answers_on_this_machine_alone_until_it_is_told_to_end(end):
             time.sleep(0.2)
             page.send_signal(end)
             assert page.wait(timeout=20) == 0
+        finally:
+            if page.poll() is None:
+                page.kill()
+
+
+def test_a_tab_of_another_version_is_told_to_reload_and_stops_nobody_where_no_one_reads_what_is_printed():
+    command = [sys.executable, "-m", "app", "serve", "--no-browser", "--port", "0"]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT
+    ) as page:
+        try:
+            url = page.stdout.readline().split()[3]
+            page.stdout.close()  # as of ``mapmeld serve | head -1``
+            origin = url.rstrip("/")
+            at = origin.replace("http", "ws")
+            for older in ("viser-v1.1.0", f"viser-v{'x' * 7000}"):
+                with connect(at, subprotocols=[older], origin=origin, compression=None) as socket:
+                    with pytest.raises(ConnectionClosed):
+                        socket.recv(timeout=20)
+                    assert (socket.close_code, socket.close_reason) == (
+                        1002,
+                        "another version is served here: reload the page",
+                    )
+            with urllib.request.urlopen(url, timeout=20) as answer:
+                assert answer.status == 200
+            page.send_signal(signal.SIGTERM)
+            assert page.wait(timeout=20) in (0, 130)
+            assert page.stderr.read() == ""
         finally:
             if page.poll() is None:
                 page.kill()
