@@ -9,7 +9,8 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager
-from threading import Event, Lock, RLock
+from dataclasses import dataclass
+from threading import Lock, RLock
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -32,6 +33,15 @@ class Left(BaseException):
     """Stop was pressed. No Exception: who takes any of those for a damaged file lets this one pass."""
 
 
+def wanted(check: Check) -> bool:
+    """Whether the work is still asked for."""
+    try:
+        check()
+    except Left:
+        return False
+    return True
+
+
 def unwatched(done: float | None = None, /) -> None:
     """The check of work that cannot be left."""
 
@@ -49,6 +59,15 @@ class Watched(io.BytesIO):
         return super().read(size)
 
 
+@dataclass(eq=False)
+class _Doing:
+    """Something under way: its words, and those that are right once it is over."""
+
+    said: dict[str, Any]
+    before: dict[str, Any]
+    left: bool = False
+
+
 class Errand:
     """Of one tab: says what is done, and puts the words back where nothing is to be said of it."""
 
@@ -56,7 +75,7 @@ class Errand:
         """stoppable : is told whether there is anything to stop"""
         self._stage, self._drawing, self._stoppable = stage, drawing, stoppable
         self._lock = Lock()
-        self._under_way: list[Event] = []  # each is set when it is to be left
+        self._under_way: list[_Doing] = []
 
     @contextmanager
     def __call__(self, doing: str, aside: bool = False) -> Iterator[Check]:
@@ -64,51 +83,71 @@ class Errand:
 
         aside : it changes nothing on the page, so that the words from before are right afterwards, too
         """
-        pressed = Event()
         said: dict[str, Any] = {"state": doing, "mood": "running", "progress": 0.05 if aside else 0.3}
-        before, told = self._say(said), perf_counter()
+        me, told = self._begin(said), perf_counter()
 
         def check(done: float | None = None, /) -> None:
             nonlocal told
-            if pressed.is_set():
+            if me.left:
                 raise Left
-            if done is not None and perf_counter() - told >= OFTEN and self._still(said):
+            if done is not None and perf_counter() - told >= OFTEN and self._shows(me):
                 told = perf_counter()
-                said["progress"] = done
-                self._say(said)
+                me.said["progress"] = done
+                self._say(me.said)
 
         back = True
         try:
-            self._count(pressed, 1)
             yield check
             check()  # pressed at the last moment is pressed
             back = aside
+        except Exception as error:
+            if me.left:  # what becomes of it is of no matter any more
+                raise Left from error
+            raise
         finally:
-            if back and self._still(said):
-                self._say(before)
-            self._count(pressed, -1)
+            self._end(me, back)
 
     def stop(self) -> bool:
-        """Have it leave what it is at; whether it is at anything."""
+        """Have it leave what it is at; whether it is at anything that was not told so before."""
         with self._lock:
-            for pressed in self._under_way:
-                pressed.set()
-            return bool(self._under_way)
+            leaving = [one for one in self._under_way if not one.left]
+            for one in leaving:
+                one.left = True
+        for one in leaving:
+            self._fall_back(one)
+        return bool(leaving)
 
-    def _count(self, pressed: Event, by: int) -> None:
+    def _begin(self, said: dict[str, Any]) -> _Doing:
+        with self._drawing:
+            shown = self._stage.said(*said)
+            other = next((one for one in self._under_way if one.said == shown), None)
+            me = _Doing(said, other.before if other else shown)
+            with self._lock:
+                self._under_way.append(me)
+            self._say(said)
+        self._stoppable(True)
+        return me
+
+    def _end(self, me: _Doing, back: bool) -> None:
         with self._lock:
-            (self._under_way.append if by > 0 else self._under_way.remove)(pressed)
+            self._under_way.remove(me)
             any_left = bool(self._under_way)
+        if back:
+            self._fall_back(me)
         self._stoppable(any_left)
 
-    def _still(self, said: dict[str, Any]) -> bool:
-        """Whether nobody else has had their say since."""
-        return self._stage.said(*said) == said
-
-    def _say(self, words: dict[str, Any]) -> dict[str, Any]:
-        """Say this instead of what was said, and return that."""
+    def _fall_back(self, me: _Doing) -> None:
+        """Say what else is under way, or what was said before: where its own words are said."""
         with self._drawing:
-            before = self._stage.said(*words)
+            if self._shows(me):
+                others = [one for one in self._under_way if one is not me and not one.left]
+                self._say(others[-1].said if others else me.before)
+
+    def _shows(self, me: _Doing) -> bool:
+        """Whether nobody else has had their say since."""
+        return self._stage.said(*me.said) == me.said
+
+    def _say(self, words: dict[str, Any]) -> None:
+        with self._drawing:
             self._stage.hud(**words)
             self._stage.flush()
-        return before

@@ -8,6 +8,8 @@ from typing import Any
 
 import viser
 
+from algorithms.errors import MapMergeError
+
 log = logging.getLogger(__name__)
 
 OUT_OF_MEMORY = "There is too little memory for this. Close other tabs, or take smaller maps."
@@ -20,10 +22,13 @@ def watched(submit: Callable[..., Any]) -> Callable[..., Any]:
         def run() -> Any:
             try:
                 return callback(*args)
+            except MapMergeError as error:  # nobody's mistake here: a process that died, say
+                log.warning("what a control does could not be done: %s", type(error).__name__)
+                tell(args[0] if args else None, error)
             except Exception as error:
                 log.exception("what a control does ended in a bug")
                 tell(args[0] if args else None, error)
-                return None
+            return None
 
         return submit(run)
 
@@ -42,6 +47,8 @@ def tell(where: Any, error: Exception) -> None:
 
 def words(error: Exception) -> str:
     """What went wrong, for a person."""
+    if isinstance(error, MapMergeError):
+        return str(error)
     if isinstance(error, MemoryError):
         return OUT_OF_MEMORY
     if isinstance(error, OSError) and error.strerror:

@@ -109,9 +109,9 @@ class Session:
             if job is not None and job is not self._ended:  # it may have come to its end just now
                 self._listener.stopped(job, self._story)
 
-    def told_again(self, job: Job) -> Iterator[Step]:
+    def told_again(self, job: Job, wanted: Callable[[], bool]) -> Iterator[Step]:
         """The steps of a run once more, for a recording: those that are known are not computed again."""
-        return self.bench.steps(job, Asker(), aside=True)
+        return self.bench.steps(job, Asker(wanted), aside=True)
 
     def close(self) -> None:
         """End the worker; the tab is gone."""

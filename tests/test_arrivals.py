@@ -17,6 +17,7 @@ from app.access import Access
 from app.arrivals import LEAST, MOST, Recipient
 from app.gate import MAX_UPLOAD, MAX_UPLOADS
 from app.guard import guarded_server
+from app.panels.files import FilesPanel
 from app.server import make_server
 
 IMAGE = "Map 1: image"
@@ -50,6 +51,20 @@ def kept(server: viser.ViserServer) -> list[int]:
     return [state["transferred_bytes"] for of_tab in states for state in of_tab.values()]
 
 
+@pytest.fixture
+def came(monkeypatch) -> dict[str, bytes]:
+    """Every file that has arrived, by its name."""
+    files: dict[str, bytes] = {}
+    take = FilesPanel._take_upload
+
+    def note(panel: FilesPanel, key: str, file: viser.UploadedFile) -> None:
+        files[file.name] = file.content
+        take(panel, key, file)
+
+    monkeypatch.setattr(FilesPanel, "_take_upload", note)
+    return files
+
+
 def can_stop(tab: WireTab) -> bool:
     return not tab.props[tab.find("Stop", "GuiButtonMessage")]["disabled"]
 
@@ -59,7 +74,7 @@ def stopped(tab: WireTab) -> None:
     tab.press("Stop")
 
 
-def test_two_files_that_come_at_a_time_are_a_map_to_the_last_byte(server, tab, small_case):
+def test_two_files_that_come_at_a_time_are_a_map_to_the_last_byte(server, tab, small_case, came):
     files = map_to_bytes(small_case.ref, "mine")
     yaml = WireFile(tab, "Map 1: YAML", "mine.yaml", files["mine.yaml"])
     image = WireFile(tab, IMAGE, "mine.pgm", files["mine.pgm"])
@@ -71,13 +86,12 @@ def test_two_files_that_come_at_a_time_are_a_map_to_the_last_byte(server, tab, s
         assert file.over() == "arrived"
     until(lambda: tab.words["case"] == "your files", "the map")
     assert tab.mood == "idle"
-    (client,) = server.get_clients().values()
-    assert client.gui._gui_input_handle_from_uuid[tab.find(IMAGE)].value.content == files["mine.pgm"]
+    assert came == files
     assert kept(server) == []
 
 
 @pytest.mark.parametrize("size", [0, 1, LEAST, LEAST + 1, MOST + 1])
-def test_a_file_of_any_length_arrives_as_it_was(server, tab, size):
+def test_a_file_of_any_length_arrives_as_it_was_and_refused_it_is_kept_nowhere(server, tab, size, came):
     content = bytes(k % 251 for k in range(size))
     file = WireFile(tab, "Observation: YAML", "seen.yaml", content)
     step = LEAST + 7  # of any length between the two bounds
@@ -85,9 +99,11 @@ def test_a_file_of_any_length_arrives_as_it_was(server, tab, size):
         file.part(step)
         step = min(2 * step, MOST)
     assert file.over() == "arrived"
-    (client,) = server.get_clients().values()
-    assert client.gui._gui_input_handle_from_uuid[tab.find("Observation: YAML")].value.content == content
     until(lambda: tab.mood == "failed", "the words on what is wrong with it")
+    assert came == {"seen.yaml": content}
+    (client,) = server.get_clients().values()
+    button = client.gui._gui_input_handle_from_uuid[tab.find("Observation: YAML")]
+    assert button.value.content == b""
 
 
 def test_stop_leaves_a_file_with_nothing_kept_and_the_next_one_arrives(server, tab, small_case, at_once):

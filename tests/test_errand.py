@@ -192,6 +192,36 @@ def test_stop_ends_everything_that_is_under_way_at_once(person):
     assert person.said == BEFORE
 
 
+@pytest.mark.parametrize("first_ends_first", [True, False])
+def test_of_two_at_a_time_the_words_of_one_that_goes_on_are_said_and_in_the_end_those_from_before(
+    person, first_ends_first
+):
+    first = person.errand("Making the files.", aside=True)
+    second = person.errand("Recording.", aside=True)
+    first.__enter__()
+    second.__enter__()
+    ends = [(first, "Recording."), (second, "Making the files.")]
+    if not first_ends_first:
+        ends.reverse()
+    (one, goes_on), (other, _) = ends
+    one.__exit__(None, None, None)
+    assert person.said["state"] == goes_on
+    other.__exit__(None, None, None)
+    assert person.said == BEFORE
+
+
+def test_stop_is_seen_at_once_and_a_second_one_is_for_somebody_else(person):
+    def slow():
+        with person.errand("Reading."):
+            assert person.errand.stop()
+            assert person.said == BEFORE  # though it has not looked up yet
+            assert not person.errand.stop()
+            raise OSError("what becomes of it is of no matter any more")
+
+    with pytest.raises(Left):
+        slow()
+
+
 def test_a_press_at_the_last_moment_still_counts(person):
     with pytest.raises(Left), person.errand("Reading."):
         person.errand.stop()

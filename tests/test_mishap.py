@@ -6,6 +6,7 @@ import json
 import logging
 import os
 import signal
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -15,6 +16,7 @@ from wire import WireTab, until
 
 from algorithms.pipeline import PipelineConfig
 from algorithms.smm import CandidateConfig
+from app import words as words_of_the_page
 from app import workers
 from app.export import Harvest
 from app.logs import Lines, facts
@@ -39,6 +41,13 @@ def tab(server):
     tab.choose("Instant")
     yield tab
     tab.close()
+
+
+def send_all(what: signal.Signals) -> None:
+    """Send a signal to every process that merges."""
+    for pid in workers.COMMON.pids:
+        with suppress(ProcessLookupError):  # one that died with nothing to do
+            os.kill(pid, what)
 
 
 def merge(tab: WireTab) -> str:
@@ -84,13 +93,54 @@ def test_a_merge_whose_process_is_killed_is_told_and_the_next_merge_works(tab, c
     tab.words["mood"] = ""
     tab.press("Merge")
     until(lambda: tab.mood == "running" and tab.words["progress"], "the merge to go on")
-    for pid in workers.COMMON.pids:
-        os.kill(pid, signal.SIGKILL)
+    send_all(signal.SIGKILL)
     until(lambda: tab.mood == "failed", "a word of it")
     assert tab.state == str(workers.WorkerDiedError())
     assert tab.notices("The run ended") == said + 1
     assert "a process that merges has ended" in caplog.text
     tab.choose("Instant")
+    assert merge(tab) == "accepted"
+
+
+def test_a_recording_whose_process_hangs_can_be_stopped_and_the_next_merge_works(tab, monkeypatch):
+    monkeypatch.setattr("app.workers.HANGS", 0.2)
+    assert merge(tab) == "accepted"
+    said, progress = tab.state, words_of_the_page.progress
+
+    def hung(story: Story) -> float:
+        send_all(signal.SIGSTOP)
+        return progress(story)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(words_of_the_page, "progress", hung)
+        tab.press("Save replay")
+        until(lambda: tab.state.startswith("Recording the run"), "the recording")
+        until(lambda: not tab.props[tab.find("Stop", "GuiButtonMessage")]["disabled"], "Stop")
+        tab.press("Stop")
+        until(lambda: tab.state == said, "the words from before")
+        assert tab.mood == "accepted"
+        until(lambda: tab.props[tab.find("Stop", "GuiButtonMessage")]["disabled"], "its end")
+    send_all(signal.SIGCONT)  # those of other tabs
+    assert tab.notices("This did not work") == 0
+    assert merge(tab) == "accepted"
+    tab.press("Save replay")
+    until(lambda: any(name.startswith("replay_") for name in tab.files), "the replay after all")
+
+
+def test_a_recording_whose_process_is_killed_is_told_and_is_no_bug(tab, monkeypatch, caplog):
+    assert merge(tab) == "accepted"
+    said, progress = tab.state, words_of_the_page.progress
+
+    def killed(story: Story) -> float:
+        send_all(signal.SIGKILL)
+        return progress(story)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(words_of_the_page, "progress", killed)
+        tab.press("Save replay")
+        until(lambda: tab.notices("This did not work"), "a word of it")
+    assert "Traceback" not in caplog.text
+    until(lambda: tab.state == said, "the words from before")
     assert merge(tab) == "accepted"
 
 
@@ -142,6 +192,7 @@ def test_what_went_wrong_is_said_without_a_trace():
     assert "No space left on device" in words(OSError(28, "No space left on device"))
     assert "KeyError" in words(KeyError("secret"))
     assert "secret" not in words(KeyError("secret"))
+    assert words(workers.WorkerDiedError()) == str(workers.WorkerDiedError())
 
 
 def test_a_line_of_the_log_is_one_line_that_programs_read():

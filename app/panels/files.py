@@ -22,6 +22,7 @@ from app.palette import QUIET
 from app.panels.imageform import ImageForm
 
 NONE = "(choose)"
+TAKEN = viser.UploadedFile("", b"")  # what a button holds that holds no file any more
 Report = Callable[[MapMergeError], None]
 
 
@@ -141,7 +142,7 @@ class FilesPanel:
                 self._status = gui.add_html(self._table())
                 for key, (label, kinds) in SLOTS.items():
                     button = gui.add_upload_button(label, mime_type=kinds, color=QUIET)
-                    button.on_upload(lambda _, key=key, button=button: self._take_upload(key, button.value))
+                    button.on_upload(partial(self._arrived, key))
                     if key.startswith("image"):
                         number = int(key[-1])
                         use = partial(self._take, f"yaml{number}")
@@ -188,6 +189,13 @@ class FilesPanel:
             self._offer_forms()
             self._tell()
             self._load(Inputs.of(case))
+
+    def _arrived(self, key: str, event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
+        """Take what the button holds; it would keep that, refused or not, for as long as the tab is there."""
+        held = event.target._impl
+        file, held.value = held.value, TAKEN
+        if file is not TAKEN:  # by an earlier call, where two files came at once: the newest counts
+            self._take_upload(key, file)
 
     def _take_upload(self, key: str, file: viser.UploadedFile) -> None:
         self._take(key, Upload(_short(file.name) or key, file.content))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 from app import words
-from app.errand import Check, unwatched
+from app.errand import Check, unwatched, wanted
 from app.inputs import Inputs
 from app.replay.facts import About
 from app.replay.page import replay_html
@@ -21,22 +22,26 @@ __all__ = ["About", "record", "replay_html", "replay_of"]
 
 
 def replay_of(
-    job: Job, steps: Callable[[Job], Iterator[Step]], inputs: Inputs, check: Check = unwatched
+    job: Job,
+    steps: Callable[[Job, Callable[[], bool]], Iterator[Step]],
+    inputs: Inputs,
+    check: Check = unwatched,
 ) -> bytes:
     """The page for a run.
 
     job    : what ran, and how
-    steps  : gives the steps of that run
+    steps  : gives the steps of that run, as long as they are wanted
     inputs : the same maps and sightings, with their name and, where it is known, the truth
     check  : is called at every step
     """
 
     def watched() -> Iterator[Step]:
         story = Story(job.config)
-        for step in steps(job):
+        for step in steps(job, partial(wanted, check)):
             story.tell(step)
             check(words.progress(story))
             yield step
+        check()  # they end early where they are not wanted
 
     about = About(inputs, job.method, job.config, job.seed)
     return replay_html(record(watched(), inputs, job.config), about)
