@@ -15,7 +15,7 @@ help:
 	@echo "make test         check style and types, run every test, browser tests included"
 	@echo "make bench        time the stages of a merge"
 	@echo "make fuzz         feed every reader of files with damaged ones (ARGS='--seconds 300')"
-	@echo "make soak         many tabs for ten minutes: memory, answers, leaks (ARGS='--minutes 2')"
+	@echo "make soak         many tabs for ten minutes: memory, answers, leaks (ARGS='--minutes 2 --waves 4')"
 	@echo "make audit        ask pip-audit for known holes in what is installed (needs the network)"
 	@echo "make samples      simulate the maps in sample_maps again"
 	@echo "make screenshots  take the pictures of the README and the guides again"

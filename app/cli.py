@@ -98,7 +98,10 @@ def entry() -> None:
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:  # closed by whoever started us, as for work in the background
             setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # whoever asks it to end, it ends whole
+    for name in ("SIGTERM", "SIGHUP"):  # whoever asks it to end, or takes its terminal away: it ends whole
+        asked = getattr(signal, name, None)
+        if asked is not None and signal.getsignal(asked) is not signal.SIG_IGN:  # as nohup has it
+            signal.signal(asked, signal.default_int_handler)
     status = main()
     if status == EXIT_INTERRUPTED:
         # not by the ordinary way out, which waits for threads that the interrupt may have caught

@@ -71,6 +71,7 @@ class Researching(Part):
         """Show what a method has found, in place of one's own result; undo goes back."""
         self._lesson.leave()
         self.session.stop()
+        inputs = self._inputs
         try:
             with self._errand(f"Laying it over map 1: {guest.title}.") as check:
                 seen = self._merged_by(guest)
@@ -80,7 +81,9 @@ class Researching(Part):
         except MapMergeError as error:  # it throws the maps too far apart
             self._report(error)
             return
-        with self.session.drawing:
+        with self._turn, self.session.drawing:
+            if self._inputs is not inputs:  # other maps have come meanwhile
+                return
             self._hand.end()
             self._placing_done()
             desk = self._timeline.desk

@@ -1,5 +1,7 @@
-"""Load a server for some minutes and print what it took: ``make soak``. Nothing here is a test that fails
-by the clock; it ends with 1 where a merge came out otherwise, something leaked, or a log holds a trace.
+"""Load a server for some minutes and print what it took: ``make soak``, on a machine with nothing else to do.
+
+It ends with 1 where a merge came out otherwise, a page was slow to answer, something leaked, there was too
+little time to tell, or the log holds a trace.
 """
 
 from __future__ import annotations
@@ -21,6 +23,8 @@ from wire import WireTab, until
 
 ROOT = Path(__file__).parent.parent
 MOST_LEAKED = 60.0  # MB between the fifth wave and the last: what an allocator keeps back
+MOST_THREADS = 10  # more than after the first wave: viser's threads, which are started as they are needed
+LIVELY = 1.0  # seconds in which a page answers whatever else goes on
 
 
 class Served:
@@ -95,10 +99,26 @@ def answer(tab: WireTab, value: float) -> float:
     return monotonic() - began
 
 
+def turn(tab: WireTab, button: str) -> float:
+    """Seconds until a button of the panel is seen to be pressed."""
+    began = monotonic()
+    tab.choose(button)
+    until(lambda: button in tab.words["pressed"], "a pressed button")
+    return monotonic() - began
+
+
+def lively(what: str, answers: list[float], wrong: list[str]) -> str:
+    """How soon it answered, in words; what was too slow is wrong."""
+    if max(answers) > LIVELY:
+        wrong.append(f"{what} took {max(answers):.2f} s to answer")
+    return f"{what} answers in {median(answers):.2f} s, at worst {max(answers):.2f} s ({len(answers)} times)"
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--minutes", type=float, default=10.0, help="about how long (default: 10)")
     parser.add_argument("--tabs", type=int, default=50, help="tabs of a wave (default: 50)")
+    parser.add_argument("--waves", type=int, default=20, help="how many there must be (default: 20)")
     parser.add_argument("--log", type=Path, default=Path("out/soak.log"), help="the server's log")
     args = parser.parse_args()
     args.log.parent.mkdir(parents=True, exist_ok=True)
@@ -126,16 +146,17 @@ def main() -> int:
         threads = [threading.Thread(target=work, args=(tab,)) for tab in busy]
         for thread in threads:
             thread.start()
-        answers, value = [], 200.0
+        slider, button, value = [], [], 200.0
         while any(thread.is_alive() for thread in threads):
             value = 1000.0 - value
-            answers.append(answer(idle, value))
+            slider.append(answer(idle, value))
+            button.append(turn(busy[len(button) % 10], "Fast" if len(button) // 10 % 2 == 0 else "Instant"))
         for thread in threads:
             thread.join()
         print(
             f"10 tabs merging at once: {min(took):.1f} to {max(took):.1f} s each; "
-            f"a slider of an 11th is answered in {median(answers):.2f} s, at worst {max(answers):.2f} s "
-            f"({len(answers)} times); {server.megabytes:.0f} MB",
+            f"{lively('a slider of an 11th', slider, wrong)}; "
+            f"{lively('a button of each of the ten', button, wrong)}; {server.megabytes:.0f} MB",
             flush=True,
         )
 
@@ -153,10 +174,9 @@ def main() -> int:
             wrong.append(f"after a process was killed a merge said: {said}")
 
     sizes: list[float] = []
+    counts: list[int] = []
     waves = 0
-    while waves < 20 or (monotonic() < end and waves < 1000):
-        if monotonic() > end:
-            break
+    while monotonic() < end:
         with tabs(server.port, args.tabs) as opened:
             merge(opened[waves % len(opened)])
             at = server.megabytes
@@ -164,15 +184,19 @@ def main() -> int:
         sleep(4)  # what they held is given back
         waves += 1
         sizes.append(server.megabytes)
-        threads_now = int(server.status("Threads"))
+        counts.append(int(server.status("Threads")))
         if waves % 5 == 0 or waves == 1:
             print(
                 f"wave {waves}: {args.tabs} tabs open {at:.0f} MB, closed {sizes[-1]:.0f} MB, "
-                f"{threads_now} threads, {server.open_files} files",
+                f"{counts[-1]} threads, {server.open_files} files",
                 flush=True,
             )
-    if len(sizes) > 5 and sizes[-1] - sizes[4] > MOST_LEAKED:
+    if waves < args.waves:
+        wrong.append(f"{waves} waves in this time, too few to tell; there should be {args.waves}")
+    if waves > 5 and sizes[-1] - sizes[4] > MOST_LEAKED:
         wrong.append(f"{sizes[-1] - sizes[4]:.0f} MB more than after the fifth wave")
+    if counts and counts[-1] - counts[0] > MOST_THREADS:
+        wrong.append(f"{counts[-1] - counts[0]} threads more than after the first wave")
     status, log = server.end()
     traces = log.count("Traceback")
     if status:

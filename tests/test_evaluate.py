@@ -231,6 +231,15 @@ def test_one_case_can_be_given_as_the_folder(cases, tmp_path, capsys):
     assert [case["case"] for case in told["cases"]] == ["flat_1"]
 
 
+def test_no_report_takes_the_place_of_a_file_of_a_case(cases, capsys):
+    place = cases / "flat_1" / "map1.yaml"
+    before = place.read_bytes()
+    for folder in (cases, cases / "flat_1"):
+        assert main(["evaluate", str(folder), "--json", str(place)]) == 2
+        assert "lies in the folder of a case; choose another place for --json" in capsys.readouterr().err
+    assert place.read_bytes() == before
+
+
 # ---- a method that finds no transform
 
 

@@ -21,7 +21,7 @@ def as_in_a_terminal():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_serve_answers_on_this_machine_alone_until_it_is_told_to_end(end):
     command = [sys.executable, "-m", "app", "serve", "--no-browser", "--port", "0"]
     with subprocess.Popen(

@@ -9,6 +9,7 @@ from math import degrees
 from pathlib import Path
 from typing import Any
 
+from algorithms.errors import OutputError
 from app.usage import Parser
 
 USAGE = "DIR [--rough | --both] [--json FILE] [--jobs N | --scheduler ADDRESS] [options]"
@@ -67,6 +68,8 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
 
     if args.json is not None:
         check_file(args.json)
+        if args.json.resolve().parent in {folder.resolve() for folder in case_folders(args.folder)}:
+            raise OutputError(args.json, "lies in the folder of a case", "choose another place for --json")
     executor = executor_for(args.jobs, args.scheduler)
     order = Order(args.folder, args.method, config_from(args), args.seed, args.rough)
     total = len(case_folders(args.folder)) + (len(rough_folders(args.folder)) if args.both else 0)
