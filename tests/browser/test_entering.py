@@ -107,6 +107,20 @@ def test_another_sites_page_drives_stock_viser_and_not_ours(page, server, tmp_pa
         site.shutdown()
 
 
+def test_an_address_makes_stock_viser_obey_another_server_and_not_ours(page, stock, ours):
+    other = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    elsewhere = f"ws://127.0.0.1:{other.get_port()}"
+    try:
+        for stand, obeyed in ((stock, other.get_port()), (ours, ours.port)):
+            with page.expect_websocket(timeout=1000 * PATIENCE) as opened:
+                page.goto(f"http://127.0.0.1:{stand.port}/?websocket={elsewhere}")
+            assert opened.value.url == f"ws://127.0.0.1:{obeyed}/"
+            # and no script could make it do so either
+            assert page.evaluate(OPENS, [elsewhere, SPEAKS]) is (stand is stock)
+    finally:
+        other.stop()
+
+
 def test_nothing_on_the_page_can_send_anything_elsewhere(tab, page):
     asked = []
     site = ThreadingHTTPServer(("127.0.0.1", 0), partial(Listening, asked))
