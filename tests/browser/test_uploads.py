@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from os import truncate
 from pathlib import Path
 
 import pytest
@@ -101,8 +102,19 @@ def test_a_file_on_its_way_is_told_of_holds_up_nothing_and_can_be_left(open_tab,
         assert "ploading" not in told
 
         line.rate = SLOW
-        tab.upload(IMAGES[1], second)
-        settle(lambda: percent() > 0, "a last one")
+        loaded = table.text_content()
+        for spoil in (lambda: truncate(second, 100), second.unlink):  # while it is being read
+            tab.upload(IMAGES[1], second)
+            settle(lambda: percent() > 0, "some of it")
+            spoil()
+            settle(
+                lambda: shown.inner_text() == "floor_2.pgm cannot be read any more. Choose it again.",
+                "the note",
+            )
+            image(second)
+        tab.upload(IMAGES[1], second)  # and it can be chosen again
+        settle(lambda: percent() > 0 and kept() == 1, "a last one")
+        assert table.text_content() == loaded
         line.cut()
         line.rate = None
         settle(
