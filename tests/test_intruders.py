@@ -99,7 +99,8 @@ def test_no_client_has_a_public_tunnel_opened(stock, ours):
     assert ours.server.gate.dropped["unasked"] == before + 1
 
 
-def test_a_server_listens_at_this_machine_alone_unless_it_is_told_otherwise(caplog):
+def test_a_server_listens_at_this_machine_alone_unless_it_is_told_otherwise(caplog, monkeypatch):
+    monkeypatch.setattr("app.server.warm_up", lambda: None)  # nothing is merged here
     caplog.set_level(logging.INFO, "websockets.server")
     for start, listens in (
         (lambda: viser.ViserServer(port=0, verbose=False), "0.0.0.0"),  # for a moment, with nothing on it

@@ -31,6 +31,7 @@ def test_serve_answers_on_this_machine_alone_until_it_is_told_to_end(end):
             said = next(line for line in page.stdout if line.startswith("mapmeld is at "))
             url = said.split()[3]
             assert url.startswith("http://127.0.0.1:")
+            assert "(for this machine alone;" in said
             with urllib.request.urlopen(url, timeout=20) as answer:
                 assert answer.status == 200
             time.sleep(0.2)
