@@ -6,7 +6,7 @@ import contextlib
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Callable, Coroutine, Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -52,9 +52,16 @@ class Stand:
         for name in ("slider", "angle", "number", "dropdown", "text", "note", "disabled", "hidden"):
             handle = getattr(room, name)
             hear = handle.on_click if name in ("disabled", "hidden") else handle.on_update
-            hear(lambda event, name=name: self.done.append((name, event.target.value)))
-        room.upload.on_upload(lambda event: self.done.append(("upload", event.target.value.name)))
+            hear(self._noting(name))
+        room.upload.on_upload(self._noting("upload"))
         self.rooms.append(room)
+
+    def _noting(self, name: str) -> Callable[[Any], Coroutine[Any, Any, None]]:
+        async def note(event: Any) -> None:  # in viser's own loop: what is done is noted in its order
+            value = event.target.value
+            self.done.append((name, value.name if name == "upload" else value))
+
+        return note
 
 
 class Visitor:

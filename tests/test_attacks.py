@@ -432,5 +432,5 @@ def test_a_file_that_keeps_to_the_rules_arrives(ours):
     for size in (MAX_FRAME, 10):
         file.part(size)
     assert file.over() == "arrived"
-    assert ("upload", "map.pgm") in ours.done
+    until(lambda: ("upload", "map.pgm") in ours.done, "the button to have it", PATIENCE)
     visitor.socket.close()
