@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+import time
+from pathlib import Path
+from unittest.mock import Mock
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from readers import READERS, SHAPES, reads
+from mapfiles import pgm
+from readers import READERS, SHAPES, SLOWER, reads
 
 from algorithms.errors import MapMergeError
+from algorithms.mapio import image
 from algorithms.visible import visible
+
+HEAVY = Path(__file__).with_name("heavy.py")
 
 
 @st.composite
@@ -81,8 +91,35 @@ def test_the_files_that_are_tried_are_read_before_they_are_damaged(name):
     assert read >= len(good) / 2
 
 
-@pytest.mark.parametrize("shape", SHAPES)
-def test_no_shape_of_a_file_keeps_a_reader_busy(shape):
-    """Each of these took a parser from a second to minutes before there was an end to it."""
-    for reader, _ in READERS.values():
-        reads(reader, SHAPES[shape])
+def test_no_file_of_1_mb_keeps_a_reader_busy_or_fills_the_memory():
+    """Among them shapes that took a parser from a second to minutes before there was an end to it.
+
+    Memory is counted by process, so they have one of their own. Its bound on time is not one on the clock:
+    it counts its own processor time, and allows for a slower processor than the one that the promise is for.
+    """
+    told = subprocess.run(
+        [sys.executable, HEAVY, "--slower", f"{SLOWER}"],
+        capture_output=True,
+        timeout=300,
+        text=True,
+        cwd=HEAVY.parent.parent,
+    )
+    assert told.returncode == 0, told.stdout + told.stderr
+    assert all(shape in told.stdout for shape in SHAPES)
+
+
+def slow(_: bytes) -> None:
+    deadline = time.thread_time() + 0.02
+    while time.thread_time() < deadline:
+        pass
+
+
+def test_a_reader_that_takes_too_long_or_too_much_is_told(monkeypatch):
+    with pytest.raises(AssertionError, match=r"^took 0.0 s of processor time; 0.01 s are the most"):
+        reads(slow, b"", 0.01)
+    reads(slow, b"", 10)
+    with pytest.raises(AssertionError, match=r"^made the process .* MB large; 1 MB are the most"):
+        reads(lambda data: data, b"", peak=1)
+    monkeypatch.setattr(image, "read_netpbm", Mock(side_effect=MemoryError))
+    with pytest.raises(AssertionError, match="more memory than there is"):
+        reads(READERS["image"][0], pgm([[0]]))
