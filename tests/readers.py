@@ -133,17 +133,19 @@ class TooSlowError(AssertionError):
 
 def reads(
     reader: Callable[[bytes], object], data: bytes, seconds: float = MOST_SECONDS, peak: float = math.inf
-) -> None:
-    """Read, or refuse in words, in time and in memory; anything else is an error.
+) -> bool:
+    """Whether it was read, and not refused; an error where that was not in words, in time and in memory.
 
     seconds : of this thread's processor time. No reader waits or has a second thread, and for how long this
               one stands aside for others is not counted.
     peak    : MB that the process may have held by then, from its start
     """
     began = time.thread_time()
+    read = True
     try:
         reader(data)
     except MapMergeError as error:
+        read = False
         if isinstance(error.__cause__, MemoryError):
             raise AssertionError("took more memory than there is") from error
     took, held = time.thread_time() - began, peak_memory()
@@ -151,6 +153,7 @@ def reads(
         raise TooSlowError(f"took {took:.1f} s of processor time; {seconds:g} s are the most")
     if held > peak:
         raise AssertionError(f"made the process {held:,.0f} MB large; {peak:,.0f} MB are the most")
+    return read
 
 
 def peak_memory() -> float:

@@ -105,7 +105,9 @@ def test_no_file_of_1_mb_keeps_a_reader_busy_or_fills_the_memory():
         cwd=HEAVY.parent.parent,
     )
     assert told.returncode == 0, told.stdout + told.stderr
-    assert all(shape in told.stdout for shape in SHAPES)
+    assert all(f"  {shape}\n" in told.stdout for shape in SHAPES)
+    for name in ("P2, comments", "PNG, interlaced", "BMP, short rows", "large PNG, interlaced"):
+        assert f"read     {name}\n" in told.stdout  # it was not refused for a fault of ours
 
 
 def slow(_: bytes) -> None:
