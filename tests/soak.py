@@ -19,11 +19,14 @@ from pathlib import Path
 from statistics import median
 from time import monotonic, sleep
 
+from play import play
 from wire import WireTab, until
 
 ROOT = Path(__file__).parent.parent
 MOST_LEAKED = 60.0  # MB between the fifth wave and the last: what an allocator keeps back
 MOST_THREADS = 10  # more than after the first wave: viser's threads, which are started as they are needed
+PLAY = 45.0  # seconds of play at random
+SAMPLE = "office_r2_r1"
 LIVELY = 1.0  # seconds in which a page answers whatever else goes on
 
 
@@ -119,6 +122,7 @@ def main() -> int:
     parser.add_argument("--minutes", type=float, default=10.0, help="about how long (default: 10)")
     parser.add_argument("--tabs", type=int, default=50, help="tabs of a wave (default: 50)")
     parser.add_argument("--waves", type=int, default=20, help="how many there must be (default: 20)")
+    parser.add_argument("--seed", type=int, default=0, help="of what is done at random (default: 0)")
     parser.add_argument("--log", type=Path, default=Path("out/soak.log"), help="the server's log")
     args = parser.parse_args()
     args.log.parent.mkdir(parents=True, exist_ok=True)
@@ -172,6 +176,20 @@ def main() -> int:
         print(f"merges' processes killed: told; the next merge took {seconds:.2f} s", flush=True)
         if said != right:
             wrong.append(f"after a process was killed a merge said: {said}")
+
+    with tabs(server.port, 1) as (tab,):
+        print(f"at random, seed {args.seed}: ", end="", flush=True)
+        deeds = play(tab, PLAY, args.seed)
+        for words in ("This did not work", "The run ended"):
+            if tab.notices(words):
+                wrong.append(f"at random, with seed {args.seed}: {words!r}")
+        tab.write("Sample", "apartment_r2_r1")
+        until(lambda: tab.words["case"] == "apartment_r2_r1", "another pair")
+        tab.write("Sample", SAMPLE)
+        until(lambda: tab.words["case"] == SAMPLE, "the first pair")
+        tab.choose("Instant")
+        merge(tab)
+        print(f"{len(deeds)} deeds of one tab; then it merges: {tab.mood}", flush=True)
 
     sizes: list[float] = []
     counts: list[int] = []

@@ -13,8 +13,10 @@ from types import SimpleNamespace
 import pytest
 import viser
 
+from algorithms.methods import METHODS
 from app.inputs import Inputs
 from app.panels.files import FilesPanel
+from app.panels.tuning import TuningPanel
 from app.stage import TabStage
 
 
@@ -112,3 +114,20 @@ def test_a_yaml_file_that_names_another_image_is_taken_with_a_doubt(server):
     panel._take_upload("image2", viser.UploadedFile("mine.pgm", b"P5\n2 2\n255\n\0\1\2\3"))
     assert loaded[-1].mov is not None
     assert "mine.yaml names the image other.pgm; loaded is mine.pgm." in loaded[-1].doubt()
+
+
+def test_a_reset_that_was_pressed_for_a_method_that_has_given_way_does_nothing(server):
+    changes = []
+    panel = TuningPanel(server.gui, lambda: changes.append(panel.method), changes.append)
+    buttons = [
+        handle
+        for handle in server.gui._gui_input_handle_from_uuid.values()
+        if str(getattr(handle, "label", "")).startswith("Reset ")
+    ]
+    assert len(buttons) > 3
+    pressed = [callback for button in buttons for callback in button._impl.update_cb]
+    for method in METHODS:
+        panel.restore(method, METHODS[method].defaults)
+        for press in pressed:
+            press(None)
+    assert changes == []

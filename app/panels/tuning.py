@@ -62,7 +62,9 @@ def _in_metres(setting: Setting) -> bool:
 
 
 class TuningPanel:
-    """Owns the config. ``changed`` is called with it after every change by the person."""
+    """Owns the config. ``changed`` is called after every change by the person, in the same turn: nobody else
+    gets one before everything that goes by the config has heard of it.
+    """
 
     def __init__(
         self,
@@ -89,7 +91,7 @@ class TuningPanel:
             if method == self.method:
                 return
             self._take(method, METHODS[method].defaults)
-        self._changed()
+            self._changed()
 
     def restore(self, method: str, config: Any) -> None:
         """Show this method with these settings."""
@@ -206,18 +208,20 @@ class TuningPanel:
             self.config = config
             self._show_cells()
             self._hide_idle()
-        self._changed()
+            self._changed()
 
     def _reset(self, mine: tuple[Path, ...]) -> None:
         with self._turn:
             config = self.config
+            if not self._settings.keys() >= set(mine):  # of a method that has given way meanwhile
+                return
             for path in mine:
                 config = with_value(config, path, self._settings[path].default)
             if config == self.config:
                 return
             self.config = config
             self._write(config)
-        self._changed()
+            self._changed()
 
     def _write(self, config: Any) -> None:
         self._writer = get_ident()
