@@ -21,16 +21,22 @@ from uuid import uuid4
 
 import msgspec
 import viser
+from viser._gui_handles import GuiUploadButtonHandle
 from websockets.exceptions import ConnectionClosed
 
 from algorithms.errors import InputFileError
-from app.gate import MAX_FRAME, MAX_NAME, MAX_UPLOAD, MAX_UPLOADS_OF_ALL, Gate
+from app.gate import Gate, usable
 
 log = logging.getLogger(__name__)
 
 PATH = "/upload"
-LEAST, MOST = 64 * 1024, MAX_FRAME  # bytes of a part; the last one may be shorter
+LEAST, MOST = 64 * 1024, 1024 * 1024  # bytes of a part; the last one may be shorter
 AHEAD = 4 * 1024 * 1024  # bytes that may be on their way: enough for a line that is fast and long
+MAX_UPLOAD = 200 * 2**20  # bytes of one file: a map of the largest size there may be
+MAX_UPLOADS = 2 * MAX_UPLOAD  # bytes on their way from one tab: two maps
+MAX_UPLOADS_OF_ALL = 5 * MAX_UPLOAD  # bytes on their way from all tabs
+MAX_OPEN_UPLOADS = 8  # of one tab
+MAX_NAME = 255  # letters of a file's name
 SILENCE = 60.0  # seconds until a connection that says nothing is given up
 SHORT = 0.5  # seconds; what takes less can be left by nobody
 GOODBYE = 10.0  # seconds until a connection that is left ends, whatever it still holds
@@ -163,10 +169,18 @@ class Arrivals:
 
     def _has_room(self, one: Arrival) -> bool:
         """Whether a file may come now."""
-        if _coming(one.gui) + one.size > MAX_UPLOADS_OF_ALL:
+        button, coming = one.gui._gui_input_handle_from_uuid.get(one.button), _coming(one.gui)
+        if not isinstance(button, GuiUploadButtonHandle) or not usable(one.gui, button):
+            self._gate.drop("upload unasked")
+        elif len(coming) >= MAX_OPEN_UPLOADS:
+            self._gate.drop("uploads")
+        elif one.size > MAX_UPLOAD or one.size + sum(coming) > MAX_UPLOADS:
+            self._gate.drop("upload size")
+        elif one.size + sum(sum(_coming(tab.gui)) for tab in self._tabs().values()) > MAX_UPLOADS_OF_ALL:
             self._gate.drop("uploads of all")
-            return False
-        return self._gate.takes_upload(one.gui, one.button, one.size)
+        else:
+            return True
+        return False
 
     async def _watched(self, one: Arrival) -> bool:
         """Take it in, and have its tab know where that takes long; whether it is there."""
@@ -231,14 +245,9 @@ async def _over(connection: Any, why: str) -> None:
         connection.transport.abort()
 
 
-def _coming(gui: Any) -> int:
-    """Bytes of all files that are on their way, of every tab."""
-    tabs = gui._root_server()._connected_clients.values()
-    return sum(
-        state["total_bytes"]
-        for api in (gui, *(tab.gui for tab in tabs if tab.gui is not gui))
-        for state in api._current_file_upload_states.values()
-    )
+def _coming(gui: Any) -> list[int]:
+    """Bytes of each file that is on its way from a tab."""
+    return [state["total_bytes"] for state in gui._current_file_upload_states.values()]
 
 
 def refusal(name: str, size: int) -> InputFileError:

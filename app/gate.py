@@ -1,4 +1,4 @@
-"""What a browser may say, once it is in: the frames, the values of controls, and the files it sends.
+"""What a browser may say, once it is in: the messages of the page, and the values of controls.
 
 viser believes all of it. What is not let through here is dropped and counted by its reason; only a
 frame that is no message at all ends the connection it came by, and that connection alone.
@@ -14,18 +14,12 @@ from time import monotonic
 from typing import Any
 
 from viser import _messages as messages
-from viser._gui_handles import GuiTabHandle, GuiUploadButtonHandle
+from viser._gui_handles import GuiTabHandle
 
 from app.heard import MAX_NUMBER, MAX_PARTS, MAX_TEXT, fault
 
 log = logging.getLogger(__name__)
 
-MAX_FRAME = 2**20  # bytes: a part of a file
-MAX_UPLOAD = 200 * 2**20  # bytes of one file: a map of the largest size there may be
-MAX_UPLOADS = 2 * MAX_UPLOAD  # bytes on their way from one tab: two maps
-MAX_UPLOADS_OF_ALL = 5 * MAX_UPLOAD  # bytes on their way from all tabs
-MAX_OPEN_UPLOADS = 8
-MAX_NAME = 255  # letters of a file's name
 PATIENCE = 60.0  # seconds until a browser that reads nothing is given up
 RATE, BURST = 200.0, 400.0  # messages a second, and at once; a tab that is dragged over sends about 60
 WEIGHT = 32 * 1024  # bytes that count as one more: 6 MB a second
@@ -101,20 +95,6 @@ class Gate:
             self.drop("not enabled")
         elif not acceptable(message.updates["value"], handle._impl.value, handle._impl.props):
             self.drop("value")
-        else:
-            return True
-        return False
-
-    def takes_upload(self, gui: Any, button: str, size: int) -> bool:
-        """Whether a browser may send a file of so many bytes to a button of its tab."""
-        handle = gui._gui_input_handle_from_uuid.get(button)
-        coming = gui._current_file_upload_states.values()
-        if not isinstance(handle, GuiUploadButtonHandle) or not usable(gui, handle):
-            self.drop("upload unasked")
-        elif len(coming) >= MAX_OPEN_UPLOADS:
-            self.drop("uploads")
-        elif size > MAX_UPLOAD or size + sum(state["total_bytes"] for state in coming) > MAX_UPLOADS:
-            self.drop("upload size")
         else:
             return True
         return False

@@ -24,10 +24,10 @@ from viser._gui_api import GuiApi
 from websockets.http11 import Response
 
 from app.access import HEADERS, PAGE_POLICY, Access, Answer, Asked
-from app.arrivals import PATH, Arrivals
+from app.arrivals import MOST, PATH, Arrivals
 from app.entrance import served
 from app.frames import bounded
-from app.gate import MAX_FRAME, Gate
+from app.gate import Gate
 from app.logs import quiet_handshakes
 from app.mishap import watched
 
@@ -92,7 +92,7 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
             finally:
                 among.discard(connection)
 
-        options["max_size"] = MAX_FRAME
+        options["max_size"] = MOST
         options["create_connection"] = bounded(gate)
         return real_serve(handle, at, on, process_request=ask, ssl=access.tls, **options)
 

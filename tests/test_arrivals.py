@@ -14,8 +14,7 @@ from wire import WireFile, WireTab, until
 from algorithms.casefiles import Case
 from algorithms.mapio import map_to_bytes
 from app.access import Access
-from app.arrivals import LEAST, MOST, Recipient
-from app.gate import MAX_UPLOAD, MAX_UPLOADS
+from app.arrivals import LEAST, MAX_UPLOAD, MAX_UPLOADS, MOST, Recipient
 from app.guard import guarded_server
 from app.panels.files import FilesPanel
 from app.server import make_server

@@ -19,9 +19,9 @@ from strangers import PATIENCE, Stand, Visitor
 from websockets.frames import Frame, Opcode
 from wire import CAMERA, WireFile, until
 
-from app.arrivals import Recipient
+from app.arrivals import MAX_UPLOAD, MAX_UPLOADS_OF_ALL, Recipient
+from app.arrivals import MOST as MAX_FRAME
 from app.frames import EARNS, MOST, Allowance
-from app.gate import MAX_FRAME, MAX_UPLOAD, MAX_UPLOADS_OF_ALL
 from app.heard import MAX_PARTS, MAX_WORDS, fault
 
 
