@@ -36,8 +36,8 @@ from app.turns import Turns
 log = logging.getLogger(__name__)
 
 MOST = 4  # each takes 200 MB before it has done anything, and has threads for all cores
-HANGS = 10.0  # seconds that a step goes on, unwanted, until its process is ended
-HANGS_BESIDE = 60.0  # where other runs would end with it; and until it has to have heard what it is told
+HANGS = 10.0  # seconds that a step goes on unwanted, or a word is not heard, until its process is ended
+HANGS_BESIDE = 60.0  # where other runs would end with it; and until a run has to have begun
 LOOK_S = 0.25  # how often it is looked
 SHARE = 0.5  # of this machine's memory that a worker may have; more is a MemoryError, not the end of others
 
@@ -132,7 +132,7 @@ class _Worker:
             raise WorkerDiedError
         try:
             self._line.send(order)
-            until = monotonic() + HANGS_BESIDE if wanted is None else inf
+            until = monotonic() + (HANGS_BESIDE if order[0] == "start" else HANGS) if wanted is None else inf
             while not self._line.poll(LOOK_S):
                 if wanted is not None and wanted():
                     until = inf

@@ -103,7 +103,7 @@ def test_a_merge_whose_process_is_killed_is_told_and_the_next_merge_works(tab, c
 
 
 def test_a_recording_whose_process_hangs_can_be_stopped_and_the_next_merge_works(tab, monkeypatch):
-    monkeypatch.setattr("app.workers.HANGS", 0.2)
+    monkeypatch.setattr("app.workers.HANGS", 1.0)
     assert merge(tab) == "accepted"
     said, progress = tab.state, words_of_the_page.progress
 
