@@ -1,5 +1,6 @@
 """The command line as tests call it: in this process, or in one of its own."""
 
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +10,12 @@ import pytest
 from app.cli import main
 
 ROOT = Path(__file__).parent.parent
+
+
+def as_in_a_terminal():
+    """What a shell without job control starts in the background ignores Ctrl-C; behind nohup SIGHUP, too."""
+    for asked in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(asked, signal.SIG_DFL)
 
 
 def inputs(folder):

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import cv2
 import pytest
+from commandline import as_in_a_terminal
 
 from algorithms import kernels
 from algorithms.errors import InputFileError, NoAnswerError, OutputError, SettingError
@@ -141,7 +142,8 @@ def test_no_process_outlives_the_one_that_asked(end, tmp_path):
         "list(Processes(1).run(test_executor.linger, [Task(0, shared)]))"
     )
     command = [sys.executable, "-c", script, str(tmp_path)]
-    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, start_new_session=True) as first:
+    apart = {"start_new_session": True, "preexec_fn": as_in_a_terminal}
+    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, **apart) as first:
         assert until(lambda: list(tmp_path.glob("began_*")))
         (began,) = tmp_path.glob("began_*")
         assert alive(pid(began))

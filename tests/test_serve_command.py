@@ -8,17 +8,12 @@ import time
 import urllib.request
 
 import pytest
-from commandline import ROOT
+from commandline import ROOT, as_in_a_terminal
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from app.cli import main
 from app.opening import browser
-
-
-def as_in_a_terminal():
-    """A shell without job control lets what it starts in the background ignore Ctrl-C."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
