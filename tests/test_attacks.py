@@ -237,7 +237,11 @@ def still(ours, monkeypatch):
     the machine."""
     gate, began = ours.server.gate, time.monotonic()
     before = gate.dropped["slowed"]
-    monkeypatch.setattr(gate, "_clock", lambda: time.monotonic() if gate.dropped["slowed"] > before else began)
+
+    def clock() -> float:
+        return time.monotonic() if gate.dropped["slowed"] > before else began
+
+    monkeypatch.setattr(gate, "_clock", clock)
 
 
 def test_long_messages_count_as_several(ours, still):

@@ -294,3 +294,10 @@ def test_missing_files_and_folders_are_named(tmp_path):
     (tmp_path / "m.yaml").write_bytes(header(image="gone.pgm"))
     with pytest.raises(InputFileError, match=r"m\.yaml: its image gone\.pgm is not there"):
         read_map(tmp_path / "m.yaml")
+    (tmp_path / "gone.pgm").mkdir()
+    with pytest.raises(InputFileError, match=r"m\.yaml: its image gone\.pgm is a folder"):
+        read_map(tmp_path / "m.yaml")
+    with pytest.raises(InputFileError, match=r"gone\.pgm: is a folder; check the path"):
+        read_map(tmp_path / "gone.pgm")
+    with pytest.raises(InputFileError, match="cannot be read"):
+        read_map(Path("a\0b.pgm"))

@@ -87,9 +87,8 @@ def read_map(path: Path) -> GridMap:
     meta = parse_meta(str(path), read_bytes(path, "a map"))
     image_path = path.parent / meta.image
     if not image_path.is_file():
-        raise InputFileError(
-            path, f"its image {meta.image} is not there", "put it there, or correct the key image"
-        )
+        found = f"its image {meta.image} is {'a folder' if image_path.is_dir() else 'not there'}"
+        raise InputFileError(path, found, "put it there, or correct the key image")
     return _read_image(image_path, meta, path.stem)
 
 
@@ -222,8 +221,8 @@ def _yaml_beside(image_path: Path) -> Path:
         yaml_path = image_path.with_suffix(suffix)
         if yaml_path.is_file():
             return yaml_path
-    if not image_path.is_file():
-        raise InputFileError(image_path, "no such file", "check the path")
+    with _open(image_path):  # without it no YAML file would help
+        pass
     raise InputFileError(
         image_path,
         f"there is no {image_path.stem}.yaml beside it",
@@ -231,12 +230,15 @@ def _yaml_beside(image_path: Path) -> Path:
     )
 
 
-def _read_image(path: Path, meta: MapMeta, name: str) -> GridMap:
+def _open(image_path: Path) -> BinaryIO:
     try:
-        stream = path.open("rb")
+        return image_path.open("rb")
     except (OSError, ValueError) as error:
-        raise unreadable(path, error, "check the path") from error
-    with stream:
+        raise unreadable(image_path, error, "check the path") from error
+
+
+def _read_image(path: Path, meta: MapMeta, name: str) -> GridMap:
+    with _open(path) as stream:
         return _to_map(str(path), stream, meta, name)
 
 
