@@ -21,7 +21,7 @@ help:
 	@echo "make screenshots  take the pictures of the README and the guides again"
 	@echo "make equations    typeset the equations in static/equations again"
 	@echo "make replays      record the pages in static/replays again"
-	@echo "make results      measure the paper's section IV on the samples again: RESULTS.md; about 5 minutes on 2 cores"
+	@echo "make results      measure the paper's section IV on the samples again: RESULTS.md; about 3 minutes on 2 cores"
 	@echo "make clean        remove the environment and everything that was made"
 
 run: $(VENV)/ready

@@ -63,6 +63,16 @@
     const [left, low] = S.ground(box.left, box.bottom - 20), [right, top] = S.ground(box.right, box.top + 70);
     return x0 >= left && y0 >= low && x1 <= right && y1 <= top;
   }
+  const fingers = new Map(); // on the screen: where each is
+  function pinch(e) { // two fingers keep what lies under them: the camera's speed is for one distance between them
+    if (e.pointerType !== "touch") return;
+    if (e.type === "pointerup" || e.type === "pointercancel") fingers.delete(e.pointerId);
+    else if (e.type === "pointerdown" || fingers.has(e.pointerId)) fingers.set(e.pointerId, [e.clientX, e.clientY]);
+    const [a, b] = [...fingers.values()];
+    if (hooked && b) hooked.dollySpeed = 320 / Math.max(40, Math.hypot(a[0] - b[0], a[1] - b[1]));
+  }
+  for (const kind of ["pointerdown", "pointermove", "pointerup", "pointercancel"]) addEventListener(kind, pinch, true);
+  addEventListener("wheel", () => { if (hooked) hooked.dollySpeed = 0.3; }, { capture: true, passive: true }); // viser's own
   function clip(camera) { // near and far follow the distance, so that the layers never fight for depth
     const k = viewer().cameraControl, near = k.distance * 0.3, far = k.distance * 3;
     if (Math.abs(camera.near / near - 1) > 0.01 || Math.abs(camera.fov - 4) > 1e-6) {

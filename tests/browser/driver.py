@@ -29,6 +29,13 @@ ARGUMENTS = [
 ]
 READY = "() => window.mapmeld?.applied > 0 && document.querySelector('.mm-state span')?.textContent"
 
+SCALE = "() => mapmeld.pixel([1, 0])[0] - mapmeld.pixel([0, 0])[0]"  # pixels per metre
+
+
+def metres(told: str) -> float:
+    """The number that a table tells."""
+    return float(told.split()[0].replace("−", "-"))
+
 
 def settle(check: Callable[[], Any], what: str) -> Any:
     """Poll until ``check`` gives something true, and return it."""
@@ -44,9 +51,9 @@ def settle(check: Callable[[], Any], what: str) -> Any:
 class Tab:
     """Finds things by their words; waits by polling."""
 
-    def __init__(self, browser: Browser, address: str, size: tuple[int, int]) -> None:
+    def __init__(self, browser: Browser, address: str, size: tuple[int, int], touch: bool = False) -> None:
         self.context = browser.new_context(
-            viewport={"width": size[0], "height": size[1]}, accept_downloads=True
+            viewport={"width": size[0], "height": size[1]}, accept_downloads=True, has_touch=touch
         )
         self.page: Page = self.context.new_page()
         self.errors: list[str] = []
@@ -153,3 +160,8 @@ class Tab:
     def close(self) -> None:
         """Close the tab."""
         self.context.close()
+
+
+def field(tab: Tab, label: str) -> float:
+    """The number that stands in a field."""
+    return float(tab.page.get_by_label(label, exact=True).input_value())

@@ -7,7 +7,7 @@ from math import cos, degrees, sin
 
 import numpy as np
 import pytest
-from driver import READY, settle
+from driver import READY, SCALE, field, metres, settle
 
 from algorithms.casefiles import Case, read_observations
 from algorithms.observation import encounter
@@ -124,18 +124,6 @@ def at_mov(tab, point: tuple[float, float]) -> list[float]:
     """Where a point of map 2, from its anchor, is in the window."""
     tab.at_rest()
     return tab.page.evaluate("(p) => mapmeld.pixel(p, 'mov')", list(point))
-
-
-SCALE = "() => mapmeld.pixel([1, 0])[0] - mapmeld.pixel([0, 0])[0]"  # pixels per metre
-
-
-def metres(told: str) -> float:
-    """The number that a table tells."""
-    return float(told.split()[0].replace("−", "-"))
-
-
-def field(tab, label: str) -> float:
-    return float(tab.page.get_by_label(label, exact=True).input_value())
 
 
 def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(tab, tmp_path):
