@@ -58,7 +58,7 @@ class Workers:
     def __init__(self, most: int = MOST) -> None:
         self._most = max(1, min(most, kernels.cores()))
         self._workers: list[_Worker] = []
-        self._lock = Lock()
+        self._lock, self._closed = Lock(), False
 
     def bench(self) -> Bench:
         """A place for a tab; it takes no worker before its first run."""
@@ -71,6 +71,8 @@ class Workers:
 
     def close(self) -> None:
         """End them all; this is no death to speak of."""
+        with self._lock:
+            self._closed = True
         for worker in self._workers:
             worker.close()
 
@@ -79,6 +81,8 @@ class Workers:
         with self._lock:
             if all(worker.places for worker in self._workers) and len(self._workers) < self._most:
                 self._workers.append(_Worker())
+                if self._closed:
+                    self._workers[-1].close()
             worker = min(self._workers, key=lambda worker: len(worker.places))
             worker.places.add(place)
             return worker
@@ -94,7 +98,7 @@ class _Worker:
         self.runs: set[tuple[int, int]] = set()  # that are under way
         self._process: Any = None
         self._line: Connection | None = None
-        self._closed = False
+        self._starting, self._closed = Lock(), False
 
     @property
     def pid(self) -> int | None:
@@ -108,20 +112,21 @@ class _Worker:
             if self._process.is_alive():
                 return
             self._end()
-        if self._closed:
-            raise WorkerDiedError
-        line, theirs = SPAWN.Pipe()
-        process = SPAWN.Process(target=_serve, args=(theirs,), name="mapmeld-merge", daemon=True)
-        try:
-            with _deaf():
-                process.start()
-        except BaseException:
-            line.close()
-            raise
-        finally:
-            theirs.close()  # the process alone holds it, so that its end is heard here
-        self._process, self._line = process, line
-        self.life += 1
+        with self._starting:
+            if self._closed:
+                raise WorkerDiedError
+            line, theirs = SPAWN.Pipe()
+            process = SPAWN.Process(target=_serve, args=(theirs,), name="mapmeld-merge", daemon=True)
+            try:
+                with _deaf():
+                    process.start()
+            except BaseException:
+                line.close()
+                raise
+            finally:
+                theirs.close()  # the process alone holds it, so that its end is heard here
+            self._process, self._line = process, line
+            self.life += 1
 
     def ask(self, *order: Any, wanted: Callable[[], bool] | None = None) -> tuple[Any, ...]:
         """Have it do something; raises WorkerDiedError, also where it hangs.
@@ -157,9 +162,10 @@ class _Worker:
             log.warning("a process that merges has ended, with %s", process.exitcode)
 
     def close(self) -> None:
-        """End the process, whatever it is at."""
+        """End the process, whatever it is at; one that is half started would complain of us on stderr."""
         self._closed = True
-        process = self._process
+        with self._starting:
+            process = self._process
         if process is not None:
             process.kill()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import signal
+import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -13,6 +14,7 @@ from threading import Event, Thread, Timer
 
 import numpy as np
 import pytest
+from commandline import ROOT
 from hypothesis import given
 from hypothesis import strategies as st
 from wire import until
@@ -383,3 +385,35 @@ def test_closed_workers_die_in_silence(job, caplog):
     with pytest.raises(WorkerDiedError):
         told(bench, job)
     assert not caplog.records
+
+
+HALF_STARTED = """
+import threading, time
+from multiprocessing import resource_tracker, util
+from app import workers
+
+resource_tracker.ensure_running()
+spawn, half = util.spawnv_passfds, threading.Event()
+
+def slowly(*what):
+    pid = spawn(*what)
+    half.set()
+    time.sleep(0.5)
+    return pid
+
+util.spawnv_passfds = slowly
+threading.Thread(target=workers.COMMON.seat(object()).start, daemon=True).start()
+half.wait()
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="processes are started in another way there")
+def test_a_server_that_ends_while_a_process_is_being_started_leaves_no_trace_of_it_on_stderr():
+    ended = subprocess.run(
+        [sys.executable, "-c", HALF_STARTED],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        cwd=ROOT,
+    )
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "", "")
