@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.errors import SettingError, TooLargeError
-from algorithms.pose import FloatArray, Pose2
+from algorithms.pose import FloatArray, Pose2, wrap_angle
 
 BoolArray = NDArray[np.bool_]
 CellArray = NDArray[np.int8]
@@ -66,12 +66,14 @@ class GridMap:
     resolution : metres per cell
     origin     : T_map_grid, pose of the lower-left corner of cell (0, 0) in the map's frame
     name       : what to call it before a person
+    remarks    : what a person should know of how it was read, each a clause with the cure
     """
 
     cells: CellArray
     resolution: float
     origin: Pose2 = field(default_factory=Pose2)
     name: str = "map"
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.cells.ndim != 2 or self.cells.dtype != np.int8 or self.cells.size == 0:
@@ -85,9 +87,9 @@ class GridMap:
             )
         self.cells.flags.writeable = False
 
-    def __reduce__(self) -> tuple[type[GridMap], tuple[CellArray, float, Pose2, str]]:
+    def __reduce__(self) -> tuple[type[GridMap], tuple[CellArray, float, Pose2, str, tuple[str, ...]]]:
         """What travels to another process: what the map was made of, and nothing that was made of it."""
-        return GridMap, (self.cells, self.resolution, self.origin, self.name)
+        return GridMap, (self.cells, self.resolution, self.origin, self.name, self.remarks)
 
     @property
     def height(self) -> int:
@@ -139,3 +141,9 @@ class GridMap:
         """(4, 2) corners of the grid, counter-clockwise from its origin; metres, map frame."""
         unit = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
         return self.origin.apply(unit * (self.width, self.height) * self.resolution)
+
+    def mirrored(self) -> GridMap:
+        """The map flipped left to right: what lay at (x, y) of its frame lies at (−x, y)."""
+        corner = self.origin.apply(np.array([self.width * self.resolution, 0.0]))
+        origin = Pose2(-float(corner[0]), float(corner[1]), wrap_angle(-self.origin.theta))
+        return replace(self, cells=np.ascontiguousarray(self.cells[:, ::-1]), origin=origin)

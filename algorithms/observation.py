@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import cos, hypot, isfinite, pi, sin
+from dataclasses import dataclass, replace
+from math import cos, exp, hypot, isfinite, pi, sin
 
 import numpy as np
 
@@ -65,6 +65,13 @@ class Observation:
             )
 
 
+def mirrored(o: Observation) -> Observation:
+    """The same with map 2, and what robot 2 knows of itself in it, flipped: (x, y) becomes (−x, y)."""
+    heading = None if o.observed_heading is None else wrap_angle(pi - o.observed_heading)
+    back = None if o.bearing_back is None else -o.bearing_back
+    return replace(o, observed_x=-o.observed_x, observed_heading=heading, bearing_back=back)
+
+
 def as_observations(seen: Observation | Sequence[Observation]) -> tuple[Observation, ...]:
     """One observation, or several of the same two maps, as a tuple; raises SettingError for none."""
     observations = (seen,) if isinstance(seen, Observation) else tuple(seen)
@@ -105,24 +112,62 @@ class Encounter:
     x_ref      : (2,) x̂1 in the ref frame; metres
     x_mov      : (2,) x̂2 in the mov frame; metres
     covariance : (2, 2) of x̂1 from range and bearing, first order; m²
+    observer   : (2,) P_R1 in the ref frame; metres; None where it is not known
     """
 
     x_ref: FloatArray
     x_mov: FloatArray
     covariance: FloatArray
+    observer: FloatArray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Robots:
+    """Where robots are known to have stood. What a map shows there is the robot itself, and no wall.
+
+    in_ref : (N, 2) the observers; metres, ref frame. Map 1's maker: what its own map shows there is so
+    in_mov : (M, 2) the observed; metres, mov frame. Likewise map 2's
+    size   : radius around them; metres
+    """
+
+    in_ref: FloatArray
+    in_mov: FloatArray
+    size: float
+
+    def places(self, T_ref_mov: Pose2) -> FloatArray:
+        """(N + M, 2) all of them in the ref frame."""
+        return np.concatenate([self.in_ref, T_ref_mov.apply(self.in_mov)])
+
+
+NOWHERE = Robots(np.zeros((0, 2)), np.zeros((0, 2)), 0.0)
+
+
+def robots_of(encounters: Sequence[Encounter], size: float) -> Robots:
+    """The robots of these encounters."""
+    observers = [at.observer for at in encounters if at.observer is not None]
+    observed = [at.x_mov for at in encounters]
+    return Robots(np.array(observers).reshape(-1, 2), np.array(observed).reshape(-1, 2), size)
 
 
 def encounter(observation: Observation) -> Encounter:
-    """x̂1 = P_R1 + C(φ1) R1_P_R2 and x̂2 = P_R2 (section III-B), with the covariance of x̂1."""
+    """x̂1 = P_R1 + C(φ1) R1_P_R2 and x̂2 = P_R2 (section III-B), with the covariance of x̂1.
+
+    Where the range's own deviation reaches back to 0, the robots may have stood at one place, and then a
+    bearing says nothing: the nearer to that, the more the range's deviation holds across, too.
+    """
     o = observation
     direction = o.observer.theta + o.bearing
     along = np.array([cos(direction), sin(direction)])
-    jacobian = np.column_stack([along, o.range * rotation(pi / 2) @ along])  # d x̂1 / d (r, β)
+    across = rotation(pi / 2) @ along
+    jacobian = np.column_stack([along, o.range * across])  # d x̂1 / d (r, β)
     covariance = jacobian @ np.diag([o.sigma_range**2, o.sigma_bearing**2]) @ jacobian.T
+    at_one_place = exp(-0.5 * (o.range / o.sigma_range) ** 2)  # likelihood of range 0 over the likeliest
+    covariance += np.outer(across, across) * (at_one_place * o.sigma_range) ** 2
     return Encounter(
         x_ref=o.observer.xy + o.range * along,
         x_mov=np.array([o.observed_x, o.observed_y]),
         covariance=covariance,
+        observer=o.observer.xy,
     )
 
 

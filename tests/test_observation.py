@@ -38,6 +38,19 @@ def test_the_error_ellipse_is_long_across_the_line_of_sight_for_a_far_robot():
     assert covariance[0, 1] == pytest.approx(0.0, abs=1e-12)
 
 
+@given(st.floats(0, 3), st.floats(-3, 3), st.floats(0.01, 0.5), st.floats(0.001, 0.2))
+def test_the_error_ellipse_is_no_needle_however_near_the_robot(metres, bearing, sigma_range, sigma_bearing):
+    near = replace(SEEN, range=metres, bearing=bearing, sigma_range=sigma_range, sigma_bearing=sigma_bearing)
+    least = np.sqrt(np.linalg.eigvalsh(encounter(near).covariance)[0])
+    assert least >= 0.6 * min(sigma_range, max(metres * sigma_bearing, sigma_range - metres)) - 1e-9
+
+
+def test_robots_at_one_place_are_known_to_a_disc_of_the_deviation_of_the_range():
+    together = replace(SEEN, range=0.0, sigma_range=0.07)
+    assert encounter(together).covariance == pytest.approx(0.07**2 * np.eye(2), abs=1e-12)
+    assert encounter(together).x_ref == pytest.approx(together.observer.xy)
+
+
 def test_the_covariance_is_what_noise_on_the_measurement_does():
     rng = np.random.default_rng(1)
     noisy = [

@@ -29,12 +29,13 @@ from algorithms.simulator.samples import (
     generate_cases,
     write_case,
 )
-from algorithms.simulator.scenario import Scenario, mismatch, simulate
+from algorithms.simulator.scenario import Scenario, simulate
 from algorithms.simulator.tours import Surveyor
+from algorithms.simulator.wrong_pairs import mismatch
 
 SHIPPED = Path(__file__).parents[1] / "sample_maps"
 ASKED = {
-    name: overlap for sample in SAMPLES for name, overlap in zip(sample.names, sample.overlaps, strict=True)
+    name: overlap for sample in SAMPLES for name, overlap in zip(sample.names, sample.overlaps, strict=False)
 }
 KINDS = list(BUILDINGS)
 
@@ -63,9 +64,9 @@ def often() -> Scenario:
 # Bit for bit
 
 
-@pytest.mark.parametrize("sample", [SAMPLES[1], SAMPLES[3]], ids=lambda sample: sample.kind)
+@pytest.mark.parametrize("sample", [SAMPLES[1], SAMPLES[4]], ids=lambda sample: sample.names[0])
 def test_regenerating_a_shipped_sample_gives_the_shipped_bytes(sample):
-    for case in sample.simulate().cases:
+    for case in sample.cases():
         for name, data in case_files(case).items():
             assert (SHIPPED / case.name / name).read_bytes() == data, f"{case.name}/{name}"
 

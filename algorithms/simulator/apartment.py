@@ -1,4 +1,4 @@
-"""A large apartment: a rectangle split again and again, a door in every dividing wall."""
+"""Apartments and homes: a rectangle split again and again, a door in every dividing wall."""
 
 from __future__ import annotations
 
@@ -53,9 +53,20 @@ def _door_in(canvas: Canvas, rng: np.random.Generator, wall: Wall) -> None:
             return
 
 
-def apartment(rng: np.random.Generator, resolution: float = 0.025) -> Building:
+def apartment(shell: np.random.Generator, rng: np.random.Generator, resolution: float = 0.025) -> Building:
     """An apartment of about 16 m × 13 m: eight to fourteen rooms that open into one another."""
-    width, height = uniform(rng, 14, 18), uniform(rng, 11, 14)
+    width, height = uniform(shell, 14, 18), uniform(shell, 11, 14)
+    return _rooms(rng, width, height, resolution, "apartment")
+
+
+def home(shell: np.random.Generator, rng: np.random.Generator, resolution: float = 0.025) -> Building:
+    """A small home of about 9 m × 7 m: three to six rooms."""
+    width, height = uniform(shell, 7, 11), uniform(shell, 5.5, 8.5)
+    return _rooms(rng, width, height, resolution, "home")
+
+
+def _rooms(rng: np.random.Generator, width: float, height: float, resolution: float, name: str) -> Building:
+    """A rectangle divided into rooms that open into one another; metres."""
     canvas = Canvas(width + 2 * MARGIN, height + 2 * MARGIN, resolution)
     outline = (MARGIN, MARGIN, MARGIN + width, MARGIN + height)
     rooms: list[Box] = []
@@ -90,4 +101,4 @@ def apartment(rng: np.random.Generator, resolution: float = 0.025) -> Building:
         canvas.stops.append(((x0 + x1) / 2, (y0 + y1) / 2))
         if area > 14:
             canvas.stops.append((x0 + 0.25 * (x1 - x0), y0 + 0.3 * (y1 - y0)))
-    return canvas.finish("apartment")
+    return canvas.finish(name)

@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 
 from algorithms.errors import SettingError
-from algorithms.simulator.apartment import apartment
+from algorithms.simulator.apartment import apartment, home
 from algorithms.simulator.canvas import Building
 from algorithms.simulator.dice import stream
 from algorithms.simulator.halls import corridor, warehouse
-from algorithms.simulator.office import campus, office
+from algorithms.simulator.office import campus, office, university
 
 __all__ = [
     "BUILDINGS",
@@ -20,24 +20,33 @@ __all__ = [
     "build",
     "campus",
     "corridor",
+    "home",
     "office",
+    "university",
     "warehouse",
 ]
 
-BUILDINGS: dict[str, Callable[[np.random.Generator], Building]] = {
+Draw = Callable[[np.random.Generator, np.random.Generator], Building]
+
+BUILDINGS: dict[str, Draw] = {
     "office": office,
     "apartment": apartment,
     "warehouse": warehouse,
     "corridor": corridor,
+    "home": home,
+    "university": university,
 }
+"""Each draws a floor from two streams: what its floors have in common, and what is this floor's own."""
 
 
-def build(kind: str, seed: int) -> Building:
+def build(kind: str, seed: int, floor: int = 0) -> Building:
     """The building of a kind and a seed; the same one every time.
 
-    kind : a key of BUILDINGS
+    kind  : a key of BUILDINGS
+    floor : another floor has the same outer walls and corridors, but other rooms
     raises SettingError for a kind that is not there
     """
     if kind not in BUILDINGS:
         raise SettingError(f"no building is called {kind!r}; choose one of {', '.join(BUILDINGS)}")
-    return BUILDINGS[kind](stream(seed, kind, "building"))
+    shell = stream(seed, kind, "building")
+    return BUILDINGS[kind](shell, stream(seed, kind, f"floor {floor}") if floor else shell)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import ceil
 
 import numpy as np
@@ -29,12 +29,14 @@ class Building:
     resolution : metres per cell
     stops      : (N, 2) places a robot may want to visit; metres, world frame. Some may be out of
                  its reach
+    doors      : (N, 4) the two jambs of every door, x0, y0, x1, y1; metres, world frame
     """
 
     name: str
     surface: Surface
     resolution: float
     stops: FloatArray
+    doors: FloatArray = field(default_factory=lambda: np.zeros((0, 4)))
 
     @property
     def solid(self) -> NDArray[np.bool_]:
@@ -49,7 +51,16 @@ class Canvas:
         self.resolution = resolution
         self.cells: Surface = np.zeros((ceil(height / resolution), ceil(width / resolution)), np.uint8)
         self.stops: list[tuple[float, float]] = []
+        self.doors: list[Box] = []
         self._kept: list[Box] = []
+
+    @staticmethod
+    def of(building: Building) -> Canvas:
+        """A canvas to draw on a copy of a building."""
+        height, width = building.surface.shape
+        canvas = Canvas(width * building.resolution, height * building.resolution, building.resolution)
+        canvas.cells = building.surface.copy()
+        return canvas
 
     def _window(self, x0: float, y0: float, x1: float, y1: float) -> tuple[slice, slice]:
         """The cells whose centres lie in a box."""
@@ -122,4 +133,5 @@ class Canvas:
 
     def finish(self, name: str) -> Building:
         """The drawn floor as a value."""
-        return Building(name, self.cells, self.resolution, np.array(self.stops).reshape(-1, 2))
+        stops, doors = np.array(self.stops).reshape(-1, 2), np.array(self.doors).reshape(-1, 4)
+        return Building(name, self.cells, self.resolution, stops, doors)

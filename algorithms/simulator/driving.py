@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from algorithms.kernels import kernel
 from algorithms.pose import FloatArray
 from algorithms.simulator.canvas import Building
-from algorithms.simulator.dice import TURN, Ticks, cosine, normals, sine, snap
+from algorithms.simulator.dice import TURN, Ticks, cosine, normals, sine, snap, uniform, whole
 
 CELLS_PER_NODE = 4  # cells of the floor per node of the planner's grid, each way
 STEP = 0.25  # metres between two scans
 BODY = 8  # thirds of a node: a robot keeps about 0.27 m from any wall
+WAVE = 30.0  # metres; how long the waves of a bent map are
 COMFORT = 22  # thirds of a node: from 0.73 m on, more room is no better
 
 Costs = NDArray[np.int32]
@@ -272,6 +273,7 @@ class Drift:
     memory: float = 12.0  # metres driven until an error is forgotten by a factor of e
     jitter_metres: float = 0.01  # of the error of a single scan
     jitter_degrees: float = 0.12
+    bend: float = 0.0  # metres by which a straight wall of 15 m becomes a bow, in its middle, at most
 
 
 def _wander(rng: np.random.Generator, n: int, deviation: float, memory: float) -> FloatArray:
@@ -285,6 +287,22 @@ def _wander(rng: np.random.Generator, n: int, deviation: float, memory: float) -
     return np.array(values)
 
 
+def _bow(xy: FloatArray, bend: float, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
+    """(N, 2) metres and (N,) degrees by which two waves, each across its own direction, put places off.
+
+    A wave is 30 m long: a wall of half of it along the wave becomes a bow, ``bend`` off in the middle.
+    """
+    off, degrees = np.zeros_like(xy), np.zeros(len(xy))
+    heading = whole(rng, 0, TURN - 1)
+    for ahead, share in ((heading, uniform(rng, 0.5, 1.0)), (heading + TURN // 4, uniform(rng, 0.0, 0.7))):
+        c, s = float(cosine(ahead)), float(sine(ahead))
+        along = xy[:, 0] * c + xy[:, 1] * s
+        phase = whole(rng, 0, TURN - 1) + np.rint(along * (TURN / WAVE)).astype(np.int64)
+        off += (bend * share) * sine(phase)[:, None] * np.array([-s, c])
+        degrees += (bend * share * 360 / WAVE) * cosine(phase)  # the slope of the bow
+    return off, degrees
+
+
 def believe(true: Track, turn: int, shift: FloatArray, drift: Drift, rng: np.random.Generator) -> Track:
     """The drive as the robot believes it, in its own frame.
 
@@ -295,6 +313,9 @@ def believe(true: Track, turn: int, shift: FloatArray, drift: Drift, rng: np.ran
         _wander(rng, n, drift.metres, drift.memory) + drift.jitter_metres * normals(rng, n) for _ in range(2)
     ]
     degrees = _wander(rng, n, drift.degrees, drift.memory) + drift.jitter_degrees * normals(rng, n)
+    if drift.bend > 0:
+        bent, turned = _bow(true.xy, drift.bend, rng)
+        off, degrees = [off[0] + bent[:, 0], off[1] + bent[:, 1]], degrees + turned
     c, s = float(cosine(turn)), float(sine(turn))
     x, y = true.xy[:, 0] + off[0], true.xy[:, 1] + off[1]
     xy = np.stack([x * c - y * s + shift[0], x * s + y * c + shift[1]], axis=-1)

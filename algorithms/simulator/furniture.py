@@ -47,6 +47,7 @@ def door(
         max(y, far_y) + deep_y,
     )
     canvas.box(*cut, what=0)
+    canvas.doors.append((x, y, far_x, far_y))
     canvas.keep_clear(
         cut[0] - 0.7 * abs(into[0]), cut[1] - 0.7 * abs(into[1]),
         cut[2] + 0.7 * abs(into[0]), cut[3] + 0.7 * abs(into[1]),

@@ -33,16 +33,16 @@ def _rack(canvas: Canvas, rng: np.random.Generator, x: float, y: float, bays: in
                 )
 
 
-def warehouse(rng: np.random.Generator, resolution: float = 0.025) -> Building:
+def warehouse(shell: np.random.Generator, rng: np.random.Generator, resolution: float = 0.025) -> Building:
     """A hall of about 30 m × 24 m: racks at an even pitch, a dock in front, an office in a corner."""
-    pitch, depth = uniform(rng, 3.5, 4.1), 1.1
-    racks, bays = whole(rng, 6, 8), whole(rng, 4, 6)
-    dock, back = uniform(rng, 4.5, 6.5), uniform(rng, 2.4, 3.2)
+    pitch, depth = uniform(shell, 3.5, 4.1), 1.1
+    racks, bays = whole(shell, 6, 8), whole(shell, 4, 6)
+    dock, back = uniform(shell, 4.5, 6.5), uniform(shell, 2.4, 3.2)
     width, height = racks * pitch + 3.0, dock + bays * BAY + POST + back
     canvas = Canvas(width + 2 * MARGIN, height + 2 * MARGIN, resolution)
     left, bottom, right, top = MARGIN, MARGIN, MARGIN + width, MARGIN + height
     canvas.outline(left, bottom, right, top, OUTER)
-    windows(canvas, rng, left, bottom, right, top)
+    windows(canvas, shell, left, bottom, right, top)
     inside = (left + OUTER / 2, bottom + OUTER / 2, right - OUTER / 2, top - OUTER / 2)
     corner = uniform(rng, 4.0, 6.0)
     deep = min(dock - 2.2, uniform(rng, 2.6, 3.4))
@@ -105,13 +105,13 @@ def _side_room(canvas: Canvas, rng: np.random.Generator, x: float, wall: float, 
     return passable
 
 
-def corridor(rng: np.random.Generator, resolution: float = 0.025) -> Building:
+def corridor(shell: np.random.Generator, rng: np.random.Generator, resolution: float = 0.025) -> Building:
     """A corridor of about 50 m between two lobbies, alike when turned by 180°, nearly.
 
     Closed doors sit in recesses at an even pitch on both walls; every feature has a twin at the
     place half a turn away, except for the few that don't.
     """
-    length, wide, lobby = uniform(rng, 42, 52), uniform(rng, 2.0, 2.4), uniform(rng, 5.0, 6.5)
+    length, wide, lobby = uniform(shell, 42, 52), uniform(shell, 2.0, 2.4), uniform(shell, 5.0, 6.5)
     deep = 4.6  # metres on each side of the corridor
     height = 2 * deep + wide
     canvas = Canvas(length + 2 * MARGIN, height + 2 * MARGIN, resolution)

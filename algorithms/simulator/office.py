@@ -102,19 +102,31 @@ def _corridor(canvas: Canvas, rng: np.random.Generator, room: Box) -> None:
             boxes(canvas, rng, room)
 
 
-def floor(rng: np.random.Generator, width: float, height: float, resolution: float, name: str) -> Building:
+def floor(
+    shell: np.random.Generator,
+    rng: np.random.Generator,
+    width: float,
+    height: float,
+    resolution: float,
+    name: str,
+) -> Building:
     """An office floor of the given size; metres.
 
     Bands of rooms, corridor, rooms are stacked upwards; corridors across join them.
+
+    shell : draws outer walls and corridors
+    rng   : draws the rooms, and what stands in them
     """
     canvas = Canvas(width + 2 * MARGIN, height + 2 * MARGIN, resolution)
     left, bottom, right, top = MARGIN, MARGIN, MARGIN + width, MARGIN + height
     units = max(1, round(height / 12.5))
-    depths = [(uniform(rng, 3.6, 6.0), uniform(rng, 1.7, 2.4), uniform(rng, 3.6, 6.0)) for _ in range(units)]
+    depths = [
+        (uniform(shell, 3.6, 6.0), uniform(shell, 1.7, 2.4), uniform(shell, 3.6, 6.0)) for _ in range(units)
+    ]
     spare = (height - sum(c for _, c, _ in depths)) / sum(a + b for a, _, b in depths)
     across = [left]
-    for cut in split(rng, left, right, 11.0, 19.0)[1:-1]:
-        across += [cut - 0.9, cut + uniform(rng, 0.8, 1.2)]
+    for cut in split(shell, left, right, 11.0, 19.0)[1:-1]:
+        across += [cut - 0.9, cut + uniform(shell, 0.8, 1.2)]
         _corridor(canvas, rng, (across[-2], bottom, across[-1], top))
     across.append(right)
     y = bottom
@@ -129,9 +141,9 @@ def floor(rng: np.random.Generator, width: float, height: float, resolution: flo
         _corridor(canvas, rng, (left, below, right, above))
         y = end
     canvas.outline(left, bottom, right, top, OUTER)
-    windows(canvas, rng, left, bottom, right, top)
-    if chance(rng, 0.6):
-        _slant(canvas, rng, (left, bottom, right, top))
+    windows(canvas, shell, left, bottom, right, top)
+    if chance(shell, 0.6):
+        _slant(canvas, shell, (left, bottom, right, top))
     return canvas.finish(name)
 
 
@@ -145,11 +157,18 @@ def _slant(canvas: Canvas, rng: np.random.Generator, outline: Box) -> None:
     canvas.line(x + dx, y, x, y + dy, OUTER)
 
 
-def office(rng: np.random.Generator, resolution: float = 0.025) -> Building:
+def office(shell: np.random.Generator, rng: np.random.Generator, resolution: float = 0.025) -> Building:
     """An office floor of about 30 m × 24 m: two corridors with rooms, joined across."""
-    return floor(rng, uniform(rng, 27, 34), uniform(rng, 21, 27), resolution, "office")
+    width, height = uniform(shell, 27, 34), uniform(shell, 21, 27)
+    return floor(shell, rng, width, height, resolution, "office")
+
+
+def university(shell: np.random.Generator, rng: np.random.Generator, resolution: float = 0.05) -> Building:
+    """A large office floor of about 60 m × 40 m, with corridors that look alike for tens of metres."""
+    width, height = uniform(shell, 50, 70), uniform(shell, 32, 46)
+    return floor(shell, rng, width, height, resolution, "university")
 
 
 def campus(rng: np.random.Generator, metres: float, resolution: float = 0.05) -> Building:
     """A square office floor of any size, up to 200 m; for measuring speed."""
-    return floor(rng, metres, metres, resolution, "campus")
+    return floor(rng, rng, metres, metres, resolution, "campus")

@@ -2,18 +2,34 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from algorithms.gridmap import GridMap
 from algorithms.pose import FloatArray
 from algorithms.simulator.canvas import Building
+from algorithms.simulator.changes import rearranged
 from algorithms.simulator.dice import TURN, pick, snap, stream, uniform, whole
 from algorithms.simulator.driving import STEP, Drift, Planner, Track, believe
 from algorithms.simulator.lidar import Lidar, scan
 from algorithms.simulator.mapping import build_map
 from algorithms.simulator.tours import Tour
+from algorithms.simulator.wear import Wear, worn
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """What makes a robot's map differ from the floor plan, beside the noise of its scanner.
+
+    drift   : how far it goes astray
+    changed : doors are shut and furniture is moved since the floor plan was drawn
+    wear    : what happens to the finished map
+    """
+
+    drift: Drift = field(default_factory=Drift)
+    changed: bool = False
+    wear: Wear = field(default_factory=Wear)
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,6 +39,7 @@ class Body:
     purpose     : words that name its stream of random numbers
     turn, shift : its frame, T_robot_world without drift; ticks and (2,) metres
     resolution  : of its map; metres per cell
+    conditions  : under which it drives
     """
 
     name: str
@@ -32,7 +49,7 @@ class Body:
     turn: int
     shift: FloatArray
     resolution: float
-    drift: Drift
+    conditions: Conditions = field(default_factory=Conditions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,11 +70,19 @@ class Robot:
     grid: GridMap
 
 
-def make_body(name: str, seed: int, kind: str, reach: float, resolution: float | None) -> Body:
+def make_body(
+    name: str,
+    seed: int,
+    kind: str,
+    reach: float,
+    resolution: float | None,
+    conditions: Conditions | None = None,
+) -> Body:
     """A robot with a scanner and a frame of its own.
 
     reach      : of the scanner; metres
     resolution : of its map, metres per cell; None draws 0.05, seldom 0.04 or 0.06
+    conditions : under which it drives; None: the usual ones
     """
     rng = stream(seed, kind, name, "body")
     beams, field = pick(rng, ((540, 270.0), (540, 270.0), (720, 360.0), (360, 360.0)))
@@ -65,14 +90,17 @@ def make_body(name: str, seed: int, kind: str, reach: float, resolution: float |
     drawn = pick(rng, (0.05,) * 8 + (0.04, 0.06))
     turn = whole(rng, 0, TURN - 1)
     shift = snap(np.array([uniform(rng, -40.0, 40.0), uniform(rng, -40.0, 40.0)]))
-    return Body(name, seed, (kind, name, "drive"), lidar, turn, shift, resolution or drawn, Drift())
+    purpose = (kind, name, "drive")
+    return Body(name, seed, purpose, lidar, turn, shift, resolution or drawn, conditions or Conditions())
 
 
 def drive(building: Building, planner: Planner, tour: Tour, body: Body, step: float = STEP) -> Robot:
     """Send a robot on a tour: scan every ``step`` metres, and map what came back."""
-    rng = stream(body.seed, *body.purpose)
+    rng, conditions = stream(body.seed, *body.purpose), body.conditions
     true = planner.drive(list(tour.stops), step)
-    believed = believe(true, body.turn, body.shift, body.drift, rng)
+    if conditions.changed:
+        building = rearranged(building, true.xy, stream(body.seed, *body.purpose, "another day"))
+    believed = believe(true, body.turn, body.shift, conditions.drift, rng)
     scans = scan(building, true.xy, true.heading, body.lidar, rng)
     grid = build_map(believed, scans, body.lidar, body.resolution, body.name)
-    return Robot(body, tour, true, believed, grid)
+    return Robot(body, tour, true, believed, worn(grid, conditions.wear, rng))

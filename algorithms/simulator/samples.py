@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import permutations, product
 from pathlib import Path
 
@@ -19,40 +19,55 @@ from algorithms.casefiles import (
     truth_to_bytes,
 )
 from algorithms.mapio import map_to_bytes
-from algorithms.simulator.scenario import Case, Scenario, mismatch, simulate
+from algorithms.simulator.driving import Drift
+from algorithms.simulator.robot import Conditions
+from algorithms.simulator.scenario import Case, simulate
+from algorithms.simulator.wrong_pairs import mismatch
+
+PAIRS = ("r2_r1", "r3_r2")  # observer and observed
 
 
 @dataclass(frozen=True)
 class Sample:
-    """Three robots in one building that make two shipped cases.
+    """Three robots in one building that make one shipped case or two.
 
     overlaps : asked for, of R2 → R1 and R3 → R2
-    stories  : one sentence for a person about each of the two
+    stories  : one sentence for a person about each case that ships
+    bend     : of R1's map, as ``Drift`` has it
+    title    : what the folders' names begin with; the kind unless given
     """
 
     kind: str
     seed: int
     overlaps: tuple[float, float]
-    stories: tuple[str, str]
+    stories: tuple[str, ...]
     resolutions: tuple[float, float, float] = (0.05, 0.05, 0.05)
     both_ways: bool = False
     reach: float | None = None
+    bend: float = 0.0
+    title: str = ""
 
     @property
-    def names(self) -> tuple[str, str]:
-        """Folder names of the two cases."""
-        return f"{self.kind}_r2_r1", f"{self.kind}_r3_r2"
+    def names(self) -> tuple[str, ...]:
+        """Folder names of the cases."""
+        return tuple(
+            f"{self.title or self.kind}_{pair}" for pair, _ in zip(PAIRS, self.stories, strict=False)
+        )
 
-    def simulate(self) -> Scenario:
-        """Let the three robots drive."""
-        return simulate(
+    def cases(self) -> tuple[Case, ...]:
+        """Let the three robots drive; the cases that ship."""
+        bent = Conditions(Drift(bend=self.bend))
+        scenario = simulate(
             self.kind,
             self.seed,
             self.overlaps,
             resolutions=self.resolutions,
             both_ways=self.both_ways,
             reach=self.reach,
+            conditions=(bent, Conditions(), Conditions()) if self.bend else None,
         )
+        named = zip(self.names, scenario.cases, strict=False)
+        return tuple(replace(case, name=name) for name, case in named)
 
 
 SAMPLES = (
@@ -95,6 +110,14 @@ SAMPLES = (
         ),
         reach=6.0,
     ),
+    Sample(
+        "apartment",
+        2,
+        (0.7, 0.7),
+        ("An apartment that robot 1 has bent: no one transform lays the maps on each other everywhere.",),
+        bend=1.0,
+        title="bent",
+    ),
 )
 
 DESCRIPTIONS: dict[str, str] = {
@@ -129,7 +152,7 @@ def write_case(folder: Path, case: Case) -> None:
 
 def regenerate(folder: Path) -> list[Case]:
     """Make all shipped samples again, one folder each; the same bytes every time."""
-    cases = [case for sample in SAMPLES for case in sample.simulate().cases]
+    cases = [case for sample in SAMPLES for case in sample.cases()]
     for case in cases:
         write_case(Path(folder) / case.name, case)
     return cases

@@ -12,6 +12,7 @@ from algorithms.observation import Observation
 from algorithms.pose import FloatArray, Pose2
 from algorithms.simulator.buildings import build
 from algorithms.simulator.canvas import Building
+from algorithms.simulator.changes import with_pillars
 from algorithms.simulator.dice import chance, stream, uniform
 from algorithms.simulator.driving import Planner
 from algorithms.simulator.meeting import (
@@ -24,7 +25,7 @@ from algorithms.simulator.meeting import (
     measured_overlap,
     observe,
 )
-from algorithms.simulator.robot import Robot, drive, make_body
+from algorithms.simulator.robot import Conditions, Robot, drive, make_body
 from algorithms.simulator.tours import Surveyor
 
 LEAST, MOST = 0.05, 0.6  # overlaps that are drawn where none is asked for
@@ -96,12 +97,15 @@ def simulate(
     reach: float | None = None,
     sizes: tuple[int, int] | None = None,
     sightings: int = 1,
+    floor: int = 0,
+    pillars: bool = False,
+    conditions: tuple[Conditions, Conditions, Conditions] | None = None,
 ) -> Scenario:
     """Simulate three robots in a building: R2 sees R1, R3 sees R2.
 
     Parameters
     ----------
-    kind : a key of ``BUILDINGS``: "office", "apartment", "warehouse" or "corridor".
+    kind : a key of ``BUILDINGS``, as "office" or "apartment".
     seed : any integer >= 0. One seed, one scenario, bit for bit on every machine; seeds differ in
         building, drives, frames and noise.
     overlap : share of the smaller map's occupied cells that the other map has within 0.1 m, 0 … 1,
@@ -115,6 +119,9 @@ def simulate(
     sizes : fewest and most stops of a tour. Without it, by the building.
     sightings : how often an observer sees the other robot, at places well apart; less often where the
         two meet less often. All else is the same for any number, the first sightings included.
+    floor : which floor of the building: others have the same outer walls and corridors, and other rooms.
+    pillars : whether pillars, radiators and cabinets stand before the walls.
+    conditions : under which R1, R2 and R3 drive: drift, wear, furniture moved. Without it the usual ones.
 
     Returns
     -------
@@ -135,9 +142,19 @@ def simulate(
     near_1, near_2 = (LOOSE if a is None else TOLERANCE for a in asked)
     aim_1, aim_2 = (d if a is None else a for a, d in zip(asked, drawn, strict=True))
     b1, b2, b3 = (
-        make_body(f"R{n + 1}", seed, kind, reach, resolutions[n] if resolutions else None) for n in range(3)
+        make_body(
+            f"R{n + 1}",
+            seed,
+            kind,
+            reach,
+            resolutions[n] if resolutions else None,
+            conditions[n] if conditions else None,
+        )
+        for n in range(3)
     )
-    building = build(kind, seed)
+    building = build(kind, seed, floor)
+    if pillars:
+        building = with_pillars(building, stream(seed, kind, f"pillars of floor {floor}"))
     planner = Planner(building)
     surveyor = Surveyor(building, planner, reach)
     stops = len(planner.stops)
@@ -243,36 +260,4 @@ def case_of(pair: Pair, kind: str, source: str, rng: np.random.Generator, both_w
         overlap=pair.overlap,
         truth_rms=pair.truth_rms,
         source=source,
-    )
-
-
-def mismatch(a: Case, b: Case) -> Case:
-    """A wrong pairing: the observer of one case and the observed robot of another building's.
-
-    The sightings, as many as both have, are forged from halves; the only right answer is to refuse.
-    """
-    return Case(
-        name=f"wrong_{a.name}_{b.name}",
-        ref=a.ref,
-        mov=b.mov,
-        observations=tuple(map(_forged, a.observations, b.observations)),
-        rough=tuple(map(_forged, a.rough, b.rough)),
-        T_ref_mov=None,
-        overlap=0.0,
-        truth_rms=0.0,
-        source=f"{a.source}; {b.source}",
-    )
-
-
-def _forged(a: Observation, b: Observation) -> Observation:
-    return Observation(
-        observer=a.observer,
-        observed_x=b.observed_x,
-        observed_y=b.observed_y,
-        observed_heading=b.observed_heading,
-        range=a.range,
-        bearing=a.bearing,
-        sigma_range=a.sigma_range,
-        sigma_bearing=a.sigma_bearing,
-        bearing_back=b.bearing_back,
     )

@@ -31,7 +31,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument(
         "--building",
         metavar="KIND[,KIND…]",
-        help="office, apartment, warehouse, corridor, or several; one of each per seed",
+        help="office, apartment, warehouse, corridor, home, university, or several; one of each per seed",
     )
     parser.add_argument("--seeds", metavar="FIRST[-LAST]", help="which buildings of that kind (default: 0)")
     parser.add_argument(

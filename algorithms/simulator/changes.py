@@ -1,0 +1,76 @@
+"""What a floor plan leaves out: pillars before the walls; and another day, with doors shut and furniture
+moved.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+from scipy.spatial import cKDTree
+
+from algorithms.pose import FloatArray
+from algorithms.simulator.canvas import AIR, WALL, Building, Canvas
+from algorithms.simulator.dice import TURN, chance, uniform, whole
+
+LOOSE = 1.5  # metres; what is smaller than this each way and touches nothing is furniture
+TAKEN_AWAY = 0.35  # how likely a piece of furniture is gone
+SHUT = 0.3  # how likely a door is shut that nobody went through
+FROM_DOORS = 1.2  # metres from a jamb within which there is no pillar
+AROUND = 0.55  # metres around a robot's way in which nothing new may stand
+WALL_PER_PILLAR = 1.0  # m² of wall, as seen from above: one in 8 m of a wall 0.12 m thick
+FLOOR_PER_PIECE = 18.0  # m² of floor for each new piece that is tried
+
+
+def rearranged(building: Building, way: FloatArray, rng: np.random.Generator) -> Building:
+    """The building with doors shut, furniture taken away and other furniture set up.
+
+    way : (N, 2) where a robot drives, which stays clear; metres, world frame
+    """
+    canvas = Canvas.of(building)
+    near = cKDTree(way)
+
+    def clear(x: float, y: float, reach: float) -> bool:
+        return bool(near.query([x, y])[0] > reach + AROUND)
+
+    _take_away(canvas, rng)
+    for x0, y0, x1, y1 in building.doors.tolist():
+        if chance(rng, SHUT) and clear((x0 + x1) / 2, (y0 + y1) / 2, 0.5):
+            canvas.line(x0, y0, x1, y1, 0.05)
+    height, width = (side * building.resolution for side in building.surface.shape)
+    for _ in range(int(width * height / FLOOR_PER_PIECE)):
+        x, y = uniform(rng, 0.0, width), uniform(rng, 0.0, height)
+        long, deep = uniform(rng, 0.3, 1.4), uniform(rng, 0.25, 0.8)
+        reach = (long + deep) / 2
+        if clear(x, y, reach) and canvas.is_empty(x - reach, y - reach, x + reach, y + reach):
+            canvas.turned_box(x, y, long, deep, TURN // 4 * whole(rng, 0, 1) + whole(rng, -300, 300))
+    return replace(building, surface=canvas.cells)
+
+
+def with_pillars(building: Building, rng: np.random.Generator) -> Building:
+    """The building with pillars, radiators and cabinets before its walls, so that no two of its corridors are
+    quite alike.
+    """
+    canvas = Canvas.of(building)
+    walls = np.argwhere(canvas.cells == WALL)
+    jambs = building.doors.reshape(-1, 2)
+    for _ in range(int(len(walls) * building.resolution**2 / WALL_PER_PILLAR)):
+        row, col = walls[whole(rng, 0, len(walls) - 1)].tolist()
+        x, y = (col + 0.5) * building.resolution, (row + 0.5) * building.resolution
+        half, deep = uniform(rng, 0.1, 0.35), uniform(rng, 0.15, 0.3)
+        long, wide = (half, deep) if chance(rng, 0.5) else (deep, half)
+        if np.hypot(*(jambs - (x, y)).T).min(initial=np.inf) > FROM_DOORS:
+            canvas.box(x - long, y - wide, x + long, y + wide)
+    return replace(building, surface=canvas.cells)
+
+
+def _take_away(canvas: Canvas, rng: np.random.Generator) -> None:
+    """Remove small things that touch no wall."""
+    count, labels, stats, _ = cv2.connectedComponentsWithStats((canvas.cells == WALL).astype(np.uint8))
+    small = LOOSE / canvas.resolution
+    gone = np.zeros(count, dtype=bool)
+    for label in range(1, count):
+        loose = max(stats[label, cv2.CC_STAT_WIDTH], stats[label, cv2.CC_STAT_HEIGHT]) <= small
+        gone[label] = loose and chance(rng, TAKEN_AWAY)
+    canvas.cells[gone[labels]] = AIR

@@ -1,0 +1,133 @@
+"""Pairs of maps by the thousand, right and wrong, as easy and as hard as people meet them.
+
+The model of the verdict is fitted to them. Real surveys bend by up to a metre in 15 m, doors are open in one
+and shut in the other, furniture moves, walls are drawn thick or lose cells, and a depth sensor reaches a few
+metres only: all of that is drawn here, robot by robot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from algorithms.observation import Observation
+from algorithms.simulator.buildings import BUILDINGS
+from algorithms.simulator.dice import chance, pick, stream, uniform, whole
+from algorithms.simulator.driving import Drift
+from algorithms.simulator.robot import Conditions
+from algorithms.simulator.scenario import Case, simulate
+from algorithms.simulator.wear import Wear
+from algorithms.simulator.wrong_pairs import mirrored, mismatch, wrongly_seen
+
+Kind = Literal["right", "wrong sighting", "mirrored", "same plan", "other building"]
+
+MIRRORED = 5  # every so manieth building is mirrored, too: it happens seldom
+OTHERS = 4  # other buildings that a building is crossed with
+LEAST, MOST = 0.05, 0.8  # overlap
+SURVEYS = 0.3  # share of the buildings that are surveyed by hand
+HARDSHIPS = (0.0, 0.2, 0.2, 0.5, 0.8)  # how likely each hardship is, building by building
+ONE_FLOOR = ("warehouse",)  # another floor of it would be the same one, furnished anew
+ONE_PLAN = ("corridor",)  # all of them are drawn to one plan, as the floors of a building are
+
+
+@dataclass(frozen=True, eq=False)
+class TrainingPair:
+    """A pair and what it is.
+
+    buildings    : whose maps these are, by their seeds; pairs of one building must not be on both sides of a
+                   cross-validation
+    observations : the good or the bad ones of the case
+    """
+
+    case: Case
+    kind: Kind
+    buildings: tuple[str, ...]
+    observations: tuple[Observation, ...]
+
+
+def training_pairs(seed: int) -> Iterator[TrainingPair]:
+    """All pairs of one building: two right ones, and wrong ones of every kind.
+
+    Those of the "same plan" are another floor of the building, or another building that is as like it.
+
+    Neighbouring seeds are buildings of different kinds; ``len(BUILDINGS)`` seeds apart they are of one.
+    """
+    rng, name = stream(seed, "training pairs"), str(seed)
+    cases = _cases(seed)
+    for case in cases:
+        yield _pair(case, "right", (name,), rng)
+    one = pick(rng, cases)
+    yield _pair(wrongly_seen(one, rng), "wrong sighting", (name,), rng)
+    if seed % MIRRORED == 0:
+        yield _pair(mirrored(one), "mirrored", (name,), rng)
+    if _kind(seed) not in ONE_FLOOR:
+        yield _pair(mismatch(cases[0], _cases(seed, floor=1)[0]), "same plan", (name,), rng)
+    for step in (*range(1, OTHERS), len(BUILDINGS)):
+        other = mismatch(pick(rng, cases), pick(rng, _cases(seed + step)))
+        alike = _kind(seed) == _kind(seed + step) and _kind(seed) in ONE_PLAN
+        kind: Kind = "same plan" if alike else "other building"
+        yield _pair(other, kind, (name, str(seed + step)), rng)
+
+
+def _pair(case: Case, kind: Kind, buildings: tuple[str, ...], rng: np.random.Generator) -> TrainingPair:
+    return TrainingPair(case, kind, buildings, case.rough if chance(rng, 0.4) else case.observations)
+
+
+def _kind(seed: int) -> str:
+    return list(BUILDINGS)[seed % len(BUILDINGS)]
+
+
+_made: dict[tuple[int, int], tuple[Case, ...]] = {}  # those of the last few buildings
+
+
+def _cases(seed: int, floor: int = 0) -> tuple[Case, ...]:
+    """The two cases of a building; the same seed gives the same robots on every floor."""
+    if (seed, floor) not in _made:
+        while len(_made) > 2 * len(BUILDINGS):
+            del _made[next(iter(_made))]
+        rng = stream(seed, "conditions")
+        survey = chance(rng, SURVEYS)
+        hard = pick(rng, HARDSHIPS)
+        draw = _survey if survey else _lidar
+        conditions = draw(rng, hard), draw(rng, hard), draw(rng, hard)
+        overlap = uniform(rng, LEAST, MOST), uniform(rng, LEAST, MOST)
+        reach = uniform(rng, 3.5, 5.0) if survey else None
+        scenario = simulate(
+            _kind(seed), seed, overlap, reach=reach, floor=floor, pillars=True, conditions=conditions
+        )
+        _made[seed, floor] = scenario.cases
+    return _made[seed, floor]
+
+
+def _lidar(rng: np.random.Generator, hard: float) -> Conditions:
+    """A robot with a lidar; maps that are sent to and fro get worn.
+
+    hard : 0 … 1, how likely each hardship is
+    """
+
+    def one_of(*worse: float) -> float:
+        return pick(rng, worse) if chance(rng, hard) else 0.0
+
+    wander = 1 + one_of(0, 1, 2)
+    drift = _drift(wander, one_of(0.15, 0.3, 0.6) * uniform(rng, 0.5, 1.0))
+    wear = Wear(
+        thicker=int(one_of(0, 1, 1, 2)),
+        lost=one_of(0.05, 0.1, 0.2),
+        dotted=one_of(0, 0, 0, 0.2, 0.4),
+        holes=one_of(0, 0, 0.05, 0.1),
+        specks=one_of(0, 0, 0.002, 0.005, 0.01),
+    )
+    return Conditions(drift, changed=chance(rng, 0.6 * hard), wear=wear)
+
+
+def _survey(rng: np.random.Generator, hard: float) -> Conditions:
+    """A depth sensor carried by hand: it reaches a few metres, walls come out thick, and all of it bends."""
+    drift = _drift(whole(rng, 1, 3), uniform(rng, 0.2, 1.0))
+    return Conditions(drift, changed=chance(rng, 0.6 * hard), wear=Wear(thicker=whole(rng, 0, 2)))
+
+
+def _drift(wander: float, bend: float) -> Drift:
+    return Drift(metres=0.025 * wander, degrees=0.22 * wander, bend=bend)
