@@ -8,7 +8,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help run test bench fuzz soak audit samples screenshots equations replays results clean
+.PHONY: help run test bench fuzz soak audit samples screenshots equations replays verdict results clean
 
 help:
 	@echo "make run          open the tool on a sample, in the browser (ARGS=--no-browser: only serve it)"
@@ -21,6 +21,7 @@ help:
 	@echo "make screenshots  take the pictures of the README and the guides again"
 	@echo "make equations    typeset the equations in static/equations again"
 	@echo "make replays      record the pages in static/replays again"
+	@echo "make verdict      fit the verdict's model to simulated pairs again (ARGS='--cases DIR'); about an hour"
 	@echo "make results      measure the paper's section IV on the samples again: RESULTS.md; about 3 minutes on 2 cores"
 	@echo "make clean        remove the environment and everything that was made"
 
@@ -67,8 +68,11 @@ equations: $(VENV)/ready
 	@$(BIN)/python tests/equations.py
 
 replays: $(VENV)/ready
-	@for name in $(or $(ARGS),office_r2_r1 corridor_r3_r2); do \
+	@for name in $(or $(ARGS),office_r2_r1 bent_r2_r1); do \
 	  $(BIN)/mapmeld replay $$name --out static/replays/$$name.html || exit; done
+
+verdict: $(VENV)/ready
+	@$(BIN)/python -m app.verdict_training $(ARGS)
 
 results: $(VENV)/ready
 	@$(PIP) install -e '.[surf]'

@@ -75,6 +75,7 @@ def make_agreement(
     config: AgreementConfig,
     window: CoupledWindow | None = None,
     lookup: Lookup = Lookup.BILINEAR,
+    robot_size: float = 0.0,
 ) -> Objective:
     """The agreement of two maps as a function of the transform; in metres of wall.
 
@@ -82,6 +83,7 @@ def make_agreement(
                    intensity does not matter here
     window       : what a transform deviates from its sightings is taken off: half a squared standard
                    deviation costs ``config.evidence`` metres of wall
+    robot_size   : so near to an encounter there is a robot and no wall; metres
     """
     precision = np.asarray(np.linalg.inv(augmentation.covariance()), dtype=np.float64)
     far = REACH * sqrt(float(np.linalg.eigvalsh(augmentation.covariance())[-1]))
@@ -94,10 +96,10 @@ def make_agreement(
         (ref, around_ref, mov, around_mov, x_mov, False),
         (mov, around_mov, ref, around_ref, x_ref, True),
     ):
-        points, nearness = _weighted_surface(source, points_of, anchors, precision)
+        points, nearness = _weighted_surface(source, points_of, anchors, precision, robot_size)
         side = Side(
             grid=grid,
-            table=_field(table_of, grid.resolution, config),
+            table=wall_field(table_of.walls, table_of.free, grid.resolution, config.blur, config.penalty),
             corner=table_of.corner,
             anchor=anchors[0],
             points=points - anchors[0],
@@ -133,22 +135,30 @@ def _surroundings(grid: GridMap, centres: FloatArray, radius: float) -> _Surroun
     return _Surroundings(grid.cells[low[1] : high[1], low[0] : high[0]], low.astype(np.float64))
 
 
-def _field(part: _Surroundings, cell: float, config: AgreementConfig) -> Float32Array:
-    """What a wall of the other map is worth here: 1 on a wall, −λ on free floor, 0 on the unknown."""
-    near = np.exp(-0.5 * (distance_to_walls(part.walls) * np.float32(cell / config.blur)) ** 2)
-    return np.pad(near - np.float32(config.penalty) * part.free * (1 - near), PAD).astype(np.float32)
+def wall_field(
+    walls: BoolArray, free: BoolArray, cell: float, blur: float, penalty: float = 1.0
+) -> Float32Array:
+    """(H + 2·PAD, W + 2·PAD) what a wall of the other map is worth at every cell: 1 on a wall, −λ on free
+    floor, 0 on the unknown.
+
+    blur    : σ_d, standard deviation of the distance between two drawings of one wall; metres
+    penalty : λ
+    """
+    near = np.exp(-0.5 * (distance_to_walls(walls) * np.float32(cell / blur)) ** 2)
+    return np.pad(near - np.float32(penalty) * free * (1 - near), PAD).astype(np.float32)
 
 
 def _weighted_surface(
-    grid: GridMap, part: _Surroundings, centres: FloatArray, precision: FloatArray
+    grid: GridMap, part: _Surroundings, centres: FloatArray, precision: FloatArray, robot_size: float
 ) -> tuple[FloatArray, FloatArray]:
     """(N, 2) surface cells in the map's frame, metres, and (N,) how near they are to an encounter."""
     rows, cols = where(surface(part.walls, part.free))
     points = grid.centres(rows + int(part.corner[1]), cols + int(part.corner[0]))
-    nearness = np.zeros(len(points))
+    nearness, clear = np.zeros(len(points)), np.ones(len(points), dtype=np.bool_)
     for centre in centres:
         offset = points - centre
+        clear &= np.einsum("ni,ni->n", offset, offset) >= robot_size**2
         squared = np.einsum("ni,ij,nj->n", offset, precision, offset)
         np.maximum(nearness, np.exp(-0.5 * squared), out=nearness)
-    counts = nearness >= LEAST_NEARNESS
+    counts = (nearness >= LEAST_NEARNESS) & clear
     return points[counts], nearness[counts]

@@ -2,33 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from algorithms.certificate import ProofState
-from algorithms.evidence import Evidence, evidence
 from algorithms.fuse import Fusion
-from algorithms.gridmap import GridMap
 from algorithms.observation import Encounter
-from algorithms.pose import FloatArray, Pose2
+from algorithms.pose import FloatArray
+from algorithms.ranking import Weighed
 from algorithms.steps import Answer, MergeResult
-from algorithms.verdict import Rival, VerdictConfig, judge
+from algorithms.verdict import VerdictConfig, judge
 
 
 def conclude(
-    ref: GridMap,
-    mov: GridMap,
-    T_ref_mov: Pose2,
+    named: Weighed,
+    others: Sequence[Weighed] | None,
     fusion: Fusion,
     encounters: tuple[Encounter, ...],
-    covariance: Callable[[Evidence], FloatArray],
+    covariance: FloatArray,
     rules: VerdictConfig,
     *,
     value: float | None,
     answers: tuple[Answer, ...],
     method: str,
     seed: int,
-    rivals: Sequence[tuple[Pose2, float]] | None = None,
-    margin: float = 0.0,
     doubts: Sequence[str] = (),
     proof: ProofState | None = None,
     search_found_it: bool | None = None,
@@ -36,27 +32,22 @@ def conclude(
 ) -> MergeResult:
     """Judge a transform.
 
+    named, others, doubts : as for ``judge``
     fusion     : of both maps under it
-    covariance : (3, 3) of x, y, theta, given what the walls say; m and rad
-    rivals     : other answers with their share of this one's value, best first; None for a method that
-                 knows none
-    margin, doubts : as for ``judge``; the rest as in MergeResult
+    covariance : (3, 3) of x, y, theta; m and rad
+    the rest   : as in MergeResult
     """
-    weighed = evidence(ref, mov, T_ref_mov)
-    told = None
-    if rivals is not None:
-        told = [Rival(T, share, evidence(ref, mov, T)) for T, share in rivals]
-    verdict = judge(fusion, weighed, T_ref_mov, encounters, told, rules, margin, doubts)
     return MergeResult(
-        T_ref_mov=T_ref_mov,
-        covariance=covariance(weighed),
+        T_ref_mov=named.T_ref_mov,
+        covariance=covariance,
         value=value,
-        verdict=verdict,
+        verdict=judge(fusion, named, others, encounters[0].x_mov, rules, doubts),
         fusion=fusion,
         encounters=encounters,
         answers=answers,
         method=method,
         seed=seed,
+        weighed=(named, *(others or ())),
         proof=proof,
         search_found_it=search_found_it,
         timings_s={} if timings_s is None else timings_s,

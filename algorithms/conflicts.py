@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.discs import distances, near
-from algorithms.evidence import SAME_WALL
 from algorithms.fuse import Fusion
 from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, BoolArray, CellArray, where
+from algorithms.wall_map import SAME_WALL
 
 IntArray = NDArray[np.intp]
 

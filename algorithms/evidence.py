@@ -12,46 +12,77 @@ merge keeps about as many as it had.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import ceil, sqrt
+from math import ceil, cos, hypot, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
-from algorithms.discs import distances, stamp
-from algorithms.gridmap import BoolArray, GridMap, where
+from algorithms.gridmap import BoolArray
 from algorithms.kernels import kernel, spread
+from algorithms.observation import NOWHERE, Robots
 from algorithms.pose import FloatArray, Pose2
+from algorithms.wall_map import (
+    ANY_SIDE,
+    NEAR,
+    SHARES,
+    ByteArray,
+    IntArray,
+    WallMap,
+    sectors,
+    transform_between,
+)
 
-SAME_WALL = 0.12  # metres; two drawings of one wall: the sum of two ragged cells of 0.05 m and a bit
-NEAR_WALL = 0.3  # metres; a wall in unknown ground counts as seen by both where the other has one so near
 PATCH = 7.0  # metres; a room and the wall behind it: large enough that chance does not fit it
 RASTERS = (0.0, 0.5)  # patches; where the patches' borders lie must not matter, so two are averaged
 SLIP = 0.6  # metres that a patch may slip
 SLIP_STEP = 0.15  # metres; a wall within SAME_WALL of a step is met by it
 TURN = 0.07  # radians that a patch may turn, 4°
 TURN_STEPS = 2  # to either side
-FLOOR, NEAR, SAME = 1, 2, 4  # of the other map: free floor; a wall within NEAR_WALL; within SAME_WALL
+CLOSER = 2  # times that steps are halved around the best place
 INERTIA = 0.05  # share of a patch's walls that the farthest slip must win to be worth it
+MOST_SLIPPING = 1_500  # points that are slipped; of more every second, third … stands for all
+LEAST_APART = 0.2  # metres; of a patch that slips by less nobody would say that its walls are double
+LEAST_WALL = 1.5  # metres of agreeing wall that a patch must bring to be told of
 
-GroundArray = NDArray[np.uint8]
-IntArray = NDArray[np.intp]
+
+@dataclass(frozen=True)
+class Apart:
+    """A place where bent maps lie beside each other.
+
+    x, y   : its middle; metres, ref frame
+    metres : how far the maps are apart there
+    wall   : how much of their wall lies on each other once the patch has slipped; metres
+    """
+
+    x: float
+    y: float
+    metres: float
+    wall: float
 
 
 @dataclass(frozen=True)
 class Evidence:
     """Wall that both robots should have seen under a transform, both maps' walls counted; metres.
 
-    agreeing, contradicting : with every patch where it fits best: the other map has a wall there, or
-                              free floor
+    agreeing, contradicting : with every patch where it fits best: the other map has a wall there that was
+                              seen from the same side; or free floor
     rigid_agreeing, rigid_contradicting : the same with the maps as they are
-    slip : how far patches slipped, root of the mean square over the agreeing wall
+    across   : agreeing wall that runs across the direction of most of it; the maps as they are. It is what
+               keeps map 2 from sliding along a corridor
+    opposite : wall that is one in both maps, but seen from opposite sides; the maps as they are
+    floor    : free floor that both have seen; m²
+    slip     : how far patches slipped, root of the mean square over the agreeing wall
+    apart    : where patches slipped by far, the farthest first
     """
 
     agreeing: float
     contradicting: float
     rigid_agreeing: float
     rigid_contradicting: float
+    across: float = 0.0
+    opposite: float = 0.0
+    floor: float = 0.0
     slip: float = 0.0
+    apart: tuple[Apart, ...] = ()
 
     @property
     def contradiction(self) -> float:
@@ -64,147 +95,263 @@ class Evidence:
         return _share(self.rigid_contradicting, self.rigid_agreeing)
 
     @property
-    def bent(self) -> float:
-        """Share of the contradictions that go away when patches slip, 0 … 1."""
-        before = self.rigid_contradiction
-        return max(0.0, 1 - self.contradiction / before) if before > 0 else 0.0
+    def shared_wall(self) -> float:
+        """Wall that both robots should have seen, patches slipped; metres."""
+        return self.agreeing + self.contradicting
 
 
 def _share(against: float, agreeing: float) -> float:
     return against / (against + agreeing) if against + agreeing > 0 else 1.0
 
 
-def evidence(ref: GridMap, mov: GridMap, T_ref_mov: Pose2) -> Evidence:
-    """Weigh the walls of both maps, each looked up in the other."""
-    totals = np.zeros(5)
-    for source, target, T in ((mov, ref, T_ref_mov), (ref, mov, T_ref_mov.inverse())):
-        totals += _one_way(source, target, T) * source.resolution
-    agreeing, contradicting, rigid_agreeing, rigid_contradicting, squared = totals.tolist()
-    slip = sqrt(squared / agreeing) if agreeing else 0.0
-    return Evidence(agreeing, contradicting, rigid_agreeing, rigid_contradicting, slip)
+def evidence(
+    ref: WallMap, mov: WallMap, T_ref_mov: Pose2, robots: Robots = NOWHERE, slip: bool = True
+) -> Evidence:
+    """Weigh the walls of both maps, each looked up in the other.
 
-
-def _one_way(source: GridMap, target: GridMap, T_target_source: Pose2) -> FloatArray:
-    """(5,) cells of the source's walls, in the order of ``Evidence``; the last times squared slips, m²."""
-    rows, cols = _surface_cells(source)
-    places = target.grid_coordinates(T_target_source.apply(source.centres(rows, cols)))
-    margin = ceil((SLIP + PATCH * TURN + NEAR_WALL) / target.resolution) + 1
-    inside = np.all((places >= 0) & (places < (target.width, target.height)), axis=1)
-    places = places[inside]
-    if not len(places):
-        return np.zeros(5)
-    low = np.maximum(0, places.min(axis=0).astype(int) - margin)
-    high = np.minimum((target.width, target.height), places.max(axis=0).astype(int) + margin + 1)
-    part = slice(low[1], high[1]), slice(low[0], high[0])
-    ground = _ground(target.occupied[part], target.free[part], target.resolution)
-    places = places - low
-    at = places.astype(np.intp)
-    places = places[ground[at[:, 1], at[:, 0]] > 0]
-    if not len(places):
-        return np.zeros(5)
-    totals = np.zeros(5)
-    for offset in RASTERS:
-        totals += _patch_by_patch(places, offset, ground, target.resolution)
-    return totals / len(RASTERS)
-
-
-def _ground(walls: BoolArray, free: BoolArray, cell: float) -> GroundArray:
-    """(H, W) what is at a place, as a sum: FLOOR on free floor, NEAR and SAME by the nearest wall.
-
-    A disc is stamped around every wall: beyond NEAR_WALL nobody asks how far it is.
+    robots : what lies around them says nothing
+    slip   : whether patches may slip; without it only the walls as they are and the floor are counted
     """
-    ground = free.astype(np.uint8)  # FLOOR is 1
-    metres = distances(ceil(NEAR_WALL / cell) + 1) * np.float32(cell)
-    kind = np.where(metres <= np.float32(NEAR_WALL), NEAR, 0)
-    kind[metres.astype(np.float64) <= SAME_WALL] = NEAR | SAME
-    stamp(walls, kind.astype(np.uint8), ground)
-    return ground
+    T_mov_ref, places = T_ref_mov.inverse(), robots.places(T_ref_mov)
+    sides = (
+        _Side(mov, ref, T_ref_mov, T_mov_ref.apply(places), robots.size),
+        _Side(ref, mov, T_mov_ref, places, robots.size),
+    )
+    slipped = []
+    if slip:
+        slipped = [side.slipped(to_ref) for side, to_ref in zip(sides, (T_ref_mov, Pose2()), strict=True)]
+    agreeing, contradicting, squared = (sum((found.totals[k] for found in slipped), 0.0) for k in range(3))
+    apart = [place for found in slipped for place in found.apart]
+    rigid_agreeing = sum(side.agreeing for side in sides)
+    one_way = abs(sides[0].direction(T_ref_mov.theta) + sides[1].direction(0.0))
+    return Evidence(
+        agreeing=agreeing,
+        contradicting=contradicting,
+        rigid_agreeing=rigid_agreeing,
+        rigid_contradicting=sum(side.contradicting for side in sides),
+        across=max(0.0, rigid_agreeing - one_way) / 2,
+        opposite=sum(side.opposite for side in sides),
+        floor=sum(side.floor() for side in sides) / 2,
+        slip=sqrt(squared / agreeing) if agreeing else 0.0,
+        apart=tuple(sorted(apart, key=lambda place: (-place.metres, place.x, place.y))),
+    )
 
 
-def _patch_by_patch(places: FloatArray, offset: float, ground: GroundArray, cell: float) -> FloatArray:
-    """(5,) the sums over all patches; offset: of the raster of patches, in patches."""
-    patch = np.floor(places * (cell / PATCH) + offset).astype(np.int64)
+@dataclass(frozen=True)
+class _Slipped:
+    """Every patch where it fits best.
+
+    totals : agreeing and contradicting wall, metres; and the first times the squared slips, m³
+    """
+
+    totals: tuple[float, float, float]
+    apart: tuple[Apart, ...]
+
+
+class _Side:
+    """One map's walls looked up in the other map as they lie, ``at`` in its cells.
+
+    agreeing, contradicting, opposite : metres, as in ``Evidence``
+    """
+
+    def __init__(
+        self, source: WallMap, target: WallMap, T_target_source: Pose2, robots: FloatArray, size: float
+    ) -> None:
+        self._source, self._target = source, target
+        self._T = transform_between(target, source, T_target_source)
+        robots = source.grid.origin.inverse().apply(robots)
+        self._anchor = robots.mean(axis=0) if len(robots) else np.zeros(2)  # the same for either map
+        points, facing = source.points, source.facing
+        if len(robots):
+            away = np.ones(len(points), dtype=np.bool_)
+            for x, y in robots.tolist():
+                away &= np.hypot(points[:, 0] - x, points[:, 1] - y) > size
+            points, facing = points[away], facing[away]
+        at = self._T.apply(points) / target.grid.resolution
+        sides = sectors(facing, self._T.theta)
+        seen, agreeing = np.zeros(len(at), dtype=np.bool_), np.zeros(len(at))
+        contradicting, opposite = _look_up(
+            at, sides, target.level, target.sides, target.grid.free, seen, agreeing
+        )
+        self.agreeing, self.contradicting = (
+            float(agreeing.sum()) * source.metres,
+            contradicting * source.metres,
+        )
+        self.opposite = opposite * source.metres
+        self._points, self._at, self._sides = points[seen], at[seen], sides[seen]
+        self._facing, self._agreeing = facing[seen], agreeing[seen]
+
+    def direction(self, turn: float) -> complex:
+        """Agreeing wall, metres, times exp(2iφ), φ being where it faces in axes turned by −turn; radians.
+
+        Walls along one line add up, those across take away, and a post that faces everywhere does neither.
+        """
+        known = ~np.isnan(self._facing)
+        double = 2 * (self._facing[known] + self._source.grid.origin.theta + turn)
+        return complex((self._agreeing[known] * np.exp(1j * double)).sum()) * self._source.metres
+
+    def floor(self) -> float:
+        """Floor of the source on floor of the target; m²."""
+        cell = self._target.grid.resolution
+        at = self._T.apply(self._source.floor) / cell
+        return _on_floor(at, self._target.grid.free) * self._source.floor_area
+
+    def slipped(self, T_ref_source: Pose2) -> _Slipped:
+        """The walls that both should have seen, patch by patch.
+
+        T_ref_source : for telling where patches slipped
+        """
+        stride = max(1, ceil(len(self._at) / MOST_SLIPPING))
+        at, sides, points = self._at[::stride], self._sides[::stride], self._points[::stride]
+        metres = self._source.metres * stride
+        agreeing = contradicting = squared = 0.0
+        apart: list[Apart] = []
+        for offset in RASTERS if len(at) else ():
+            order, starts = _patches((points - self._anchor) / PATCH + offset)
+            found = np.zeros((len(starts) - 1, 6))
+            self._slip(at[order], sides[order], starts, found)
+            found[:, (0, 1, 5)] *= metres
+            agreeing += float(found[:, 0].sum()) / len(RASTERS)
+            contradicting += float(found[:, 1].sum()) / len(RASTERS)
+            squared += float((found[:, 0] * (found[:, 2] ** 2 + found[:, 3] ** 2)).sum()) / len(RASTERS)
+            if offset == 0:
+                middles = np.add.reduceat(points[order], starts[:-1]) / np.diff(starts)[:, None]
+                apart = _apart(found, (T_ref_source @ self._source.grid.origin).apply(middles))
+        return _Slipped((agreeing, contradicting, squared), tuple(apart))
+
+    def _slip(self, at: FloatArray, sides: ByteArray, starts: IntArray, out: FloatArray) -> None:
+        target = self._target
+        level, facing, free = target.level, target.sides, target.grid.free
+        at, sides = np.ascontiguousarray(at), np.ascontiguousarray(sides)
+
+        def work(start: int, stop: int) -> None:
+            _slip(
+                at, sides, starts[start : stop + 1], level, facing, free, target.grid.resolution,
+                out[start:stop],
+            )  # fmt: skip
+
+        spread(work, len(out), at_least=4)
+
+
+def _patches(place: FloatArray) -> tuple[IntArray, IntArray]:
+    """(N,) the order of points by patch, and (P + 1,) where each patch begins and the last one ends.
+
+    place : (N, 2) in patches
+    """
+    patch = np.floor(place).astype(np.int64)
+    patch -= patch.min(axis=0)
     number = patch[:, 1] * (patch[:, 0].max() + 1) + patch[:, 0]
     order = np.argsort(number, kind="stable")
-    places = np.ascontiguousarray(places[order])
     starts = np.flatnonzero(np.diff(number[order], prepend=-1))
-    starts = np.append(starts, len(places))
-    counts = np.zeros((len(starts) - 1, 5))
-
-    def work(start: int, stop: int) -> None:
-        _slip(places, starts[start : stop + 1], ground, cell, counts[start:stop])
-
-    spread(work, len(counts), at_least=4)
-    return np.asarray(counts.sum(axis=0), dtype=np.float64)
+    return order, np.append(starts, len(order))
 
 
-def _surface_cells(grid: GridMap) -> tuple[IntArray, IntArray]:
-    """Rows and columns of the walls that were seen, as ``agreement.surface`` defines them."""
-    rows, cols = where(grid.occupied)
-    seen = np.zeros(len(rows), dtype=bool)
-    for down in (-1, 0, 1):
-        for right in (-1, 0, 1):
-            row, col = rows + down, cols + right
-            inside = (row >= 0) & (row < grid.height) & (col >= 0) & (col < grid.width)
-            seen[inside] |= grid.free[row[inside], col[inside]]
-    return rows[seen], cols[seen]
+def _apart(found: FloatArray, middles: FloatArray) -> list[Apart]:
+    """Patches that lie beside the other map: those which gain much agreeing wall by a long slip."""
+    out = []
+    for (wall, _, right, up, _, gained), (x, y) in zip(found.tolist(), middles.tolist(), strict=True):
+        if hypot(right, up) >= LEAST_APART and gained >= LEAST_WALL:
+            out.append(Apart(x, y, hypot(right, up), wall))
+    return out
 
 
 @kernel
-def _look(
-    places: FloatArray,
-    start: int,
-    stop: int,
-    ground: GroundArray,
-    x: float,
-    y: float,
-    turn: float,
-) -> tuple[int, int]:
-    """How many points of a patch lie on a wall and how many on free floor, the patch slipped."""
-    middle_x = places[start:stop, 0].mean()
-    middle_y = places[start:stop, 1].mean()
-    c, s = np.cos(turn), np.sin(turn)
-    agreeing = 0
-    contradicting = 0
-    for n in range(start, stop):
-        u, v = places[n, 0] - middle_x, places[n, 1] - middle_y
-        col = int(np.floor(c * u - s * v + middle_x + x))
-        row = int(np.floor(s * u + c * v + middle_y + y))
-        if 0 <= row < ground.shape[0] and 0 <= col < ground.shape[1]:
-            if ground[row, col] & SAME:
-                agreeing += 1
-            elif ground[row, col] & FLOOR:
-                contradicting += 1
-    return agreeing, contradicting
+def _look_up(
+    at: FloatArray,
+    sides: ByteArray,
+    level: ByteArray,
+    facing: ByteArray,
+    free: BoolArray,
+    seen: BoolArray,
+    agreeing: FloatArray,
+) -> tuple[float, float]:
+    """Points of wall that contradict, and those that were seen from the other side.
+
+    seen     : (N,) filled: which both robots should have seen
+    agreeing : (N,) filled: by how much they are one wall
+    """
+    contradicting, opposite = 0.0, 0.0
+    for n in range(len(at)):
+        col, row = int(np.floor(at[n, 0])), int(np.floor(at[n, 1]))
+        if not (0 <= row < level.shape[0] and 0 <= col < level.shape[1]):
+            continue
+        near = level[row, col]
+        same = SHARES[near]
+        if sides[n] == ANY_SIDE or (facing[row, col] >> sides[n]) & 1:
+            agreeing[n] = same
+        else:
+            opposite += same
+        if free[row, col]:
+            contradicting += 1 - same
+        seen[n] = free[row, col] or near >= NEAR
+    return contradicting, opposite
+
+
+@kernel
+def _on_floor(at: FloatArray, free: BoolArray) -> int:
+    """How many places lie on free floor."""
+    count = 0
+    for n in range(len(at)):
+        col, row = int(np.floor(at[n, 0])), int(np.floor(at[n, 1]))
+        if 0 <= row < free.shape[0] and 0 <= col < free.shape[1] and free[row, col]:
+            count += 1
+    return count
 
 
 @kernel
 def _slip(
-    places: FloatArray,
+    at: FloatArray,
+    sides: ByteArray,
     starts: IntArray,
-    ground: GroundArray,
+    level: ByteArray,
+    facing: ByteArray,
+    free: BoolArray,
     cell: float,
     out: FloatArray,
 ) -> None:
-    steps = round(SLIP / SLIP_STEP)
+    """For every patch: agreeing and contradicting points where it fits best, how far it slipped to the
+    right and up, metres, by how much it turned, radians, and how many points more agree there.
+
+    It is tried everywhere within reach, then closer and closer around the best place: else the result would
+    depend on where the places that are tried happen to lie.
+    """
     for patch in range(len(starts) - 1):
-        start, stop = starts[patch], starts[patch + 1]
-        best = -np.inf
-        for a in range(-TURN_STEPS, TURN_STEPS + 1):
-            turn = a * TURN / TURN_STEPS
-            for i in range(-steps, steps + 1):
-                for j in range(-steps, steps + 1):
-                    if i * i + j * j > steps * steps:
-                        continue
-                    agreeing, contradicting = _look(
-                        places, start, stop, ground,
-                        i * SLIP_STEP / cell, j * SLIP_STEP / cell, turn,
-                    )  # fmt: skip
-                    far = (i * i + j * j) / (steps * steps) + (a / TURN_STEPS) ** 2
-                    value = agreeing - contradicting - INERTIA * (stop - start) * far
-                    if a == 0 and i == 0 and j == 0:
-                        out[patch, 2], out[patch, 3] = agreeing, contradicting
-                    if value > best:
-                        best = value
-                        out[patch, 0], out[patch, 1] = agreeing, contradicting
-                        out[patch, 4] = agreeing * (i * i + j * j) * SLIP_STEP**2
+        points = at[starts[patch] : starts[patch + 1]]
+        mine = sides[starts[patch] : starts[patch + 1]]
+        x, y = points[:, 0].mean(), points[:, 1].mean()
+        best, right, up, turn = -np.inf, 0.0, 0.0, 0.0
+        step, turn_step = SLIP_STEP, TURN / TURN_STEPS
+        reach, turns = round(SLIP / SLIP_STEP), TURN_STEPS
+        for _ in range(1 + CLOSER):
+            x0, y0, turn0 = right, up, turn
+            for a in range(-turns, turns + 1):
+                to = turn0 + a * turn_step
+                c, s = cos(to), sin(to)
+                for i in range(-reach, reach + 1):
+                    for j in range(-reach, reach + 1):
+                        dx, dy = x0 + i * step, y0 + j * step
+                        far = (dx * dx + dy * dy) / (SLIP * SLIP)
+                        if far > 1 + 1e-9 or abs(to) > TURN + 1e-9:
+                            continue
+                        agreeing, contradicting = 0.0, 0.0
+                        for n in range(len(points)):
+                            u, v = points[n, 0] - x, points[n, 1] - y
+                            col = int(np.floor(c * u - s * v + x + dx / cell))
+                            row = int(np.floor(s * u + c * v + y + dy / cell))
+                            if not (0 <= row < level.shape[0] and 0 <= col < level.shape[1]):
+                                continue
+                            same = SHARES[level[row, col]]
+                            if mine[n] == ANY_SIDE or (facing[row, col] >> mine[n]) & 1:
+                                agreeing += same
+                            if free[row, col]:
+                                contradicting += 1 - same
+                        cost = INERTIA * len(points) * (far + (to / TURN) ** 2)
+                        if dx == 0 and dy == 0 and to == 0:
+                            out[patch, 5] = -agreeing
+                        if agreeing - contradicting - cost > best:
+                            best = agreeing - contradicting - cost
+                            out[patch, 0], out[patch, 1] = agreeing, contradicting
+                            right, up, turn = dx, dy, to
+            step, turn_step, reach, turns = step / 2, turn_step / 2, 1, 1
+        out[patch, 2], out[patch, 3], out[patch, 4] = right, up, turn
+        out[patch, 5] += out[patch, 0]

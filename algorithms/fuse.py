@@ -19,7 +19,10 @@ from algorithms.gridmap import (
     check_size,
 )
 from algorithms.kernels import kernel, spread
-from algorithms.pose import Pose2
+from algorithms.observation import NOWHERE, Robots
+from algorithms.pose import FloatArray, Pose2
+
+SAME_PLACE = 0.12  # metres; a wall that both maps show so near to each other is one, and no robot
 
 
 class Conflict(str, Enum):
@@ -39,6 +42,7 @@ class Fusion:
     agreed      : cells where both are free or both are walls
     agreed_walls : cells where both are walls
     conflicting : cells where one is a wall and the other is free
+    cleared     : wall cells of one map around the maker of the other, which were that robot: now floor
     """
 
     merged: GridMap
@@ -47,6 +51,7 @@ class Fusion:
     agreed: int
     agreed_walls: int
     conflicting: int
+    cleared: int = 0
 
     @property
     def overlap(self) -> int:
@@ -59,14 +64,22 @@ class Fusion:
         return self.agreed / self.overlap if self.overlap else 0.0
 
 
-def fuse(ref: GridMap, mov: GridMap, T_ref_mov: Pose2, conflict: Conflict = Conflict.OCCUPIED_WINS) -> Fusion:
+def fuse(
+    ref: GridMap,
+    mov: GridMap,
+    T_ref_mov: Pose2,
+    conflict: Conflict = Conflict.OCCUPIED_WINS,
+    robots: Robots = NOWHERE,
+) -> Fusion:
     """Merge two maps under a transform.
 
     The merged grid takes the finer of the two resolutions, so nothing is lost by coarsening; at
     equal resolutions its cells are the ref map's own, not resampled. A merged cell is free only
     where a map knows it to be free. No wall cell of the mov map is lost in the turn: each also marks
-    the merged cell that its centre falls on.
+    the merged cell that its centre falls on. Where a robot stood, the other's map may show it as a ring of
+    wall: what its own map does not show, too, is floor.
 
+    robots : where they stood
     raises TooLargeError where the bounding box of both is over the bound of one map
     """
     cell = min(ref.resolution, mov.resolution)
@@ -93,16 +106,47 @@ def fuse(ref: GridMap, mov: GridMap, T_ref_mov: Pose2, conflict: Conflict = Conf
     cols, rows = np.floor(walls).astype(np.intp).T
     inside = (rows >= 0) & (rows < shape[0]) & (cols >= 0) & (cols < shape[1])
     mov_cells[rows[inside], cols[inside]] = OCCUPIED
+    corner = ref.origin @ T_grid_merged
+    mov_places = T_ref_mov.apply(robots.in_mov)
+    cleared = sum(
+        _clear(other, own, corner.inverse().apply(places) / cell, robots.size / cell, SAME_PLACE / cell)
+        for other, own, places in ((mov_cells, ref_cells, robots.in_ref), (ref_cells, mov_cells, mov_places))
+    )
     merged = np.empty(shape, dtype=np.int8)
     agreed_free, agreed_walls, conflicting = _merge(ref_cells, mov_cells, merged, [*Conflict].index(conflict))
     return Fusion(
-        merged=GridMap(merged, cell, ref.origin @ T_grid_merged, "merged"),
+        merged=GridMap(merged, cell, corner, "merged"),
         ref_cells=ref_cells,
         mov_cells=mov_cells,
         agreed=agreed_free + agreed_walls,
         agreed_walls=agreed_walls,
         conflicting=conflicting,
+        cleared=cleared,
     )
+
+
+def _clear(other: CellArray, own: CellArray, places: FloatArray, size: float, same: float) -> int:
+    """Turn walls of ``other`` around places into floor; how many. Stays what ``own``, the map that the robot
+    there has made, shows as well.
+
+    places, size : (N, 2) columns and rows; cells
+    same         : how near a wall of ``own`` must be; cells
+    """
+    cleared, reach, near = 0, ceil(size), ceil(same)
+    for x, y in places.tolist():
+        top, left = max(0, floor(y) - reach), max(0, floor(x) - reach)
+        rows, cols = slice(top, floor(y) + reach + 1), slice(left, floor(x) + reach + 1)
+        walls = other[rows, cols] >= OCCUPIED_FROM
+        if not walls.any():
+            continue
+        down, right = np.nonzero(walls)
+        inside = np.hypot(right + left + 0.5 - x, down + top + 0.5 - y) <= size
+        for row, col in zip((down + top)[inside].tolist(), (right + left)[inside].tolist(), strict=True):
+            part = own[max(0, row - near) : row + near + 1, max(0, col - near) : col + near + 1]
+            if not (part >= OCCUPIED_FROM).any():
+                other[row, col] = FREE
+                cleared += 1
+    return cleared
 
 
 def _look_up(source: GridMap, T_source_target: Pose2, cell: float, target: CellArray) -> None:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from time import perf_counter
 from typing import Any, Literal
 
-from algorithms import bilateral, pipeline
+from algorithms import bilateral, pipeline, refusal_causes
 from algorithms.augment import AugmentConfig
 from algorithms.baselines import features, mse, phase, smm_only
 from algorithms.baselines.detectors import (
@@ -25,7 +26,7 @@ from algorithms.gridmap import GridMap
 from algorithms.observation import Observation, as_observations, check_standing
 from algorithms.pipeline import PipelineConfig, RefineConfig
 from algorithms.smm import CandidateConfig
-from algorithms.steps import MergeResult, Step
+from algorithms.steps import CauseDetail, MergeResult, Step
 from algorithms.window import WindowConfig
 
 Run = Callable[..., Iterator[Step]]
@@ -68,6 +69,7 @@ METHODS: dict[str, Method] = {
             window=WindowConfig(kind="coupled", deviations=3.5),
             refine=RefineConfig(objective="agreement"),
             proof=ProofConfig(whole_circle=True),
+            whole_maps=True,
         ),
     ),
     "spectra-swarm": Method(pipeline.run, "Spectra, all candidates, swarm", PipelineConfig()),
@@ -126,6 +128,44 @@ def run(
     check_standing(seen, ref, mov)
     method = METHODS[name]
     return method.run(ref, mov, seen, method.defaults if config is None else config, seed, memo, name)
+
+
+def run_explained(
+    name: str,
+    ref: GridMap,
+    mov: GridMap,
+    observations: Observation | Sequence[Observation],
+    config: Any = None,
+    seed: int = 0,
+    memo: Memo | None = None,
+) -> Iterator[Step]:
+    """``run``, and after a refusal the steps of ``find_cause``; the last one's detail is again the
+    MergeResult, with a hint in its verdict where a cause was found.
+    """
+    last: Step | None = None
+    for step in run(name, ref, mov, observations, config, seed, memo):
+        last = step
+        yield step
+    if last is None or not isinstance(last.detail, MergeResult) or last.detail.verdict.accepted:
+        return
+    for step in find_cause(ref, mov, observations):
+        if isinstance(step.detail, CauseDetail):
+            yield Step(step.stage, last.detail.with_hint(step.detail.hint), step.seconds)
+        else:
+            yield step
+
+
+def find_cause(
+    ref: GridMap, mov: GridMap, observations: Observation | Sequence[Observation]
+) -> Iterator[Step]:
+    """Yield a step for every simple change to map 2 under which two maps may agree that were refused; the
+    last one's detail is a CauseDetail.
+    """
+    began = perf_counter()
+    default = METHODS[DEFAULT_METHOD].defaults
+    for detail in refusal_causes.find_cause(ref, mov, as_observations(observations), default):
+        yield Step("explain", detail, perf_counter() - began)
+        began = perf_counter()
 
 
 def merge(

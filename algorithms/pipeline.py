@@ -12,18 +12,19 @@ import numpy as np
 from algorithms.agreement import AgreementConfig, make_agreement
 from algorithms.augment import AugmentConfig, augment
 from algorithms.bounds import Bounds, check_bounds
-from algorithms.certificate import ProofConfig, prove
+from algorithms.certificate import MOST_RIVALS, ProofConfig, prove
 from algorithms.chain import Chain, Memo
 from algorithms.conclude import conclude
 from algorithms.covariance import peak_covariance
-from algorithms.evidence import PATCH, Evidence
+from algorithms.evidence import PATCH
 from algorithms.fuse import Conflict, Fusion, fuse
 from algorithms.gridmap import GridMap
 from algorithms.montecarlo import monte_carlo
 from algorithms.objective import Lookup, Objective, make_objective
-from algorithms.observation import Encounter, Observation, encounter
-from algorithms.polish import Peak, covariance_of, polish
+from algorithms.observation import Encounter, Observation, encounter, robots_of
+from algorithms.polish import Peak, covariance_of, peak_at, polish
 from algorithms.pose import FloatArray, Pose2, pose_error
+from algorithms.ranking import Weighed, better_beside, elsewhere, ranked, weigh
 from algorithms.search import Optimiser, SearchState
 from algorithms.smm import CandidateConfig, match_turns, shift_candidates
 from algorithms.spectra import SpectraConfig
@@ -40,10 +41,13 @@ from algorithms.steps import (
     RefineDetail,
     ShiftDetail,
     Step,
+    WeighedDetail,
     WindowDetail,
 )
 from algorithms.swarm import SwarmConfig, settled_within, swarm
-from algorithms.verdict import HALF, VerdictConfig, others
+from algorithms.verdict import VerdictConfig, is_bent
+from algorithms.verdict_model import shipped_model
+from algorithms.whole_maps import WholeMaps, make_whole_maps
 from algorithms.window import (
     Box,
     BoxConfig,
@@ -58,7 +62,7 @@ from algorithms.window import (
 
 GIVE_UP_AFTER = 15  # iterations
 GIVE_UP_BELOW = 0.5  # of the best value so far
-RIVAL_FLOOR = HALF  # of the best value: what is below is no rival
+RIVAL_FLOOR = 0.5  # of the best value: what is below is no rival
 LEAST_DEVIATION = 0.01  # metres; no pair of rasters is known to fit better
 
 OPTIMISERS: dict[str, Optimiser] = {"pso": swarm, "mco": monte_carlo}
@@ -95,6 +99,9 @@ class PipelineConfig:
     agreement: AgreementConfig = field(default_factory=AgreementConfig)
     proof: ProofConfig = field(default_factory=ProofConfig)
     verdict: VerdictConfig = field(default_factory=VerdictConfig)
+    whole_maps: bool = False
+    """Hold the best few answers against the walls of the whole maps, and name the likeliest: what lies around
+    the encounter looks like many other places, and bent maps fit there alone."""
     conflict: Conflict = Conflict.OCCUPIED_WINS
     """Which map is believed where one says wall and the other says free."""
 
@@ -143,6 +150,7 @@ def run(
             config.refine.objective,
             config.refine.optimiser == "none",
             config.agreement,
+            config.verdict.robot_size,
             seed,
         ),
         lambda: _search(ref, mov, seen.encounters, augmented, hough, config, seed),
@@ -157,33 +165,45 @@ def run(
         proven = yield from chain.stage(
             "prove", (refined, config.proof), lambda: _prove(found, refined, seen.encounters, config)
         )
-    best = proven.peak.T_ref_mov if proven else refined.answers[0].T_ref_mov
+    weighed: WeighedDetail = yield from chain.stage(
+        "weigh",
+        (
+            ref,
+            mov,
+            refined,
+            proven,
+            config.window,
+            config.proof,
+            config.whole_maps,
+            config.verdict.robot_size,
+        ),
+        lambda: [_weigh(ref, mov, seen.encounters, refined, proven, config)],
+    )
+    best = weighed.answers[0].T_ref_mov
     fusion: Fusion = yield from chain.stage(
         "fuse",
-        (ref, mov, refined, proven, config.conflict),
-        lambda: [fuse(ref, mov, best, config.conflict)],
+        (ref, mov, weighed, config.conflict),
+        lambda: [
+            fuse(ref, mov, best, config.conflict, robots_of(seen.encounters, config.verdict.robot_size))
+        ],
     )
 
     def judged() -> list[Detail]:
-        peak = proven.peak if proven else None
-        box = box_around(best, found.window, config.box)
+        named, *others = weighed.answers
         return [
             conclude(
-                ref,
-                mov,
-                best,
+                named,
+                others,
                 fusion,
                 seen.encounters,
-                lambda weighed: covariance_at(
-                    best, found.objective, peak, box, seen.encounters, weighed, config
+                covariance_at(
+                    named, found.objective, _peak(weighed, proven), found.window, seen.encounters, config
                 ),
                 config.verdict,
-                value=peak.value if peak else refined.answers[0].value,
+                value=_value(named, refined, proven, found.objective),
                 answers=refined.answers,
                 method=method,
                 seed=seed,
-                rivals=_rivals(refined, proven, seen.encounter, config),
-                margin=config.window.margin,
                 doubts=_doubts(refined, proven),
                 proof=proven.state if proven else None,
                 search_found_it=proven.search_found_it if proven else None,
@@ -251,7 +271,14 @@ def objective_of(
         return make_objective(augmented.ref, augmented.mov, config.refine.lookup)
     window = coupled_window(encounters, config.window)
     return make_agreement(
-        ref, mov, encounters, config.augment, config.agreement, window, config.refine.lookup
+        ref,
+        mov,
+        encounters,
+        config.augment,
+        config.agreement,
+        window,
+        config.refine.lookup,
+        config.verdict.robot_size,
     )
 
 
@@ -350,33 +377,96 @@ def _doubts(refined: AnswersDetail, proven: ProvenDetail | None) -> list[str]:
     return ["the search was stopped before it had ruled out a better place"]
 
 
-def _rivals(
+def _weigh(
+    ref: GridMap,
+    mov: GridMap,
+    encounters: Sequence[Encounter],
+    refined: AnswersDetail,
+    proven: ProvenDetail | None,
+    config: PipelineConfig,
+) -> WeighedDetail:
+    """The best few answers by the whole maps. The likeliest is named, or the search's own best."""
+    whole = whole_maps_of(ref, mov, encounters, config)
+    few, model = _best_few(refined, proven, encounters[0], config), shipped_model()
+    apart = config.proof.distance, radians(config.proof.angle)
+    if not config.whole_maps:
+        named, *others = (weigh(whole, T, model) for T in few)
+        rivals = elsewhere(whole, named, others, *apart)
+        return WeighedDetail((named, *better_beside(whole, named, model), *rivals))
+    answers = ranked(whole, few, model, *apart)
+    named, peak = answers[0], None
+    if named.moved:
+        peak = peak_at(whole.crisp, named.T_ref_mov, whole.window.pivot, config.augment.spread)
+    return WeighedDetail(answers, peak)
+
+
+def whole_maps_of(
+    ref: GridMap, mov: GridMap, encounters: Sequence[Encounter], config: PipelineConfig
+) -> WholeMaps:
+    """Both maps as a whole, as these settings weigh them."""
+    window = coupled_window(encounters, config.window)
+    return make_whole_maps(ref, mov, encounters, window, config.agreement.evidence, config.verdict.robot_size)
+
+
+def _best_few(
     refined: AnswersDetail, proven: ProvenDetail | None, at: Encounter, config: PipelineConfig
-) -> list[tuple[Pose2, float]]:
-    """Other answers with their share of the best value, those of less than half left out."""
+) -> list[Pose2]:
+    """What the whole maps are asked about: the search's best, and others at least half as good."""
     if proven is not None:
-        state = proven.state
-        pairs = zip(state.rivals, state.rival_values.tolist(), strict=True)
-        return [(Pose2.from_array(pose), value / state.best_value) for pose, value in pairs]
-    best = refined.answers[0].value
-    if best <= 0:
-        return []
-    elsewhere = others(
+        return [proven.peak.T_ref_mov, *map(Pose2.from_array, proven.state.rivals)]
+    best = refined.answers[0]
+    apart = others(
         [(answer.T_ref_mov, answer.value) for answer in refined.answers],
         at.x_mov,
         hypot(config.box.sigma_x, config.box.sigma_y),
         radians(2 * config.box.sigma_theta),
     )
-    return [(T, value / best) for T, value in elsewhere if value > RIVAL_FLOOR * best]
+    few = [T for T, value in apart if value > RIVAL_FLOOR * best.value > 0]
+    return [best.T_ref_mov, *few[:MOST_RIVALS]]
+
+
+def others(
+    answers: Sequence[tuple[Pose2, float]], at_mov: FloatArray, distance: float, angle: float
+) -> list[tuple[Pose2, float]]:
+    """The answers elsewhere than the best, each elsewhere than those before it, with their values.
+
+    answers  : transforms with their values, best first
+    at_mov   : (2,) where two answers are compared, x̂2; metres, mov frame
+    distance : metres, and
+    angle    : radians, from which on two transforms are two answers
+    """
+    kept: list[tuple[Pose2, float]] = []
+    for T, value in answers:
+        apart = [pose_error(T, known, at_mov) for known, _ in kept]
+        if all(metres > distance or turn > angle for metres, turn in apart):
+            kept.append((T, value))
+    return kept[1:]
+
+
+def _value(
+    named: Weighed, refined: AnswersDetail, proven: ProvenDetail | None, objective: Objective
+) -> float:
+    """What the method's objective says of the named answer."""
+    first = Answer(proven.peak.T_ref_mov, proven.peak.value, "") if proven else refined.answers[0]
+    if named.T_ref_mov == first.T_ref_mov:
+        return first.value
+    return float(objective(named.T_ref_mov.array()[None])[0])
+
+
+def _peak(weighed: WeighedDetail, proven: ProvenDetail | None) -> Peak | None:
+    """The peak that the named answer stands on; None where it is not known."""
+    named = weighed.answers[0]
+    if weighed.peak is not None:
+        return weighed.peak
+    return proven.peak if proven and named.T_ref_mov == proven.peak.T_ref_mov else None
 
 
 def covariance_at(
-    T_ref_mov: Pose2,
+    named: Weighed,
     objective: Objective,
     peak: Peak | None,
-    box: Box,
+    window: Window | CoupledWindow,
     encounters: Sequence[Encounter],
-    weighed: Evidence,
     config: PipelineConfig,
 ) -> FloatArray:
     """(3, 3) of x, y, theta; m and rad. Calibrated for the agreement where its peak is known; of Γ, which
@@ -384,12 +474,13 @@ def covariance_at(
 
     Bent maps have no one transform: it differs from patch to patch by as much as patches slip.
 
-    box : the optimiser's, around the transform
+    window : of the search, which cuts the optimiser's box around the answer
     """
+    T = named.T_ref_mov
     if peak is None or config.refine.objective == "gamma":
-        return peak_covariance(objective, T_ref_mov, box, config.augment.spread)
-    window = coupled_window(encounters, config.window)
-    widest = np.append(np.sqrt(np.diag(window.covariances[0])), radians(config.proof.angle))
-    bend = weighed.slip if weighed.rigid_contradiction > config.verdict.contradiction else 0.0
+        return peak_covariance(objective, T, box_around(T, window, config.box), config.augment.spread)
+    coupled = coupled_window(encounters, config.window)
+    widest = np.append(np.sqrt(np.diag(coupled.covariances[0])), radians(config.proof.angle))
+    bend = named.evidence.slip if is_bent(named.evidence, config.verdict) else 0.0
     least = np.hypot(LEAST_DEVIATION, bend) * np.array([1.0, 1.0, 1 / PATCH])
-    return covariance_of(peak, window.pivot, config.agreement.evidence, widest, least)
+    return covariance_of(peak, coupled.pivot, config.agreement.evidence, widest, least)

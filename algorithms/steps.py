@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from algorithms.augment import AugmentedMap
 from algorithms.certificate import ProofState
@@ -13,6 +13,7 @@ from algorithms.objective import Objective
 from algorithms.observation import Encounter
 from algorithms.polish import Peak
 from algorithms.pose import FloatArray, Pose2
+from algorithms.ranking import Weighed
 from algorithms.search import SearchState
 from algorithms.smm import Candidate
 from algorithms.spectra import HoughMatch
@@ -164,16 +165,50 @@ class ProvenDetail:
 
 
 @dataclass(frozen=True, eq=False)
+class WeighedDetail:
+    """Stage "weigh": the best few answers by the walls of the whole maps, the likeliest first.
+
+    The search has looked near the encounter only; each of its answers has climbed from there to where the
+    whole maps fit best, if that is better by much.
+
+    answers : those that are other answers than the likelier ones
+    peak    : the whole maps' objective around the first one; None where that has not moved
+    """
+
+    answers: tuple[Weighed, ...]
+    peak: Peak | None = None
+
+
+@dataclass(frozen=True)
+class TriedDetail:
+    """Stage "explain", after a refusal: a simple change to map 2 under which the maps may agree.
+
+    clause : as in "mirrored, map 2 agrees"
+    """
+
+    clause: str
+    index: int  # which of the changes, from 0
+    total: int
+
+
+@dataclass(frozen=True)
+class CauseDetail:
+    """End of stage "explain": what was probably wrong and what to do, in sentences; empty: nothing simple."""
+
+    hint: str
+
+
+@dataclass(frozen=True, eq=False)
 class MergeResult:
-    """The answer, and all that is needed to report it; detail of the last step, stage "verdict".
+    """The answer, and all that is needed to report it; detail of the last step, stage "verdict" or "explain".
 
     T_ref_mov     : best transform found, also where the merge is refused
     covariance    : (3, 3) of x, y, theta; metres and radians
     value         : what the method's objective says of T_ref_mov: Γ, eq. (17), or metres of wall that
                     agree; None for a method without an objective
     encounters    : where robot 2 was seen, a place per sighting
-    answers       : everything the optimiser ended on, best first; the first is T_ref_mov unless it was
-                    proven that another is better
+    answers       : everything the optimiser ended on, best first
+    weighed       : T_ref_mov and the other answers that may be right, as the whole maps weigh them
     proof         : how the proof ended; None for a method without one
     search_found_it : whether the optimiser had come to the proven answer; None without a proof
     """
@@ -187,6 +222,7 @@ class MergeResult:
     answers: tuple[Answer, ...]
     method: str
     seed: int
+    weighed: tuple[Weighed, ...] = ()
     proof: ProofState | None = None
     search_found_it: bool | None = None
     timings_s: Mapping[str, float] = field(default_factory=dict)
@@ -196,9 +232,15 @@ class MergeResult:
         """The first sighting's place."""
         return self.encounters[0]
 
+    def with_hint(self, hint: str) -> MergeResult:
+        """The same, a hint in its verdict."""
+        return replace(self, verdict=replace(self.verdict, hint=hint))
+
     @property
     def proven_optimal(self) -> bool:
-        """Whether no transform of the whole circle fits better."""
+        """Whether no transform of the whole circle fits better near the encounter than the search's best,
+        which is the first of the answers; the whole maps may have moved it, or named another one.
+        """
         return self.proof is not None and self.proof.proven
 
 
@@ -215,7 +257,10 @@ Detail = (
     | AnswersDetail
     | ProofDetail
     | ProvenDetail
+    | WeighedDetail
     | Fusion
+    | TriedDetail
+    | CauseDetail
     | MergeResult
 )
 
@@ -224,7 +269,8 @@ Detail = (
 class Step:
     """One thing a method has done.
 
-    stage   : "observe", "augment", "spectra", "match", "search", "refine", "prove", "fuse" or "verdict"
+    stage   : "observe", "augment", "spectra", "match", "search", "refine", "prove", "weigh", "fuse",
+              "verdict" or, after a refusal, "explain"
     detail  : what came out of it, for whoever draws or reports it
     seconds : spent on it, without what the caller did between two steps
     reused  : whether it comes from an earlier run with the same settings (``seconds`` are that run's)

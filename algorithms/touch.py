@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.agreement import distance_to_walls
-from algorithms.evidence import SAME_WALL
 from algorithms.gridmap import BoolArray, GridMap, where
 from algorithms.objective import Float32Array
 from algorithms.pose import FloatArray, Pose2
+from algorithms.wall_map import SAME_WALL
 
 SILENT, AGREES, CONTRADICTS = 0, 1, 2
 Touch = NDArray[np.uint8]

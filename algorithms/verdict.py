@@ -1,86 +1,95 @@
-"""Is the merge to be trusted? Numbers that mean the same in every building, and a sentence."""
+"""Is the merge to be trusted? How likely it is right, which of three outcomes that makes, and a sentence."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import degrees
+from enum import Enum
+from math import degrees, exp
 from typing import Annotated
 
-import numpy as np
-
 from algorithms.bounds import Bounds, check_bounds
-from algorithms.evidence import Evidence
+from algorithms.evidence import Apart, Evidence
 from algorithms.fuse import Fusion
-from algorithms.observation import Encounter
 from algorithms.pose import FloatArray, Pose2, pose_error
+from algorithms.ranking import Weighed, probability_of
+from algorithms.verdict_model import OTHERS, VerdictModel, log_odds_over, shipped_model
 
-HALF = 0.5  # of the best value
 SAME_PLACE = 0.5  # metres; answers farther apart are said to be apart, nearer ones turned
+SPEAKS = 0.5  # log-odds; what moves them by less is not named among the reasons
+RIVAL_FROM = 0.05  # of the named answer's odds; another one below it is no rival
+ALIKE = 0.7  # log-odds, half as likely; nearer ones are said to fit almost equally well
+MOST_ODDS = 50.0  # log-odds of another answer over the named one that are told, at most
+LEAST_WALL = 0.5  # metres; less was seen by nobody
+NEXT_TO_NO_WALL = 1.0  # metres; so little that contradicts is a few cells here and there
+BENDS = 0.05  # share of the walls that slipping must mend for maps to be called bent
+
+
+class Outcome(str, Enum):
+    """What a merge ends with."""
+
+    MERGED = "merged"
+    BENT = "merged, bent"
+    REFUSED = "refused"
 
 
 @dataclass(frozen=True)
 class VerdictConfig:
-    """When a merge is accepted."""
+    """When a merge is accepted, and when it is called bent."""
 
-    contradiction: Annotated[float, Bounds(0, 1, 0.01, "", "", "contradiction")] = 0.09
-    """Share of the walls that both robots should have seen which the other map may deny, once every
-    patch of the maps may slip a little. Right merges of crisp maps stay below 8 %, wrong ones above 10 %."""
-    bent_contradiction: Annotated[float, Bounds(0, 1, 0.01, "", "", "contradiction, bent")] = 0.25
-    """The same for maps that are bent: slipping must then take away most of the contradictions."""
-    bent: Annotated[float, Bounds(0, 1, 0.01, "", "", "bent")] = 0.42
-    """Share of the contradictions that slipping must take away for maps to count as bent. It takes away
-    half and more where one place was mapped by hand, two fifths at most of two buildings."""
-    wall: Annotated[float, Bounds(0, 200, 1, "m", "", "shared wall")] = 18.0
-    """Wall that both robots should have seen, below which nothing can be said."""
-    plenty: Annotated[float, Bounds(0, 200, 1, "m", "", "plenty of wall")] = 30.0
-    """Wall that both robots should have seen, below which a rival counts with less than that share, at
-    the least wall with half of it, whatever contradicts it: so little fits in several places by chance."""
-    bent_wall: Annotated[float, Bounds(0, 500, 5, "m", "", "shared wall, bent")] = 60.0
-    """The same for bent maps: what is vague must be long."""
-    ambiguity: Annotated[float, Bounds(0, 1, 0.01, "", "", "rival")] = 0.8
-    """Refused where another answer reaches this share of the best value and is contradicted no more."""
-    deviations: Annotated[float, Bounds(1, 10, 0.5, "σ", "", "observation")] = 4.0
-    """How far from a sighting the answer may put the seen robot, in standard deviations."""
+    accept_from: Annotated[float, Bounds(0.5, 0.999, 0.001, "", "P", "accept from")] = (
+        shipped_model().accept_from
+    )
+    """Probability from which on a merge is accepted. At the default none of more than a thousand pairs of
+    different buildings was accepted that were left out when the probability was fitted."""
+    bent_from: Annotated[float, Bounds(0, 1, 0.01, "", "", "bent from")] = 0.1
+    """Share of the walls that contradict as the maps lie, from which on an accepted merge of maps whose
+    patches fit better apart is called bent: its walls are double."""
+    refuse_bent: bool = False
+    """Refuse maps that are bent: no merged map has double walls then."""
+    robot_size: Annotated[float, Bounds(0, 2, 0.05, "m", "", "robot size")] = 0.4
+    """So near to where a robot stood there is no wall: what a map shows there is the robot, and becomes
+    floor."""
 
     def __post_init__(self) -> None:
         check_bounds(self)
 
 
 @dataclass(frozen=True)
-class Rival:
-    """Another answer, at another turn or place.
-
-    share    : its value over the best one's
-    evidence : what the walls say of it
-    """
-
-    T_ref_mov: Pose2
-    share: float
-    evidence: Evidence
-
-
-@dataclass(frozen=True)
 class Verdict:
-    """Accepted or refused, with the numbers it rests on.
+    """One of three outcomes, with the numbers it rests on.
 
+    accepted         : whether it is not refused
+    probability      : that the transform is right
+    quantities       : what the probability rests on, as ``verdict_model.QUANTITIES`` names them
+    contributions    : log-odds by which each moves it from that of a typical right merge, and other answers
+    typical_score    : log-odds of that
     acceptance_index : agreeing share of the cells known to both, 0 … 1
     overlap_cells    : cells known to both maps
     overlap_area     : the same; m²
     shared_wall      : wall that both robots should have seen; m
     contradiction    : share of it that the other map denies, patches slipped
     rigid_contradiction : the same with the maps as they are
-    bent             : share of the contradictions that slipping takes away
-    ambiguity        : value of the best answer elsewhere over this one's, 0 … 1, of a transform made by
-                       hand also more; None for a method
-                       that knows no other answers
+    wall_across      : agreeing wall across the direction of most of it; m
+    shared_floor     : free floor that both robots saw; m²
+    apart            : where bent maps lie beside each other, the farthest first
+    ambiguity        : odds of the best other answer over this one's, 0 … 1, of a transform that no search has
+                       found also more; None for a method that knows no others
     rival            : that answer; None where there is none worth naming
     deviation        : distance of R2 from where it was seen, in standard deviations; of several
                        sightings the largest
+    only_bent        : whether it is refused for nothing but the bend of the maps
+    cleared_cells    : cells around robots that were taken for the robots themselves
+    hint             : under which simple change the maps would agree, or how a map was read wrongly
     """
 
     accepted: bool
+    outcome: Outcome
+    probability: float
     reason: str
+    quantities: Mapping[str, float]
+    contributions: Mapping[str, float]
+    typical_score: float
     acceptance_index: float
     overlap_cells: int
     overlap_area: float
@@ -88,140 +97,184 @@ class Verdict:
     shared_wall: float
     contradiction: float
     rigid_contradiction: float
-    bent: float
+    wall_across: float
+    shared_floor: float
+    apart: tuple[Apart, ...]
     ambiguity: float | None
     rival: Pose2 | None
     deviation: float
+    only_bent: bool = False
+    cleared_cells: int = 0
+    hint: str = ""
+
+    @property
+    def against(self) -> tuple[str, ...]:
+        """What speaks against the merge, by weight: names of quantities, or OTHERS."""
+        return speaking_against(self.contributions)
+
+
+def speaking_against(contributions: Mapping[str, float]) -> tuple[str, ...]:
+    """Names of what moves the log-odds down by much, the most first."""
+    down = {name: moved for name, moved in contributions.items() if moved <= -SPEAKS}
+    return tuple(sorted(down, key=lambda name: down[name]))
 
 
 def judge(
     fusion: Fusion,
-    weighed: Evidence,
-    T_ref_mov: Pose2,
-    encounters: Sequence[Encounter],
-    rivals: Sequence[Rival] | None,
+    named: Weighed,
+    others: Sequence[Weighed] | None,
+    pivot: FloatArray,
     config: VerdictConfig,
-    margin: float = 0.0,
     doubts: Sequence[str] = (),
+    model: VerdictModel | None = None,
 ) -> Verdict:
-    """Accept or refuse a merge; every number that speaks against it is named in the reason.
+    """Accept or refuse a merge; what speaks against it is named in the reason, the weightiest first.
 
-    weighed : what the walls say of T_ref_mov
-    rivals  : other answers, best first; None for a method that knows none
-    margin  : standard deviation of what the sightings' own do not tell; metres
-    doubts  : what the method itself has against its answer, each a clause of a sentence
+    named  : the answer, as the whole maps weigh it
+    others : other answers that may be the right one; None for a method that knows none
+    pivot  : (2,) where answers are compared, x̂2; metres, mov frame
+    doubts : what the method itself has against its answer, each a clause of a sentence
     """
-    cell = fusion.merged.resolution
-    deviation = max(deviation_from(T_ref_mov, at, max(cell, margin)) for at in encounters)
-    shared = weighed.agreeing + weighed.contradicting
-    found = list(doubts)
-    if shared < config.wall:
-        found.append(
-            f"only {shared:.0f} m of wall were seen by both robots, too little to tell right from wrong"
-        )
-    elif not _consistent(weighed, config):
-        found.append(
-            f"the maps disagree on {weighed.contradiction:.0%} of the {shared:.0f} m of wall "
-            "that both robots should have seen"
-        )
-    rival = next((rival for rival in rivals or () if _ambiguous(weighed, rival, config)), None)
-    if rival is not None:
-        apart = _apart(rival.T_ref_mov, T_ref_mov, encounters[0])
-        doubt = f"two answers fit almost equally well, {apart}"
-        if rival.share <= config.ambiguity:
-            cause = (
-                "is contradicted less" if shared >= config.plenty else "is not ruled out by so little wall"
-            )
-            doubt = f"another answer, {apart}, {cause}"
-        if rival.share > 1:  # of a transform made by hand: a search would have taken the better one
-            found.append(f"another answer, {apart}, fits better")
-        else:
-            found.append(f"{doubt}: a second observation would decide")
-    if deviation > config.deviations:
-        found.append(f"it puts the seen robot {deviation:.1f} standard deviations from where it was seen")
-    if found:
-        reason = "Refused: " + "; ".join(found) + "."
+    model = shipped_model() if model is None else model
+    rivals = sorted(others or (), key=lambda other: -other.score)
+    scores = [other.score for other in rivals]
+    likely = probability_of(named, rivals)
+    contributions = model.contributions(named.quantities, scores)
+    told = named.evidence
+    share = None
+    if others is not None:
+        share = exp(min(MOST_ODDS, log_odds_over(scores[0], named.score))) if rivals else 0.0
+    rival = rivals[0] if rivals and (share or 0.0) >= RIVAL_FROM else None
+    accepted, bent = likely >= config.accept_from and not doubts, is_bent(told, config)
+    only_bent = accepted and bent and config.refuse_bent
+    outcome = Outcome.REFUSED
+    if only_bent:
+        accepted = False
+        reason = f"Refused: the maps are bent, and a bent merge is not wanted. {_bend(told)}."
+    elif accepted:
+        outcome = Outcome.BENT if bent else Outcome.MERGED
+        reason = _accepted(outcome, likely, told)
     else:
-        reason = (
-            f"Merged: the maps agree on {1 - weighed.contradiction:.0%} of the {shared:.0f} m of wall "
-            "that both robots should have seen."
-        )
+        names = speaking_against(contributions)
+        clauses = [*doubts, *_clauses(names, named, rival, pivot)]
+        if not clauses:
+            clauses = ["no single thing speaks much against it, but too little speaks for it"]
+        though = "although " if likely >= config.accept_from else ""
+        reason = f"Refused: {though}{merges_of(likely)}. {_sentence('; '.join(clauses))}."
     return Verdict(
-        accepted=not found,
+        accepted=accepted,
+        outcome=outcome,
+        probability=likely,
         reason=reason,
+        quantities=dict(named.quantities),
+        contributions=contributions,
+        typical_score=model.typical_score,
         acceptance_index=fusion.acceptance_index,
         overlap_cells=fusion.overlap,
-        overlap_area=fusion.overlap * cell**2,
+        overlap_area=fusion.overlap * fusion.merged.resolution**2,
         conflicting_cells=fusion.conflicting,
-        shared_wall=shared,
-        contradiction=weighed.contradiction,
-        rigid_contradiction=weighed.rigid_contradiction,
-        bent=weighed.bent,
-        ambiguity=None if rivals is None else max((rival.share for rival in rivals), default=0.0),
+        shared_wall=told.shared_wall,
+        contradiction=told.contradiction,
+        rigid_contradiction=told.rigid_contradiction,
+        wall_across=told.across,
+        shared_floor=told.floor,
+        apart=told.apart,
+        ambiguity=share,
         rival=None if rival is None else rival.T_ref_mov,
-        deviation=deviation,
+        deviation=max(named.deviations, default=0.0),
+        only_bent=only_bent,
+        cleared_cells=fusion.cleared,
     )
 
 
-def _consistent(weighed: Evidence, config: VerdictConfig) -> bool:
-    """Whether two maps say the same: crisp ones nearly everywhere, bent ones as far as they bend."""
-    if weighed.contradiction <= config.contradiction:
-        return True
+def is_bent(told: Evidence, config: VerdictConfig) -> bool:
+    """Whether no one transform lays the maps on each other everywhere, though they belong together."""
+    mended = told.rigid_contradiction - told.contradiction
+    return told.rigid_contradiction > config.bent_from and mended > BENDS
+
+
+def merges_of(probability: float) -> str:
+    """A probability as a count of merges: "997 of 1,000 such merges are right"."""
+    thousand = int(probability * 1000 + 1e-9)  # downwards: 999.7 are not all
+    if thousand >= 999:
+        return "more than 999 of 1,000 such merges are right"
+    if thousand < 1:
+        return "less than 1 of 1,000 such merges is right"
+    return f"{thousand:,} of 1,000 such merges {'is' if thousand == 1 else 'are'} right"
+
+
+def _sentence(clause: str) -> str:
+    return clause[:1].upper() + clause[1:]
+
+
+def _accepted(outcome: Outcome, likely: float, told: Evidence) -> str:
+    if outcome is Outcome.MERGED:
+        return (
+            f"Merged: {merges_of(likely)}. The maps agree on {1 - told.contradiction:.0%} of the "
+            f"{told.shared_wall:.0f} m of wall that both robots should have seen."
+        )
     return (
-        weighed.contradiction <= config.bent_contradiction
-        and weighed.bent >= config.bent
-        and weighed.agreeing >= config.bent_wall
+        f"Merged, bent: {merges_of(likely)}, but the maps are bent: no one transform lays them on each other "
+        f"everywhere. {_bend(told)}: walls will be double there."
     )
 
 
-def _ambiguous(weighed: Evidence, rival: Rival, config: VerdictConfig) -> bool:
-    """Whether a rival leaves the answer in doubt.
-
-    A rival that is contradicted three times as much as the answer is none: its walls fit near the
-    encounter, where every corridor looks alike, and not beyond. One that is hardly contradicted at all
-    is to be feared even with half the value, where the answer itself is contradicted.
-    """
-    clean = config.contradiction
-    shared = weighed.agreeing + weighed.contradicting
-    if shared < config.plenty:
-        limit = np.interp(shared, (config.wall, config.plenty), (HALF, config.ambiguity))
-        return rival.share > float(limit)
-    if rival.share > config.ambiguity:
-        return rival.evidence.contradiction <= max(clean, 3 * weighed.contradiction)
-    return rival.evidence.contradiction <= clean < weighed.contradiction
+def _bend(told: Evidence) -> str:
+    """How far bent maps lie apart, and where, as a sentence without its end."""
+    where = f"{told.rigid_contradiction:.0%} of the wall contradicts as they lie"
+    if told.apart:
+        worst = told.apart[0]
+        where = (
+            f"they lie up to {worst.metres:.1f} m beside each other, most at ({worst.x:.1f}, {worst.y:.1f}), "
+            f"and {where}"
+        )
+    return _sentence(where)
 
 
-def _apart(a: Pose2, b: Pose2, at: Encounter) -> str:
-    distance, turn = pose_error(a, b, at.x_mov)
+def _clauses(names: Sequence[str], named: Weighed, rival: Weighed | None, pivot: FloatArray) -> list[str]:
+    """What speaks against a merge, each as a clause of a sentence, in the order given."""
+    told, clauses = named.evidence, []
+    if told.rigid_agreeing + told.rigid_contradicting < LEAST_WALL:
+        clauses.append("no wall was seen by both robots")
+        names = [name for name in names if name in ("misfit", OTHERS)]
+    walls = [name for name in names if name in ("contradiction", "unbent")]
+    for name in names:
+        if name in walls[:1] and told.rigid_contradicting < NEXT_TO_NO_WALL:
+            clauses.append(
+                f"they have only {told.rigid_agreeing:.0f} m of wall and {told.floor:.0f} m² of floor in "
+                "common: that much can fit by chance"
+            )
+        elif name in walls[:1]:
+            wall = told.rigid_agreeing + told.rigid_contradicting
+            clause = (
+                f"the maps contradict each other on {told.rigid_contradiction:.0%} of the {wall:.0f} m of "
+                "wall that both robots should have seen"
+            )
+            if "unbent" in walls:
+                clause += f", and on {told.contradiction:.0%} where patches of them may slip"
+            clauses.append(clause)
+        elif name == "across":
+            clauses.append(
+                f"only {told.across:.0f} m of the {told.rigid_agreeing:.0f} m of wall that agree run across "
+                "the others, so little keeps map 2 in its place"
+            )
+        elif name == "misfit":
+            clauses.append(
+                f"it puts robot 2 {max(named.deviations):.1f} standard deviations from where it was seen"
+            )
+        elif name == OTHERS and rival is not None:
+            clauses.append(_rivalry(named, rival, pivot))
+    return clauses
+
+
+def _rivalry(named: Weighed, rival: Weighed, pivot: FloatArray) -> str:
+    """What another answer means for this one."""
+    distance, turn = pose_error(rival.T_ref_mov, named.T_ref_mov, pivot)
+    if rival.score > named.score:  # a search would have named the other one
+        return f"the walls fit better {distance:.2f} m and {degrees(turn):.0f}° from there"
+    apart = f"{degrees(turn):.0f}° apart"
     if distance > SAME_PLACE and degrees(turn) < 1:
-        return f"{distance:.1f} m apart"
-    return f"{degrees(turn):.0f}° apart"
-
-
-def deviation_from(T_ref_mov: Pose2, at: Encounter, margin: float) -> float:
-    """How far T puts R2 from where it was seen, in standard deviations of the sighting.
-
-    margin : added to the sighting's standard deviation in every direction; metres. At least a cell: a
-             robot's own position is known to no better than the cell it stands in
-    """
-    miss = T_ref_mov.apply(at.x_mov) - at.x_ref
-    covariance = at.covariance + np.eye(2) * margin**2
-    return float(np.sqrt(miss @ np.linalg.solve(covariance, miss)))
-
-
-def others(
-    answers: Sequence[tuple[Pose2, float]], at_mov: FloatArray, distance: float, angle: float
-) -> list[tuple[Pose2, float]]:
-    """The answers elsewhere than the best, each elsewhere than those before it, with their values.
-
-    answers  : transforms with their values, best first
-    at_mov   : (2,) where two answers are compared, x̂2; metres, mov frame
-    distance : metres, and
-    angle    : radians, from which on two transforms are two answers
-    """
-    kept: list[tuple[Pose2, float]] = []
-    for T, value in answers:
-        apart = [pose_error(T, known, at_mov) for known, _ in kept]
-        if all(metres > distance or turn > angle for metres, turn in apart):
-            kept.append((T, value))
-    return kept[1:]
+        apart = f"{distance:.1f} m apart"
+    if log_odds_over(rival.score, named.score) > -ALIKE:
+        return f"two answers fit almost equally well, {apart}: a second observation would decide"
+    return f"another answer, {apart}, fits too well to be ruled out: a second observation would decide"

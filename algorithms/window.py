@@ -211,6 +211,6 @@ def box_around(T_ref_mov: Pose2, window: Window | CoupledWindow, config: BoxConf
     half = np.array([config.sigma_x, config.sigma_y, config.sigma_theta * pi / 180])
     centre = np.append(T_ref_mov.apply(window.pivot), T_ref_mov.theta)
     low, high = centre - half, centre + half
-    # the candidate lies in the window, so what is left is never empty
-    low[:2], high[:2] = np.maximum(low[:2], window.low), np.minimum(high[:2], window.high)
+    low[:2] = np.minimum(np.maximum(low[:2], window.low), centre[:2])  # whatever is cut off, it holds the
+    high[:2] = np.maximum(np.minimum(high[:2], window.high), centre[:2])  # candidate
     return Box(low, high, window.pivot)

@@ -7,7 +7,7 @@ from math import isfinite, log, sqrt
 from typing import Any
 
 from algorithms.errors import SettingError
-from app.controls import Path, Setting, settings_of, with_value
+from app.controls import Path, Setting, settings_of, what_became_of, with_value
 from app.sweep import SEEDS, Axis, Plan
 
 MOST_VALUES = 200  # of one setting
@@ -44,6 +44,9 @@ def setting_named(name: str, config: Any) -> Setting:
     known = {".".join(setting.path).replace("_", "-"): setting for setting in settings_of(config)}
     found = known.get(name.strip().replace("_", "-"))
     if found is None:
+        became = what_became_of(name.strip())
+        if became:
+            raise SettingError(f"there is no setting {name} any more; {became}")
         near = get_close_matches(name, list(known), n=1)
         remedy = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
         raise SettingError(f"this method has no setting {name}; {remedy}")

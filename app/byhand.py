@@ -271,6 +271,6 @@ class ByHand:
             if not self.active:
                 return
             self.panel.tell(weighed_html(result, scales.config, self._host.found))
-            mood = "accepted" if result.verdict.accepted else "refused"
+            mood = words.mood(result.verdict)
             self._stage.hud(state=words.of_hand(result), mood=mood, progress=None)
             self._stage.flush()

@@ -20,6 +20,29 @@ from algorithms.bounds import Bounds, bounds_of
 Path = tuple[str, ...]
 
 
+GONE = (
+    "contradiction",
+    "bent_contradiction",
+    "bent",
+    "wall",
+    "plenty",
+    "bent_wall",
+    "ambiguity",
+    "deviations",
+)
+"""Settings of the verdict that there were: its limits have become one probability."""
+
+
+def what_became_of(name: str) -> str:
+    """What to say of a setting that is gone, as a clause; empty for a name that never was one.
+
+    name : as in ``verdict.bent-wall``
+    """
+    group, _, field = name.lstrip("-").replace("-", "_").partition(".")
+    gone = group == "verdict" and field in GONE
+    return "the verdict's limits have become one probability, verdict.accept_from" if gone else ""
+
+
 @dataclass(frozen=True)
 class Setting:
     """One field of a config, wherever it is nested.

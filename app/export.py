@@ -49,7 +49,9 @@ class Harvest:
     def make(self, check: Check = unwatched) -> Mapping[str, bytes]:
         """The same; ``check`` is called now and then while they are made, which is once."""
         if not self._made:
-            report = report_of(self.result, self.config, inputs=self._named())
+            report = report_of(
+                self.result, self.config, inputs=self._named(), warnings=self.inputs.readings()
+            )
             files = result_files(self.result, self.inputs, self.config, report, with_merged=True, check=check)
             self._made[OBSERVATION_FILE] = observations_to_bytes(self.inputs.observations)
             self._made.update(files)

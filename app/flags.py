@@ -12,9 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from algorithms.methods import DEFAULT_METHOD, METHODS
-from app.controls import Setting, settings_of, value_at, with_value
+from app.controls import Setting, settings_of, value_at, what_became_of, with_value
 from app.paths import samples
 from app.usage import Parser, did_you_mean
+
+SHORT = {("verdict", "accept_from"): ("--accept-from",), ("verdict", "refuse_bent"): ("--strict",)}
+"""Settings that have a short flag, too."""
 
 
 def add_method(parser: Parser, words: Sequence[str], default: str = DEFAULT_METHOD) -> None:
@@ -32,6 +35,7 @@ def add_method(parser: Parser, words: Sequence[str], default: str = DEFAULT_METH
             about = type(value_at(defaults, setting.path[:-1])).__doc__ or ""
             groups[stage] = parser.add_argument_group(stage, about.strip().split("\n")[0])
         _add(groups.get(stage, parser), setting)
+    parser.what_became_of = what_became_of
     if named != default:
         parser.hint = f" (it may belong to a method other than {named})"
 
@@ -129,6 +133,7 @@ def _add(group: Any, setting: Setting) -> None:
         word = "yes" if setting.default else "no"
         group.add_argument(
             flag,
+            *SHORT.get(setting.path, ()),
             dest=_flag(setting),
             action=argparse.BooleanOptionalAction,
             default=None,
@@ -147,8 +152,9 @@ def _add(group: Any, setting: Setting) -> None:
             symbol = f"{bounds.symbol}, " if bounds.symbol else ""
             about.append(f"[{symbol}{bounds.low:g} … {bounds.high:g}{unit}]")
         reader, metavar = _number(setting), "N" if setting.whole else "X"
+    names = [flag, *SHORT.get(setting.path, ())]
     group.add_argument(
-        flag, dest=_flag(setting), type=reader, metavar=metavar, default=None, help=_help(about, default)
+        *names, dest=_flag(setting), type=reader, metavar=metavar, default=None, help=_help(about, default)
     )
 
 

@@ -42,6 +42,7 @@ class Handling(Part):
             told = result_html(self._result, self._inputs, self._config, self._conflicts, faded=True)
             self._plots.tell(told)
         self._export.offer(None)
+        self._what_if.offer(None)
 
     # --- the robots by hand: see app/placing.py -----------------------------------------------------
 

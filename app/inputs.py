@@ -99,7 +99,17 @@ class Inputs:
 
     def doubt(self) -> str:
         """What is odd about the inputs, in sentences; empty where nothing is."""
-        return " ".join(filter(None, (*self.unnamed, *self.doubts())))
+        return " ".join(filter(None, (*self.unnamed, *self.readings(), *self.doubts())))
+
+    def readings(self) -> tuple[str, ...]:
+        """What is odd about how the maps were read, in sentences."""
+        grids = ((1, self.ref), (2, self.mov))
+        return tuple(
+            f"Map {number}: {remark}."
+            for number, grid in grids
+            if grid is not None
+            for remark in grid.remarks
+        )
 
     def doubts(self) -> tuple[str, ...]:
         """What is odd about each sighting, as a sentence; empty where nothing is."""

@@ -12,7 +12,7 @@ from algorithms.gridmap import GridMap
 from algorithms.observation import Observation
 from algorithms.steps import Step
 
-Goal = Literal["merge", "candidates"]
+Goal = Literal["merge", "candidates", "cause"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +20,7 @@ class Job:
     """One request: what to merge, how, how far, and how fast to tell it.
 
     goal  : the whole merge, or only up to the candidates (before the first merge, a moved slider
-            shows what it does without jumping to the answer)
+            shows what it does without jumping to the answer); or, after a refusal, its cause
     pace  : factor on the time each step stays on the screen; 0: none
     again : play steps that are known already, too
     steps : what runs in place of the method, and can be pickled; None: the method

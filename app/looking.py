@@ -6,6 +6,7 @@ import numpy as np
 import viser
 
 from algorithms.steps import MergeResult, RefineDetail
+from app import words
 from app.palette import DARK, LIGHT
 from app.panels.run import HEIGHTS, MAP, SWARM
 from app.part import Part
@@ -82,7 +83,7 @@ class Looking(Part):
                 self._swarm.hide()
             self._draw(self._story, live=False, look=True)
             result = self._story.get(MergeResult)
-            if result is not None and self._stage.mood in ("accepted", "refused"):
+            if result is not None and self._stage.mood in words.MOODS.values():
                 self._say(self._story, result)
             self._stage.flush()
 

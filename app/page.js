@@ -242,7 +242,9 @@
     .mm-state[data-mood=refused] span,.mm-state[data-mood=failed] span{color:#A34700}
     [data-theme=dark] .mm-state[data-mood=accepted] span{color:#34D399}
     [data-theme=dark] .mm-state[data-mood=refused] span,[data-theme=dark] .mm-state[data-mood=failed] span{color:#FB923C}
-    .mm-state[data-mood=stopped] i{background:#E69F00}
+    .mm-state[data-mood=stopped] i,.mm-state[data-mood=bent] i{background:#E69F00}
+    .mm-state[data-mood=bent] span{color:#7A5200}
+    [data-theme=dark] .mm-state[data-mood=bent] span{color:#FBBF24}
     @keyframes mm-pulse{50%{opacity:.25}}
     .mm-bar{position:absolute;left:0;right:0;bottom:0;height:3px;border-radius:0 0 8px 8px;overflow:hidden;background:rgba(0,114,178,.12)}
     .mm-bar i{display:block;height:100%;background:#0072B2}

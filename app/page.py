@@ -35,6 +35,7 @@ from app.panels.observation import ObservationPanel
 from app.panels.result import result_html
 from app.panels.run import MAP, RunPanel, Wishes
 from app.panels.tuning import TuningPanel
+from app.panels.what_if import WhatIfPanel
 from app.researching import Researching
 from app.session import Session
 from app.stage import Stage, TabStage
@@ -167,6 +168,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         self._observation = ObservationPanel(gui)
         self._tuning = TuningPanel(gui, self._changed, self._report, self._turn)
         self._export = ExportPanel(client, self._errand)
+        self._what_if = WhatIfPanel(gui, lambda: self._tuning.config.verdict)
         self._handle_with(gui)
         self._timeline = Timeline(gui, self._channel, self._turn, self._restore)
         self._plots = PlotDock(client, self._press)
@@ -274,11 +276,12 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         self._tuning.resolutions(*(grid.resolution for grid in grids))
         self._run.merge.disabled = not inputs.complete
         self._export.offer(None)
+        self._what_if.offer(None)
         self._files.placed(bool(inputs.observations))
         doubt = inputs.doubt()
         self._stage.hud(
             case=inputs.name,
-            state=inputs.missing() or doubt or words.READY,
+            state=" ".join(filter(None, (inputs.missing(), doubt))) or words.READY,
             mood="refused" if doubt else "idle",
             progress=None,
             readout="",
@@ -330,7 +333,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
             self._lesson.changed()
             return
         with self._turn, self.session.drawing:
-            live = self.session.busy and self._merged
+            live = self.session.telling and self._merged
             goal = "merge" if self._merged else "candidates"
             job = self._job(goal=goal, pace=self._run.pace if live else 0.0)
             self._asked = self._asked or job is not None

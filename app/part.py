@@ -28,6 +28,7 @@ from app.panels.files import FilesPanel
 from app.panels.observation import ObservationPanel
 from app.panels.run import RunPanel
 from app.panels.tuning import TuningPanel
+from app.panels.what_if import WhatIfPanel
 from app.placing import Placing
 from app.session import Session
 from app.stage import Stage
@@ -53,6 +54,7 @@ class Part(ABC):
     _run: RunPanel
     _tuning: TuningPanel
     _export: ExportPanel
+    _what_if: WhatIfPanel
     _timeline: Timeline
     _museum: Museum
     _palette: Palette

@@ -19,6 +19,7 @@ from algorithms.steps import (
     ShiftDetail,
     Step,
     TurnsDetail,
+    WeighedDetail,
     WindowDetail,
 )
 
@@ -38,6 +39,7 @@ DWELL: dict[type, float] = {
     TurnsDetail: 0.15,
     AnswersDetail: 0.4,
     ProvenDetail: 0.9,
+    WeighedDetail: 0.6,
     Fusion: 0.9,
 }
 FIRST_SWARM = 0.03  # per iteration of the best candidate's swarm

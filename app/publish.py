@@ -25,6 +25,7 @@ def transform_yaml(result: MergeResult) -> bytes:
         f"T_ref_mov: {{x: {x}, y: {y}, theta: {theta}}}\n"
         f"method: {quoted(result.method)}\n"
         f"accepted: {accepted}\n"
+        f"outcome: {quoted(result.verdict.outcome.value)}\n"
         "# Publishes it in ROS 2; map 1's frame is the parent:\n"
         f'publish: "{publish_command(result)}"\n'
     ).encode()

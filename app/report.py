@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, is_dataclass
 from enum import Enum
 from typing import Any
@@ -16,7 +16,9 @@ from algorithms.errors import NoAnswerError
 from algorithms.fuse import Fusion
 from algorithms.mapio import map_to_bytes
 from algorithms.merit import performance_index
+from algorithms.ranking import Weighed
 from algorithms.steps import MergeResult
+from algorithms.verdict import Outcome
 from app import render
 from app.errand import Check, unwatched
 from app.inputs import Inputs
@@ -34,13 +36,18 @@ REPORT_FILE = "report.json"
 
 
 def report_of(
-    result: MergeResult, config: Any = None, load_s: float = 0.0, inputs: Mapping[str, str] | None = None
+    result: MergeResult,
+    config: Any = None,
+    load_s: float = 0.0,
+    inputs: Mapping[str, str] | None = None,
+    warnings: Sequence[str] = (),
 ) -> dict[str, Any]:
     """What report.json says: metres and radians; a number that is not finite is null.
 
     config : the settings that were used
     load_s : seconds spent on reading the maps
     inputs : the files it was made from, as the user named them
+    warnings : what is odd about how the maps were read
     """
     T, verdict = result.T_ref_mov, result.verdict
     report = {
@@ -53,12 +60,26 @@ def report_of(
         "seed": result.seed,
         "timings_s": {"load": load_s, **result.timings_s},
         "proof": proof_of(result),
+        "answers": [_answer(weighed) for weighed in result.weighed],
         "performance_index_at_estimate": performance_index(result.fusion),
         "settings": config,
         "inputs": dict(inputs or {}),
+        "warnings": list(warnings),
         "versions": versions(),
     }
     return {key: plain(value) for key, value in report.items()}
+
+
+def _answer(weighed: Weighed) -> dict[str, Any]:
+    """An answer that may be right: its transform, its log-odds were it alone, and what it rests on."""
+    T = weighed.T_ref_mov
+    return {
+        "T_ref_mov": {"x": T.x, "y": T.y, "theta": T.theta},
+        "score": weighed.score,
+        "quantities": dict(weighed.quantities),
+        "deviations": weighed.deviations,
+        "evidence": asdict(weighed.evidence),
+    }
 
 
 def report_of_no_answer(
@@ -68,6 +89,7 @@ def report_of_no_answer(
     config: Any = None,
     load_s: float = 0.0,
     inputs: Mapping[str, str] | None = None,
+    warnings: Sequence[str] = (),
 ) -> dict[str, Any]:
     """What report.json says where the method found no transform: the keys of ``report_of``, null where
     there is nothing to say.
@@ -75,16 +97,23 @@ def report_of_no_answer(
     report = {
         "T_ref_mov": None,
         "covariance": None,
-        "verdict": {"accepted": False, "reason": str(refusal)},
+        "verdict": {
+            "accepted": False,
+            "outcome": Outcome.REFUSED,
+            "probability": 0.0,
+            "reason": str(refusal),
+        },
         "objective": None,
         "proven_optimal": False,
         "method": method,
         "seed": seed,
         "timings_s": {"load": load_s},
         "proof": None,
+        "answers": [],
         "performance_index_at_estimate": None,
         "settings": config,
         "inputs": dict(inputs or {}),
+        "warnings": list(warnings),
         "versions": versions(),
     }
     return {key: plain(value) for key, value in report.items()}
@@ -128,8 +157,7 @@ def overlay(fusion: Fusion, most: int = render.MOST_PIXELS) -> render.Pixels:
     picture = np.empty((*floor.shape[:2], 3), dtype=np.uint8)
     picture[:] = LIGHT.unknown
     for layer in (floor, render.merged_walls(fusion, LIGHT, most).pixels):
-        seen = layer[..., 3] > 0
-        picture[seen] = layer[seen, :3]
+        cv2.copyTo(cv2.cvtColor(layer, cv2.COLOR_RGBA2RGB), np.ascontiguousarray(layer[..., 3]), picture)
     return render.upright(picture)
 
 

@@ -12,14 +12,16 @@ from algorithms.casefiles import observations_to_bytes
 from algorithms.conflicts import Conflicts, find_conflicts
 from algorithms.methods import METHODS
 from algorithms.steps import MergeResult
+from algorithms.verdict import Outcome, merges_of
 from app import charts, words
 from app.controls import Setting, settings_of, value_at, word_for
 from app.errand import Check, unwatched
 from app.inputs import Inputs
 from app.measure import measure_of
+from app.palette import LIGHT
 from app.panels.places import MOST_PLACES, signed, summary, whose
 from app.panels.result import STAGES, numbers
-from app.pictures import outcome
+from app.pictures import judgement, outcome
 from app.publish import publish_command
 from app.words import typeset
 
@@ -28,6 +30,10 @@ _STYLE = (Path(__file__).parent / "report.css").read_text(encoding="utf-8")
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 
 Row = Sequence[str]
+STRONG = {
+    Outcome.REFUSED: "<strong>REFUSED</strong>",
+    Outcome.BENT: "<strong>Merged, but the maps are bent</strong>",
+}
 
 
 def report_page(
@@ -44,11 +50,12 @@ def report_page(
     check  : is called between the pictures
     """
     verdict, found = result.verdict, find_conflicts(result.fusion)
-    ended = "Merged" if verdict.accepted else "Refused"
+    ended = verdict.outcome.value.capitalize()
     name = inputs.name or "two maps"
     parts = [
-        _verdict(result, config),
+        _verdict(result, inputs),
         _pictures(result, inputs, found, check),
+        _section("How likely it is right", *_likely(result)),
         _section("Contradictions, place by place", *_places(found)),
         _section("The numbers", _table(numbers(result, inputs, config), "two")),
         _proof(result, config),
@@ -71,12 +78,12 @@ def report_page(
 # --- parts ----------------------------------------------------------------------------------------
 
 
-def _verdict(result: MergeResult, config: Any) -> str:
+def _verdict(result: MergeResult, inputs: Inputs) -> str:
     verdict, T = result.verdict, result.T_ref_mov
-    then = words.remedy(result, config)
-    stop, reason = (
-        ("", verdict.reason) if verdict.accepted else ("<strong>REFUSED</strong>", _bare(verdict.reason))
-    )
+    then = words.remedy(result)
+    stop, reason = STRONG.get(verdict.outcome, ""), verdict.reason
+    if stop:
+        reason = _bare(reason)
     more = f'<p class="then">{escape(then)}</p>' if then else ""
     where = (
         f"Map 2 lies in map 1 at x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°."
@@ -84,14 +91,17 @@ def _verdict(result: MergeResult, config: Any) -> str:
         else "No robot should act on this transform or on a map made with it. The best place that was found: "
         f"x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°."
     )
-    mood = "accepted" if verdict.accepted else "refused"
     where = typeset(where)
-    return f'<div class="verdict {mood}">{stop}<p>{escape(reason)}</p>{more}</div><p>{where}</p>'
+    read = "".join(f"<p>{escape(remark)}</p>" for remark in inputs.readings())
+    return (
+        f'<div class="verdict {words.mood(verdict)}">{stop}<p>{escape(reason)}</p>{more}</div>'
+        f"{read}<p>{where}</p>"
+    )
 
 
 def _bare(reason: str) -> str:
-    """What follows "Refused: ", as a sentence."""
-    rest = reason.removeprefix("Refused: ")
+    """What follows "Refused: " or "Merged, bent: ", as a sentence."""
+    _, _, rest = reason.partition(": ")
     return rest[:1].upper() + rest[1:]
 
 
@@ -120,6 +130,26 @@ def _pictures(result: MergeResult, inputs: Inputs, found: Conflicts, check: Chec
     )
     check(0.85)
     return _section("Pictures", *figures)
+
+
+def _likely(result: MergeResult) -> list[str]:
+    verdict = result.verdict
+    said = (
+        f"{merges_of(verdict.probability).capitalize()}, by what merges of simulated buildings teach: "
+        f"{words.likelihood(verdict.probability)}."
+    )
+    caption = (
+        "What moves the probability: to the right what speaks for the merge, to the left what speaks against "
+        "it, beside a typical right merge."
+    )
+    figure = _figure(judgement.bars(verdict, LIGHT), caption)
+    cleared = ""
+    if verdict.cleared_cells:
+        cleared = (
+            f"<p>{verdict.cleared_cells} cells around where robots stood were taken for the robots "
+            "themselves: they speak neither for nor against, and are floor in the merged map.</p>"
+        )
+    return [f"<p>{escape(said)}</p>", figure, cleared]
 
 
 def _places(found: Conflicts) -> list[str]:

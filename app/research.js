@@ -74,8 +74,8 @@
     .mm-thumb{width:104px;height:78px;flex:none;border-radius:3px;background:#9CA3AF2e;display:flex;align-items:center;justify-content:center;font-style:normal;opacity:.9}
     [data-state=runs] .mm-thumb{animation:mm-pulse 1s infinite}
     .mm-card>span{min-width:0;flex:1;display:flex;flex-direction:column;height:100%;gap:1px}
-    .mm-card b{font-weight:650;font-size:11.5px;letter-spacing:-.02em;flex:none} .mm-card b[data-mood=accepted]{color:#006B4E} .mm-card b[data-mood=refused]{color:#A34700}
-    [data-mantine-color-scheme=dark] .mm-card b[data-mood=accepted]{color:#34D399} [data-mantine-color-scheme=dark] .mm-card b[data-mood=refused]{color:#FB923C}
+    .mm-card b{font-weight:650;font-size:11.5px;letter-spacing:-.02em;flex:none} .mm-card b[data-mood=accepted]{color:#006B4E} .mm-card b[data-mood=bent]{color:#7A5200} .mm-card b[data-mood=refused]{color:#A34700}
+    [data-mantine-color-scheme=dark] .mm-card b[data-mood=accepted]{color:#34D399} [data-mantine-color-scheme=dark] .mm-card b[data-mood=bent]{color:#FBBF24} [data-mantine-color-scheme=dark] .mm-card b[data-mood=refused]{color:#FB923C}
     .mm-card small{font-size:11px;line-height:1.3;opacity:.85;display:-webkit-box;-webkit-box-orient:vertical;-webkit-line-clamp:3;overflow:hidden;flex:0 1 auto}
     .mm-card em{font-style:normal;font-size:11px;opacity:.7;margin-top:auto;white-space:nowrap;overflow:hidden;text-overflow:ellipsis;font-variant-numeric:tabular-nums;flex:none}
     .mm-says{margin:2px 12px 4px;font-size:12.5px;line-height:1.4} .mm-says span{display:block;min-height:1.4em}

@@ -17,6 +17,7 @@ from app.panels.run import MAP
 from app.part import Part
 from app.research.compare import Compare
 from app.research.guest import NOT_YOURS, Guest
+from app.research.outcome import verdict_mood
 from app.research.sweep import Sweep
 from app.story import Story
 from app.takeaway import Delivery
@@ -121,7 +122,7 @@ class Researching(Part):
             self._comparison.offer(found, self._palette)
             self._plots.tell(guest.html())
             self._export.outdate(NOT_YOURS)
-            mood = "accepted" if guest.trial.accepted and guest.trial.right is not False else "refused"
+            mood = "refused" if guest.trial.right is False else verdict_mood(guest.trial)
             self._stage.hud(state=guest.sentence(), mood=mood, progress=None, guest=guest.title)
             self._tell_legend()
             self._stage.flush()

@@ -84,6 +84,12 @@ class Session:
         """Whether a run is going on or about to."""
         return self._running is not None or self._wanted is not None
 
+    @property
+    def telling(self) -> bool:
+        """Whether that is a run that is told step by step, and no search for a refusal's cause."""
+        job = self._wanted or self._running
+        return job is not None and job.goal != "cause"
+
     def request(self, job: Job) -> None:
         """Run this next; a run that is going on is left where it is."""
         with self._wake:

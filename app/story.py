@@ -16,6 +16,7 @@ from algorithms.steps import (
     RefineDetail,
     ShiftDetail,
     Step,
+    WeighedDetail,
 )
 from app.measure import Measure, measure_of
 
@@ -90,9 +91,11 @@ class Story:
     def answer(self) -> Pose2 | None:
         """The best transform as far as the run has come; None before the search is done."""
         answers, proof = self.get(AnswersDetail), self.get(ProofDetail)
-        result, proven = self.get(MergeResult), self.get(ProvenDetail)
+        result, proven, weighed = self.get(MergeResult), self.get(ProvenDetail), self.get(WeighedDetail)
         if result is not None:
             return result.T_ref_mov
+        if weighed is not None:
+            return weighed.answers[0].T_ref_mov
         if proven is not None:
             return proven.peak.T_ref_mov
         if proof is not None and proof.state.best is not None:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from algorithms import methods
 from algorithms.conflicts import Conflicts, find_conflicts
 from algorithms.errors import MapMergeError, NoAnswerError
 from algorithms.handmade import BY_HAND
-from algorithms.steps import AugmentDetail, MergeResult
+from algorithms.steps import AugmentDetail, CauseDetail, MergeResult, Step, TriedDetail
 from app import mishap, words
 from app.export import Harvest
 from app.inputs import Inputs
@@ -32,6 +34,9 @@ class Telling(Part):
 
     def begun(self, job: Job) -> None:
         """A run starts."""
+        if job.goal == "cause":
+            self._run.stoppable("run", True)
+            return
         self._hush()
         self._run.stoppable("run", True)
         if self._farewell():  # who was looked at is not left on the map while something else is said
@@ -45,6 +50,9 @@ class Telling(Part):
 
     def show(self, job: Job, story: Story) -> None:
         """Draw the newest state."""
+        if job.goal == "cause":
+            self._seek(story)
+            return
         self._story = story
         with self._client.atomic():
             if job.pace > 0:
@@ -72,6 +80,8 @@ class Telling(Part):
 
     def waits(self, job: Job, before: int) -> None:
         """Others are at work: other tabs' runs, or the end of a step of one that was left."""
+        if job.goal == "cause":
+            return
         place = f"{before} before this one" if before else "this one is next"
         self._stage.hud(state=f"The processors are busy: {place}.", mood="running")
         self._stage.flush()
@@ -82,6 +92,9 @@ class Telling(Part):
         if job.ref is not i.ref or job.mov is not i.mov or job.observations != i.observations:
             raise RuntimeError("an answer of other maps than those on the page")  # never shown as theirs
         self._run.stoppable("run", False)
+        if job.goal == "cause":
+            self._explain(story.get(CauseDetail))
+            return
         result = story.get(MergeResult)
         with self._client.atomic():
             if result is not None and job.steps is not None:
@@ -96,6 +109,39 @@ class Telling(Part):
                 self._timeline.amend(story)
             self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
             self._stage.flush()
+        if result is not None and job.steps is None and not result.verdict.accepted:
+            cause = partial(methods.find_cause, job.ref, job.mov, job.observations)
+            self.session.request(replace(job, goal="cause", steps=cause, pace=0.0))
+
+    # --- after a refusal: a simple change under which the maps would agree? ---------------------------
+
+    def _seek(self, story: Story) -> None:
+        """Tell below the verdict what is being tried."""
+        tried, result = story.get(TriedDetail), self._result
+        if tried is None or result is None:
+            return
+        seeking = f"Why? {tried.index + 1} of {tried.total}: {tried.clause}?"
+        with self._client.atomic():
+            self._tell_result(result.with_hint(seeking))
+            self._stage.flush()
+
+    def _explain(self, cause: CauseDetail | None) -> None:
+        """Put the cause, if one was found, into the result."""
+        result, story = self._result, self._story
+        if result is None or cause is None:
+            return
+        told = result.with_hint(cause.hint)
+        with self._client.atomic():
+            self._tell_result(told)
+            if cause.hint:
+                story.tell(Step("explain", told, 0.0))
+                self._result = told
+                self._export.offer(Harvest(told, self._inputs, self._config))
+                self._timeline.amend(story)
+            self._stage.flush()
+
+    def _tell_result(self, result: MergeResult) -> None:
+        self._plots.tell(result_html(result, self._inputs, self._config, self._conflicts))
 
     def _answered(self, story: Story, result: MergeResult, config: Any, live: bool) -> None:
         """Show an answer and everything that led to it."""
@@ -107,6 +153,7 @@ class Telling(Part):
         self._conflicts, told = self._weigh(result, config)
         self._plots.tell(told)
         self._export.offer(Harvest(result, self._inputs, config))
+        self._what_if.offer(result)
         i = self._inputs
         if result.method == BY_HAND:  # there was no run that could be told again
             self._export.replay.visible(False)
@@ -115,13 +162,17 @@ class Telling(Part):
             self._export.replay.offer(i.name, partial(replay_of, job, self.session.told_again, i))
         self._draw(story, live=live)
         self._comparison.offer(self._conflicts, self._palette)
-        self._stage.hud(mood="accepted" if result.verdict.accepted else "refused", progress=None)
+        self._stage.hud(mood=words.mood(result.verdict), progress=None)
         self._say(story, result)
         self._museum.told(self._inputs, result.method, config, result)
 
     def stopped(self, job: Job, story: Story) -> None:
         """Someone pressed Stop."""
         self._run.stoppable("run", False)
+        if job.goal == "cause":
+            if self._result is not None:
+                self._tell_result(self._result)
+            return
         if self._maps.together:
             self._comparison.offer(None, self._palette)
         if job.steps is not None and self._refining is not None:
@@ -133,6 +184,10 @@ class Telling(Part):
     def failed(self, job: Job, story: Story, error: Exception) -> None:
         """The run could not go on."""
         self._run.stoppable("run", False)
+        if job.goal == "cause":  # the verdict stands without it
+            if self._result is not None:
+                self._tell_result(self._result)
+            return
         if isinstance(error, NoAnswerError):
             self._unanswered(story, error)
             return
@@ -152,6 +207,7 @@ class Telling(Part):
         with self._client.atomic():
             self._comparison.clear()
             self._export.offer(None)
+            self._what_if.offer(None)
             self._plots.show(story, follow=True)
             self._plots.tell(box(str(refusal), "refused"))
             self._maps.apart()

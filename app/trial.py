@@ -20,6 +20,7 @@ from algorithms.merit import performance_index
 from algorithms.observation import Observation
 from algorithms.pose import Pose2
 from algorithms.steps import MergeResult
+from algorithms.verdict import Outcome
 from app.controls import settings_of, value_at
 from app.evaluate import judge_case
 
@@ -30,6 +31,7 @@ class Trial:
 
     T_ref_mov : (x, y, theta); metres, metres, radians; None where the method found no transform
     accepted  : mapmeld's verdict on it
+    bent      : whether it was accepted although no one transform lays the maps on each other everywhere
     reason    : that verdict in words; why there is no transform; or why the method could not run
     index     : eq. (23), 0 … 1, over the true overlap where the truth is known and over that of the
                 estimate where it isn't. 0 where there is no transform: nothing was merged. None where
@@ -52,6 +54,7 @@ class Trial:
     fine: bool | None
     seconds: float
     failed: bool = False
+    bent: bool = False
 
     @property
     def pose(self) -> Pose2 | None:
@@ -131,6 +134,7 @@ def _judged(
         right=right,
         fine=fine,
         seconds=seconds,
+        bent=result is not None and result.verdict.outcome is Outcome.BENT,
     )
 
 

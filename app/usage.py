@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import difflib
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NoReturn
 
 
@@ -16,6 +16,7 @@ class Parser(argparse.ArgumentParser):
         super().__init__(allow_abbrev=False, formatter_class=_Formatter, **kwargs)
         self.strict = strict  # whether an option that is not known is an error
         self.hint = ""  # said after an error about one
+        self.what_became_of: Callable[[str], str] = lambda flag: ""  # says it of an option that is gone
 
     def format_help(self) -> str:
         """Description, usage, arguments."""
@@ -34,6 +35,9 @@ class Parser(argparse.ArgumentParser):
         for word in words[: words.index("--")] if "--" in words else words:
             flag = word.split("=", 1)[0]
             if self.strict and flag.startswith("--") and flag not in known:
+                became = self.what_became_of(flag)
+                if became:
+                    self.error(f"there is no option {flag} any more: {became}")
                 self.error(f"there is no option {flag}{did_you_mean(flag, known)}{self.hint}")
         return super().parse_known_args(words, namespace)
 

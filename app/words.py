@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from math import degrees, isfinite
-from typing import Any
 
 import numpy as np
 
 from algorithms.certificate import ProofState
 from algorithms.fuse import Fusion
+from algorithms.handmade import BY_HAND
 from algorithms.methods import METHODS
 from algorithms.pose import Pose2, pose_error
 from algorithms.steps import (
@@ -24,10 +24,13 @@ from algorithms.steps import (
     ProvenDetail,
     RefineDetail,
     ShiftDetail,
+    TriedDetail,
     TurnsDetail,
+    WeighedDetail,
     WindowDetail,
 )
-from algorithms.verdict import SAME_PLACE, VerdictConfig
+from algorithms.verdict import NEXT_TO_NO_WALL, SAME_PLACE, Outcome, Verdict
+from algorithms.verdict_model import OTHERS
 from app.measure import Measure
 from app.story import Story
 
@@ -45,9 +48,14 @@ _SHARE: dict[type, float] = {
     AnswersDetail: 0.8,
     ProofDetail: 0.8,
     ProvenDetail: 0.95,
+    WeighedDetail: 0.97,
     Fusion: 0.98,
+    TriedDetail: 0.99,
     MergeResult: 1.0,
 }
+LEAST_LIKELY = 0.005  # of a rival; what is less likely rounds to nothing
+MOODS = {Outcome.MERGED: "accepted", Outcome.BENT: "bent", Outcome.REFUSED: "refused"}
+"""The colour of an outcome: green, amber, vermilion."""
 _MANY_BLOCKS = 20_000  # a proof has seldom more; nobody knows before its end how many there will be
 
 READY = "Ready. Press Merge."
@@ -101,8 +109,12 @@ def sentence(story: Story) -> str:
         return _proving(detail.state, measure)
     if isinstance(detail, ProvenDetail):
         return found_it(story)
+    if isinstance(detail, WeighedDetail):
+        return _weighing(detail)
     if isinstance(detail, Fusion):
         return "Merging the cells: what agrees, what contradicts."
+    if isinstance(detail, TriedDetail):
+        return f"Refused. Why? {detail.index + 1} of {detail.total}: {detail.clause}?"
     if isinstance(detail, MergeResult):
         return detail.verdict.reason
     return "Starting."
@@ -121,6 +133,17 @@ def _turning(detail: TurnsDetail) -> str:
     if detail.best is not None:
         return typeset(f"Best of {tried} turns: map 2 turned by {degrees(detail.best):.1f}°.")
     return f"Turning: {tried} of {len(detail.turns)} turns tried."
+
+
+def _weighing(detail: WeighedDetail) -> str:
+    best, places = detail.answers[0], len(detail.answers)
+    named = (
+        "The whole maps speak for this place" if places == 1 else f"Of {places} places one is the likeliest"
+    )
+    if not best.moved:
+        return f"{named}: {best.evidence.floor:.0f} m² of floor in common."
+    off = apart_by(*pose_error(best.T_ref_mov, best.began, np.zeros(2)))
+    return f"{named}, {off} from where the search had ended."
 
 
 def fits_nowhere(state: ProofState) -> bool:
@@ -190,28 +213,30 @@ def apart_by(distance: float, turn: float) -> str:
 
 
 def rival(result: MergeResult) -> str:
-    """How the rival in doubt differs, and how near it comes: "180° turned, 98%"; empty without one."""
+    """How the rival in doubt differs, and how likely it is: "180° turned, 48%"; empty without one, and where
+    nobody would believe in either.
+    """
     other = result.verdict.rival
-    if other is None:
+    if other is None or likelihood_of_rival(result) < LEAST_LIKELY:
         return ""
     distance, turn = pose_error(result.T_ref_mov, other, result.encounter.x_mov)
     shifted = distance > SAME_PLACE and degrees(turn) < 1
     how = f"{distance:.1f} m shifted" if shifted else f"{degrees(turn):.0f}° turned"
-    share = _share_of(other, result)
-    return how if share is None else f"{how}, {share:.0%}"
+    return f"{how}, {likelihood_of_rival(result):.0%}"
 
 
-def _share_of(other: Pose2, result: MergeResult) -> float | None:
-    """Value of another answer over the best one's; None where it is not known."""
-    if result.proof is not None:
-        poses = [Pose2.from_array(pose) for pose in result.proof.rivals]
-        values, best = result.proof.rival_values.tolist(), result.proof.best_value
-    else:
-        poses = [answer.T_ref_mov for answer in result.answers]
-        values, best = [answer.value for answer in result.answers], result.value or 0.0
-    if other not in poses or best <= 0:
-        return None
-    return float(values[poses.index(other)] / best)
+def odds_of_rival(verdict: Verdict) -> str:
+    """How likely the next best place is beside the named one."""
+    odds = verdict.ambiguity or 0.0
+    if odds > 1:  # of what no search has named
+        return "likelier than this"
+    return f"{odds:.0%} as likely" if odds > 0 else "none"
+
+
+def likelihood_of_rival(result: MergeResult) -> float:
+    """That the rival in doubt is right instead."""
+    verdict = result.verdict
+    return min(1.0 - verdict.probability, verdict.probability * (verdict.ambiguity or 0.0))
 
 
 def progress(story: Story) -> float:
@@ -238,7 +263,7 @@ def of_hand(result: MergeResult, taken: bool = False) -> str:
     if taken:
         return f"By hand. {reason}"
     clause = reason.split(": ", 1)[-1]
-    return f"By hand, would be {'merged' if result.verdict.accepted else 'refused'}: {clause}"
+    return f"By hand, would be {result.verdict.outcome.value}: {clause}"
 
 
 def optimum(proof: ProofState) -> str:
@@ -250,15 +275,32 @@ def optimum(proof: ProofState) -> str:
     return "proven" if proof.proven else f"not proven: {proof.stopped or 'not finished'}"
 
 
-def remedy(result: MergeResult, config: Any = None) -> str:
-    """What would help after a refusal; empty where the merge was accepted.
+def mood(verdict: Verdict) -> str:
+    """The colour that a verdict is shown in."""
+    return MOODS[verdict.outcome]
 
-    config : the settings that were used
-    """
+
+def likelihood(probability: float) -> str:
+    """A probability as a number in a table."""
+    if probability > 0.9995:
+        return "> 99.9%"
+    return "< 0.1%" if probability < 0.0005 else f"{probability:.1%}"
+
+
+def remedy(result: MergeResult) -> str:
+    """What would help after a refusal, or what to mind of a bent merge; empty where nothing is to be said."""
     verdict, proof = result.verdict, result.proof
-    rules = getattr(config, "verdict", VerdictConfig())
+    if verdict.outcome is Outcome.BENT:
+        return (
+            "Where walls are double a robot may find a passage too narrow, or lose its way. Map again with "
+            "loops closed or better odometry."
+        )
     if verdict.accepted:
         return ""
+    if verdict.only_bent:
+        return "Map again with loops closed or better odometry; or take bent merges, too (without --strict)."
+    if verdict.hint:
+        return verdict.hint
     if result.method in METHODS and not METHODS[result.method].uses_observation:
         return "This method does not look at the observation: take one that does."
     if proof is not None and proof.empty:
@@ -268,16 +310,25 @@ def remedy(result: MergeResult, config: Any = None) -> str:
     if proof is not None and not proof.proven:
         return "Give the proof more patience, or narrow the window, and merge again."
     if verdict.rival is not None and (verdict.ambiguity or 0.0) > 1:
-        return "Made by hand: refine from there, or snap to the proven optimum."
-    if verdict.rival is not None:
-        return "A second observation would tell the two places apart; a larger Σ_aug takes in more walls."
-    if verdict.shared_wall < rules.wall:
-        return "Let one of the robots drive on, so that the maps share more, and merge again."
-    if verdict.deviation > rules.deviations:
-        return "Check the observation's numbers; or widen the window, or try more peaks."
-    if verdict.contradiction > rules.contradiction:
-        return (
-            "Are these maps of one building? Check the observation; a larger Σ_aug or a second "
-            "observation may find a better place."
-        )
-    return "Check the observation; try a larger Σ_aug, more candidates, or a second observation."
+        if result.method == BY_HAND:
+            return "Made by hand: refine from there, or snap to the proven optimum."
+        return "This method has missed a better place: take the default one, which proves that it finds it."
+    first = next(iter(verdict.against), "")
+    told = result.weighed[0].evidence
+    if first in ("contradiction", "unbent") and told.rigid_contradicting < NEXT_TO_NO_WALL:
+        first = "across"  # hardly anything contradicts: too little is shared
+    return REMEDIES.get(first, REMEDIES[""])
+
+
+REMEDIES = {
+    OTHERS: "A second observation would tell the two places apart; so would maps that share more.",
+    "contradiction": "Are these maps of one building? Check the observation's numbers; a second observation "
+    "may find a better place.",
+    "unbent": "Are these maps of one building? Check the observation's numbers; a second observation "
+    "may find a better place.",
+    "across": "Let one of the robots drive on, so that the maps share more, and merge again; or give a "
+    "second observation.",
+    "misfit": "Check the observation's numbers, or widen the window.",
+    "": "Let one of the robots drive on, so that the maps share more, or give a second observation.",
+}
+"""What would help, by what speaks most against a merge."""

@@ -110,6 +110,12 @@ def strangers_folder(strangers: Case, tmp_path_factory: pytest.TempPathFactory) 
     return write_case(strangers, tmp_path_factory.mktemp("drawn") / strangers.name)
 
 
+@pytest.fixture(scope="session")
+def bent_folder() -> Path:
+    """The folder of a sample that one of its robots bent; not to be written to."""
+    return Path(__file__).parents[1] / "sample_maps" / "bent_r2_r1"
+
+
 @pytest.fixture
 def case_maker(tmp_path: Path) -> Callable[[Case, str], Path]:
     """``case_maker(case, name)`` writes a case into the folder ``cases`` of this test."""

@@ -66,6 +66,19 @@ def drawn_map(
     return GridMap(cells.reshape(height, width).astype(np.int8), resolution, origin, name)
 
 
+def bent(grid: GridMap, curvature: float = 0.025) -> GridMap:
+    """The map of a robot whose heading has drifted: the farther right, the more turned."""
+    rows, cols = np.indices(grid.cells.shape)
+    at = grid.origin.inverse().apply(grid.centres(rows.ravel(), cols.ravel()))
+    swung = at.copy()
+    swung[:, 1] += curvature * (at[:, 0] - at[:, 0].mean()) ** 2
+    col, row = np.floor(swung / grid.resolution).astype(int).T
+    inside = (row >= 0) & (row < grid.height) & (col >= 0) & (col < grid.width)
+    cells = np.full(grid.cells.size, UNKNOWN, dtype=np.int8)
+    cells[inside] = grid.cells[row[inside], col[inside]]
+    return GridMap(cells.reshape(grid.cells.shape), grid.resolution, grid.origin, grid.name)
+
+
 def sighting(
     T_ref_world: Pose2, T_mov_world: Pose2, observer: Pose2, observed: Pose2, **noise: float
 ) -> Observation:
@@ -178,3 +191,15 @@ def problems(draw: st.DrawFn, side: int = 24, deviations: tuple[float, ...] = (1
     return Problem(
         ref, mov, met, window, make_agreement(ref, mov, met, lift, config, counted, Lookup.NEAREST)
     )
+
+
+def symmetric_hall() -> tuple[GridMap, list[Observation]]:
+    """A hall that looks alike turned by 180°, and two sightings in it, the first in its middle."""
+    cells = np.full((160, 240), FREE, dtype=np.int8)
+    cells[:3], cells[-3:], cells[:, :3], cells[:, -3:] = (OCCUPIED,) * 4
+    for row, col in ((40, 60), (118, 178), (100, 40), (58, 198)):
+        cells[row : row + 2, col : col + 2] = OCCUPIED
+    grid = GridMap(cells, 0.05)
+    middle, aside = Pose2(6.0, 4.0), Pose2(8.5, 3.0)
+    observer = Pose2(4.0, 4.0)
+    return grid, [sighting(Pose2(), Pose2(), observer, robot) for robot in (middle, aside)]

@@ -20,6 +20,7 @@ from findings import Finding, Swept  # noqa: E402
 from algorithms.atomic import write_files  # noqa: E402
 from algorithms.casefiles import Case, read_case  # noqa: E402
 from algorithms.methods import METHODS  # noqa: E402
+from algorithms.verdict_model import shipped_model  # noqa: E402
 from app import axes  # noqa: E402
 from app.contest import Score, contest, defaults_of, pairs_in, tally  # noqa: E402
 from app.contest_files import case_files, contest_files, remarks, table_rows  # noqa: E402
@@ -160,6 +161,9 @@ def page(
         fourteen="\n\n".join(_swept(sweep, "fig14", findings.particle_rows(sweep)) for sweep in fourteen),
         intensity=f"{axes.PAPER_INTENSITY:g}",
         squared=axes.PAPER_SQUARED_CELLS,
+        verdict=(FIGURES / "verdict.md").read_text("utf-8").strip(),
+        accept_from=f"{shipped_model().accept_from:g}",
+        verdict_command=shipped_model().made_of["command"],
         machine=markdown([["", ""], *([key, value] for key, value in machine().items())]).replace(
             "---:", "---"
         ),

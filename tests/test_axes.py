@@ -52,7 +52,7 @@ def test_a_range_is_read_as_it_is_written(text, values):
         ("augment.spread=1:2:1", "let it be 2 to 200"),
         ("augment.spread=1:2:900", "let it be 2 to 200"),
         ("augment.spread=5:2:4", "let it go up"),
-        ("verdict.contradiction=0:1:4:log", "start above 0"),
+        ("verdict.bent_from=0:1:4:log", "start above 0"),
         ("swarm.particles=12.5", "is no whole number"),
         ("refine.optimiser=psi", "psi is none of pso, mco"),
         ("refine.optimiser=1:2:3", "is none of pso, mco"),

@@ -12,7 +12,9 @@ from algorithms.conflicts import LEAST, find_conflicts
 from algorithms.evidence import evidence
 from algorithms.fuse import fuse
 from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.observation import NOWHERE
 from algorithms.pose import Pose2
+from algorithms.wall_map import make_wall_map
 
 CELL = 0.1
 
@@ -107,5 +109,7 @@ def test_the_places_hold_the_wall_that_the_evidence_counts(small_case: Case):
     ref, mov, truth = small_case.ref, small_case.mov, small_case.truth.T_ref_mov
     wrong = Pose2(truth.x + 0.7, truth.y - 0.4, truth.theta + 0.1)
     told = find_conflicts(fuse(ref, mov, wrong))
-    assert told.wall == pytest.approx(evidence(ref, mov, wrong).rigid_contradicting, rel=0.2)
+    assert told.wall == pytest.approx(
+        evidence(make_wall_map(ref), make_wall_map(mov), wrong, NOWHERE).rigid_contradicting, rel=0.2
+    )
     assert told.wall > 5

@@ -97,6 +97,7 @@ def test_totals_count_each_group_by_the_name_up_to_its_first_underscore():
         "judged": 3,
         "right": 1,
         "fine": 1,
+        "right_accepted": 1,
         "refused": 1,
         "wrong_accepted": 1,
         "errors": 0,
@@ -107,6 +108,7 @@ def test_totals_count_each_group_by_the_name_up_to_its_first_underscore():
         "judged": 1,
         "right": 1,
         "fine": 0,
+        "right_accepted": 0,
         "refused": 1,
         "wrong_accepted": 0,
         "errors": 1,
@@ -117,6 +119,92 @@ def test_totals_count_each_group_by_the_name_up_to_its_first_underscore():
 
 def test_an_accepted_case_without_a_truth_is_not_called_wrong():
     assert totals_of([entry("a", judged=False)])["overall"]["wrong_accepted"] == 0
+
+
+def likely(name, probability, right, expected="merge"):
+    truth = {"distance": 0.0, "angle": 0.0, "right": right, "fine": False, "expected": expected}
+    report = {"verdict": {"accepted": probability > 0.5, "probability": probability}}
+    return {"case": name, "observation": "o", "report": report, "seconds": 1.0, "truth": truth}
+
+
+def test_probabilities_that_say_what_happens_have_no_calibration_error():
+    sure = [likely(f"a_{k}", 1.0, True) for k in range(5)] + [likely(f"b_{k}", 0.0, False) for k in range(5)]
+    told = evaluate.calibration_of(sure)
+    assert (told["n"], told["ece"], told["brier"]) == (10, 0.0, 0.0)
+    assert [each["n"] for each in told["bins"] if each["n"]] == [5, 5]
+
+
+def test_a_wrong_pair_that_was_refused_counts_as_a_transform_that_is_not_right():
+    told = evaluate.calibration_of([likely("a", 0.25, True, "refuse"), likely("b", 0.25, False)])
+    assert told["ece"] == pytest.approx(0.25)
+    assert told["brier"] == pytest.approx(0.0625)
+
+
+def test_a_method_without_an_answer_gives_it_no_chance(unanswering, case_folder):
+    told = evaluate.calibration_of([run_case(case_folder, order(case_folder))])
+    assert (told["n"], told["ece"], told["brier"]) == (1, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("source", "building"),
+    [
+        ("MIT_Stata B2_03 + B2_04", "MIT_Stata"),
+        ("MIT_Stata B2_05", "MIT_Stata"),
+        ("Intel Lab", "Intel Lab"),
+        ("", "flat"),
+    ],
+)
+def test_two_surveys_of_one_building_are_no_wrong_pair(source, building):
+    assert evaluate.building_of("flat", Truth(Pose2(), source=source)) == building
+
+
+@pytest.fixture
+def two_buildings(case_maker, small_case, strangers, tmp_path):
+    """Two cases of a flat, one of a hall, and one that must be refused."""
+    case_maker(small_case, "flat_1")
+    case_maker(small_case, "flat_2")
+    seen = replace(strangers.observations[0], observer=Pose2(1.0, -2.0, 0.3))
+    case_maker(replace(strangers, ref=strangers.mov, observations=(seen,), truth=Truth(Pose2())), "hall_1")
+    case_maker(strangers, "neg_1")
+    return tmp_path / "cases"
+
+
+def test_wrong_pairs_are_of_different_buildings_and_the_same_ones_every_time(two_buildings):
+    found = evaluate.crossings(two_buildings, 700)
+    pairs = {(each.observer.name, each.observed.name) for each in found}
+    flats = ("flat_1", "flat_2")
+    assert pairs == {(flat, "hall_1") for flat in flats} | {("hall_1", flat) for flat in flats}
+    assert evaluate.crossings(two_buildings, 2) == evaluate.crossings(two_buildings, 2)
+    assert len(evaluate.crossings(two_buildings, 2)) == 2
+
+
+def test_a_folder_of_one_building_has_no_wrong_pairs(case_folder, capsys):
+    assert main(["evaluate", str(case_folder), "--wrong-pairs", "3"]) == 2
+    assert "wrong pairs need two buildings" in capsys.readouterr().err
+
+
+def test_evaluate_tells_how_true_the_probabilities_are_and_what_became_of_wrong_pairs(
+    two_buildings, tmp_path, capsys
+):
+    words = ["--wrong-pairs", "3", "--json", str(tmp_path / "out.json")]
+    assert main(["evaluate", str(two_buildings), *words]) == 0
+    told = json.loads((tmp_path / "out.json").read_text())
+    assert [entry["truth"]["expected"] for entry in told["wrong_pairs"]] == ["refuse"] * 3
+    assert all(" x " in entry["case"] for entry in told["wrong_pairs"])
+    assert told["calibration"]["n"] == 4 + 3
+    assert all(entry["report"]["verdict"]["quantities"] for entry in told["cases"])
+    said = capsys.readouterr().out
+    assert "wrong pairs: 3, accepted 0, failed 0" in said
+    assert f"ECE {told['calibration']['ece']:.3f}" in said
+    assert told["totals"]["flat"]["right_accepted"] == 2
+
+
+@pytest.mark.parametrize("count", ["0", "-1", "many"])
+def test_a_count_of_wrong_pairs_is_a_whole_number(count, case_folder, capsys):
+    with pytest.raises(SystemExit) as left:
+        main(["evaluate", str(case_folder), f"--wrong-pairs={count}"])
+    assert left.value.code == 2
+    assert "whole number from 1 up" in capsys.readouterr().err
 
 
 @pytest.fixture

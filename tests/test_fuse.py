@@ -8,6 +8,7 @@ from hypothesis.extra.numpy import arrays
 from algorithms.errors import TooLargeError
 from algorithms.fuse import Conflict, fuse
 from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.observation import Robots
 from algorithms.pose import Pose2
 
 classes = st.sampled_from([UNKNOWN, FREE, OCCUPIED])
@@ -133,3 +134,58 @@ def test_where_the_frames_lie_changes_nothing_in_the_counts(T_new_ref):
     here, there = fuse(ref, mov, T_REF_MOV), fuse(moved, mov, T_new_ref @ T_REF_MOV)
     assert there.overlap == pytest.approx(here.overlap, rel=2e-3)
     assert there.conflicting == pytest.approx(here.conflicting, abs=0.002 * here.overlap)
+
+
+# ---- the robots themselves
+
+
+def room(*walls):
+    """10 m by 10 m of floor in cells of 0.1 m; each wall is a row and a column."""
+    cells = np.full((100, 100), FREE, dtype=np.int8)
+    for row, col in walls:
+        cells[row, col] = OCCUPIED
+    return GridMap(cells, 0.1)
+
+
+RING = [
+    (row, col) for row in range(48, 53) for col in range(48, 53) if max(abs(row - 50), abs(col - 50)) == 2
+]
+AT = np.array([[5.05, 5.05]])  # the middle of the ring
+NO_ONE = np.zeros((0, 2))
+
+
+@pytest.mark.parametrize(("in_ref", "in_mov", "cleared"), [(NO_ONE, AT, 16), (AT, NO_ONE, 0)])
+def test_the_ring_that_one_map_shows_around_the_maker_of_the_other_is_floor(in_ref, in_mov, cleared):
+    fusion = fuse(room(*RING), room(), Pose2(), robots=Robots(in_ref, in_mov, 0.4))
+    assert fusion.cleared == cleared
+    assert np.count_nonzero(fusion.merged.cells == OCCUPIED) == 16 - cleared
+
+
+def test_a_wall_beside_a_robot_that_its_own_map_shows_too_stays():
+    wall = [(50 + k, 53) for k in range(-2, 3)]
+    fusion = fuse(
+        room(*wall), room(*[(row, col + 1) for row, col in wall]), Pose2(), robots=Robots(NO_ONE, AT, 0.4)
+    )
+    assert fusion.cleared == 0
+    assert (fusion.merged.cells[48:53, 53] == OCCUPIED).all()
+
+
+def test_what_is_farther_from_a_robot_than_its_size_stays():
+    fusion = fuse(room((50, 56), *RING), room(), Pose2(), robots=Robots(NO_ONE, AT, 0.4))
+    assert fusion.merged.cells[50, 56] == OCCUPIED
+    assert fuse(room(*RING), room(), Pose2(), robots=Robots(NO_ONE, AT, 0.0)).cleared == 0
+
+
+@settings(deadline=None)
+@given(grids(), grids(), near, st.floats(-1, 1), st.floats(-1, 1))
+def test_clearing_robots_changes_no_cell_but_walls_near_them_into_floor(ref, mov, T, x, y):
+    robots = Robots(np.array([[x, y]]), np.array([[y, x]]), 0.3)
+    plain, cleared = fuse(ref, mov, T), fuse(ref, mov, T, robots=robots)
+    changed = plain.merged.cells != cleared.merged.cells
+    assert np.count_nonzero(changed) <= cleared.cleared
+    assert (plain.merged.cells[changed] == OCCUPIED).all()
+    assert (cleared.merged.cells[changed] == FREE).all()
+    rows, cols = np.nonzero(changed)
+    centres = plain.merged.centres(rows, cols)
+    for centre in centres:
+        assert np.hypot(*(robots.places(T) - centre).T).min() <= 0.3 + 0.1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import replace
 from gc import collect
 from threading import enumerate as enumerate_threads
@@ -12,11 +13,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from algorithms.fuse import fuse
 from algorithms.gridmap import FREE, GridMap
 from algorithms.methods import DEFAULT_METHOD, METHODS
 from algorithms.observation import Observation
 from algorithms.pose import Pose2
-from algorithms.steps import MergeResult, Step
+from algorithms.steps import Step
 from app.controls import with_value
 from app.desk import Desk, change
 from app.history import MOST, PAUSE, Entry, History
@@ -100,21 +102,16 @@ def test_it_is_bounded_and_the_newest_stays(count, most):
     assert told.desk.seed == count
 
 
-def outcome() -> Story:
-    from algorithms.evidence import evidence
-    from algorithms.fuse import fuse
-    from algorithms.observation import encounter
-    from algorithms.verdict import VerdictConfig, judge
-
-    fusion, at, T = fuse(ROOM, ROOM, Pose2()), (encounter(SEEN),), Pose2()
-    verdict = judge(fusion, evidence(ROOM, ROOM, T), T, at, None, VerdictConfig())
+@pytest.fixture
+def outcome(result) -> Story:
+    """Of a merge of the room with itself."""
     story = Story(START.config)
-    story.tell(Step("verdict", MergeResult(T, np.eye(3), None, verdict, fusion, at, (), "x", 0), 0.0))
+    story.tell(Step("verdict", replace(result, fusion=fuse(ROOM, ROOM, Pose2())), 0.0))
     return story
 
 
-def test_large_answers_of_long_ago_are_let_go_of_before_any_wish_is():
-    desks = [replace(seeded(k), outcome=outcome()) for k in range(1, 6)]
+def test_large_answers_of_long_ago_are_let_go_of_before_any_wish_is(outcome):
+    desks = [replace(seeded(k), outcome=deepcopy(outcome)) for k in range(1, 6)]
     one = ROOM.cells.nbytes * 3  # of an answer; both maps come on top, once
     told = history(*desks, most_bytes=ROOM.cells.nbytes + 2 * one)
     assert len(told.entries) == 6
@@ -128,9 +125,9 @@ def test_uploads_of_long_ago_are_let_go_of_where_they_are_too_many():
     assert told.desk.files is files[-1]
 
 
-def test_what_comes_out_belongs_to_the_entry_it_was_asked_at():
+def test_what_comes_out_belongs_to_the_entry_it_was_asked_at(outcome):
     told = history(seeded(1))
-    told.amend(replace(told.desk, outcome=outcome()))
+    told.amend(replace(told.desk, outcome=outcome))
     assert told.desk.result is not None
     told.go(0)
     assert told.desk.result is None

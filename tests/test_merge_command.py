@@ -6,13 +6,16 @@ import re
 import sys
 from dataclasses import replace
 
+import numpy as np
 import pytest
 import yaml
 from commandline import inputs
+from PIL import Image
 
 from algorithms import methods
 from algorithms.casefiles import read_case, write_observations
 from algorithms.errors import NoAnswerError
+from algorithms.gridmap import FREE, OCCUPIED
 from algorithms.mapio import read_map
 from algorithms.methods import METHODS
 from algorithms.pose import Pose2
@@ -44,12 +47,69 @@ def test_a_merge_says_what_was_maximised_and_whether_a_better_place_is_ruled_out
     assert re.search(r"^Γ [\d.]+$", capsys.readouterr().out, re.M)
 
 
-def test_a_refusal_is_told_with_what_would_help(case_folder, tmp_path, capsys):
+def test_a_refusal_is_told_with_what_would_help(strangers_folder, tmp_path, capsys):
+    assert main(["merge", *inputs(strangers_folder), "--out", str(tmp_path)]) == 1
+    told = json.loads((tmp_path / "report.json").read_text())
+    assert told["verdict"]["outcome"] == "refused"
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == told["verdict"]["reason"]
+    assert lines[1].startswith("Are these maps of one building?")
+
+
+def test_a_merge_is_accepted_from_the_likelihood_that_is_asked_for(bent_folder, tmp_path):
+    asked = ["merge", *inputs(bent_folder), "--out", str(tmp_path)]
+    assert main([*asked, "--accept-from", "0.999"]) == 1
+    told = json.loads((tmp_path / "report.json").read_text())["verdict"]
+    assert told["outcome"] == "refused"
+    assert told["probability"] < 0.999
+    assert main([*asked, "--accept-from", str(told["probability"] - 0.001)]) == 0
+
+
+def test_a_bent_merge_is_a_merge_unless_it_is_to_be_strict(bent_folder, tmp_path, capsys):
+    asked = ["merge", *inputs(bent_folder), "--out", str(tmp_path)]
+    assert main(asked) == 0
+    assert json.loads((tmp_path / "report.json").read_text())["verdict"]["outcome"] == "merged, bent"
+    assert "double" in capsys.readouterr().out
+    assert {path.name for path in tmp_path.iterdir()} == ALL_FILES
+    assert main([*asked, "--strict"]) == 1
+    assert "a bent merge is not wanted" in capsys.readouterr().out
+    assert {path.name for path in tmp_path.iterdir()} == OF_A_REFUSAL
+    assert main([*asked, "--strict", "--force"]) == 1
+    assert {path.name for path in tmp_path.iterdir()} == ALL_FILES
+
+
+def test_a_map_that_was_read_wrongly_is_warned_of_and_cured_by_the_grey_for_unknown(
+    case_folder, small_case, tmp_path, capsys
+):
+    cells = small_case.mov.cells
+    greys = np.select([cells == FREE, cells == OCCUPIED], [254, 0], 216).astype(np.uint8)
+    Image.fromarray(greys[::-1]).save(tmp_path / "grey.png")
+    meta = yaml.safe_load((case_folder / "map2.yaml").read_text())
+    (tmp_path / "grey.yaml").write_text(yaml.safe_dump({**meta, "image": "grey.png"}))
+    words = [
+        case_folder / "map1.yaml",
+        tmp_path / "grey.yaml",
+        "--observation",
+        case_folder / "observation.yaml",
+    ]
+    asked = ["merge", *map(str, words), "--out", str(tmp_path / "out")]
+    main(asked)
+    warned = capsys.readouterr().err
+    assert warned.startswith("warning: Map 2 (grey")
+    assert "216" in warned
+    assert json.loads((tmp_path / "out" / "report.json").read_text())["warnings"] == [
+        warned.removeprefix("warning: ").strip()
+    ]
+    assert main([*asked, "--unknown-grey", "216"]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_a_setting_that_is_gone_is_told_with_what_took_its_place(case_folder, tmp_path, capsys):
     asked = ["merge", *inputs(case_folder), "--out", str(tmp_path)]
-    assert main([*asked, "--verdict.wall", "200"]) == 1
-    said = capsys.readouterr().out
-    assert "too little to tell right from wrong" in said
-    assert "Let one of the robots drive on" in said
+    with pytest.raises(SystemExit) as ended:
+        main([*asked, "--verdict.bent-wall", "12"])
+    assert ended.value.code == 2
+    assert "accept_from" in capsys.readouterr().err
 
 
 def test_the_merged_map_that_is_left_is_the_one_that_the_library_makes(case_folder, small_case, tmp_path):
@@ -135,6 +195,8 @@ def test_a_merge_without_an_answer_is_a_refusal_that_leaves_its_reason_alone(
     assert report["T_ref_mov"] is None
     assert report["verdict"] == {
         "accepted": False,
+        "outcome": "refused",
+        "probability": 0.0,
         "reason": "Refused: no two places of these maps are alike.",
     }
     assert main([*words, "--json"]) == 1

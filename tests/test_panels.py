@@ -120,9 +120,9 @@ def test_a_method_without_a_proof_is_told_by_gamma_and_says_nothing_of_an_optimu
 
 
 def test_a_rival_in_doubt_has_a_row_of_its_own(result, inputs):
-    doubted = replace(result, verdict=replace(result.verdict, ambiguity=0.9, rival=Pose2()))
+    doubted = replace(result, verdict=replace(result.verdict, probability=0.5, ambiguity=0.9, rival=Pose2()))
     told = dict(numbers(doubted, inputs, DEFAULTS))
-    assert told["next best place"] == "90% of the best"
+    assert told["next best place"] == "90% as likely"
     assert "turned" in told["rival in doubt"]
 
 

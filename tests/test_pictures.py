@@ -23,11 +23,11 @@ from app.lesson import equations
 from app.lesson.numbers import NUMBERS, numbers_of
 from app.lesson.study import FEW, Study, keep
 from app.lesson.texts import PLACEHOLDER, files, filled, lesson_folder, read_step
-from app.palette import DARK, LIGHT
+from app.palette import DARK, LIGHT, css
 from app.pictures.book import PICTURES, Dial, place_of, shown
-from app.pictures.judgement import gauges
+from app.pictures.judgement import FULL, bars, values
 from app.pictures.raster import View, around, walls
-from app.pictures.sheet import Plot, Sheet, ticks
+from app.pictures.sheet import WIDE, Plot, Sheet, ticks
 from app.pictures.spectra import strongest
 
 CONFIG = METHODS["spectra-proven"].defaults
@@ -174,11 +174,30 @@ def test_the_map_shows_the_candidate_that_the_dial_stands_at(study):
         assert story.shifts[-1] is told[k]
 
 
-def test_every_gauge_keeps_its_limit_in_an_accepted_merge_and_one_does_not_in_a_refused(study, refused):
-    assert study.get(MergeResult).verdict.accepted
-    assert all(gauge.kept for gauge in gauges(study))
-    assert not refused.get(MergeResult).verdict.accepted
-    assert not all(gauge.kept for gauge in gauges(refused))
+@pytest.mark.parametrize("of", ["study", "refused"])
+def test_what_speaks_against_a_merge_points_to_the_left_and_what_speaks_for_it_to_the_right(of, request):
+    verdict = request.getfixturevalue(of).get(MergeResult).verdict
+    drawn = [
+        (float(rect.get("x")), float(rect.get("width")), rect.get("fill"))
+        for rect in ElementTree.fromstring(bars(verdict, LIGHT)).iter(f"{SVG}rect")
+    ]
+    for colour, against in ((css(LIGHT.mov), False), (css(LIGHT.conflict), True)):
+        mine = [(x, width) for x, width, fill in drawn if fill == colour]
+        moved = [by for by in verdict.contributions.values() if (by < 0) == against]
+        assert len(mine) == len(moved)
+        assert all((x + width if against else x) == pytest.approx(WIDE / 2, abs=0.1) for x, width in mine)
+        assert sorted(width for _, width in mine) == pytest.approx(
+            sorted(min(1, abs(by) / FULL) * WIDE / 2 for by in moved), abs=0.1
+        )
+
+
+def test_every_bar_of_the_verdict_says_its_value_and_all_add_up(study, refused):
+    for verdict in (study.get(MergeResult).verdict, refused.get(MergeResult).verdict):
+        texts = [text.text for text in ElementTree.fromstring(bars(verdict, LIGHT)).iter(f"{SVG}text")]
+        assert set(values(verdict)) == set(verdict.contributions)
+        assert set(values(verdict).values()) <= set(texts)
+        total = verdict.typical_score + sum(verdict.contributions.values())
+        assert any(text.endswith(f"{abs(total):.1f}") for text in texts)
 
 
 def test_words_in_a_picture_are_never_markup():

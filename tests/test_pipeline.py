@@ -113,7 +113,7 @@ def test_maps_without_a_wall_in_common_are_refused_with_a_reason():
 def test_the_steps_come_in_the_order_of_the_method_and_end_in_the_result():
     steps = list(run("spectra-swarm", REF, MOV, SEEN, QUICK))
     order = list(dict.fromkeys(step.stage for step in steps))
-    assert order == ["observe", "augment", "spectra", "search", "refine", "fuse", "verdict"]
+    assert order == ["observe", "augment", "spectra", "search", "refine", "weigh", "fuse", "verdict"]
     assert isinstance(steps[-1].detail, MergeResult)
     assert set(steps[-1].detail.timings_s) == set(order)
     assert all(step.seconds >= 0 and not step.reused for step in steps)
@@ -151,12 +151,12 @@ def stages_run_again(memo, config, seed=0):
     [
         ({}, set()),
         ({"conflict": Conflict.REF_WINS}, {"fuse", "verdict"}),
-        ({"verdict": VerdictConfig(ambiguity=0.5)}, {"verdict"}),
-        ({"swarm": replace(QUICK.swarm, omega=0.6)}, {"refine", "fuse", "verdict"}),
-        ({"window": WindowConfig(margin=0.3)}, {"search", "refine", "fuse", "verdict"}),
+        ({"verdict": VerdictConfig(accept_from=0.9)}, {"verdict"}),
+        ({"swarm": replace(QUICK.swarm, omega=0.6)}, {"refine", "weigh", "fuse", "verdict"}),
+        ({"window": WindowConfig(margin=0.3)}, {"search", "refine", "weigh", "fuse", "verdict"}),
         (
             {"augment": AugmentConfig(spread=2.0)},
-            {"augment", "spectra", "search", "refine", "fuse", "verdict"},
+            {"augment", "spectra", "search", "refine", "weigh", "fuse", "verdict"},
         ),
     ],
 )
@@ -183,13 +183,13 @@ def test_a_stage_left_half_way_is_not_taken_for_done():
         if isinstance(step.detail, RefineDetail):
             break
     again = stages_run_again(memo, QUICK)
-    assert again == {"refine", "fuse", "verdict"}
+    assert again == {"refine", "weigh", "fuse", "verdict"}
 
 
 def test_another_seed_searches_anew_but_keeps_the_spectra():
     memo = {}
     list(run("spectra-swarm", REF, MOV, SEEN, QUICK, 0, memo))
-    assert stages_run_again(memo, QUICK, seed=1) == {"search", "refine", "fuse", "verdict"}
+    assert stages_run_again(memo, QUICK, seed=1) == {"search", "refine", "weigh", "fuse", "verdict"}
 
 
 def test_the_intensity_changes_gamma_and_not_the_answer():

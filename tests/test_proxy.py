@@ -12,6 +12,7 @@ from functools import partial
 
 import pytest
 import trustme
+import wire
 from proxy import EXAMPLE, PROXIES, ours
 from strangers import PATIENCE, SPEAKS
 from websockets.exceptions import InvalidStatus
@@ -50,7 +51,7 @@ class Outside:
             subprotocols=SPEAKS,
             origin=origin or f"https://{self.host}",
             additional_headers={"Cookie": cookie},
-            open_timeout=PATIENCE,
+            open_timeout=wire.PATIENCE,
         ).close()
 
     def enter(self):

@@ -17,6 +17,7 @@ from algorithms.mapio import read_map
 from algorithms.methods import DEFAULT_METHOD, METHODS, merge
 from algorithms.pose import Pose2
 from algorithms.steps import MergeResult
+from algorithms.verdict import Outcome
 from app.export import ACTED_UPON, ALONE, Harvest
 from app.inputs import Inputs
 from app.panels.tables import box
@@ -33,7 +34,9 @@ def page_of(result: MergeResult, inputs: Inputs, config=DEFAULTS, **named: str) 
 
 
 def refused(result: MergeResult) -> MergeResult:
-    verdict = replace(result.verdict, accepted=False, reason="Refused: the maps disagree.")
+    verdict = replace(
+        result.verdict, accepted=False, outcome=Outcome.REFUSED, reason="Refused: the maps disagree."
+    )
     return replace(result, verdict=verdict)
 
 
@@ -76,7 +79,7 @@ def test_the_page_is_whole_and_fetches_nothing(result, inputs):
     assert all(link.startswith("data:image/png;base64,") for link in told.links)
     assert "default-src 'none'" in page
     assert not re.search(r"url\(|@import|\bon\w+=", page)
-    assert told.tags.count("svg") == 4  # sources, merge, contradictions, proof
+    assert told.tags.count("svg") == 5  # sources, merge, contradictions, proof, what speaks for it
 
 
 def test_the_verdict_comes_first_then_pictures_then_numbers(result, inputs):
@@ -138,7 +141,7 @@ def test_a_proof_that_met_nothing_and_settings_that_are_not_known_still_make_a_p
     )
     page = page_of(replace(refused(result), proof=nothing, value=None), inputs, None)
     assert "No transform agrees with every sighting" in page
-    assert read(page).tags.count("svg") == 3
+    assert read(page).tags.count("svg") == 4
 
 
 def test_maps_that_do_not_touch_make_a_page(result, inputs):

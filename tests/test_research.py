@@ -157,6 +157,7 @@ def test_words_never_call_a_wrong_transform_right_and_always_tell_the_verdict(tr
         (replace(FOUND, right=False, distance=18.11, angle=3.0), "✗ Wrong by 18.1 m, 172°"),
         (replace(APART, right=None), "Accepted."),
         (replace(APART, right=None, accepted=False), "Refused."),
+        (replace(APART, right=None, bent=True), "Accepted, bent."),
         (replace(APART, right=False), "✗ Wrong: they share no place."),
         (replace(FOUND, T_ref_mov=None, right=False), "No transform found."),
         (replace(FOUND, T_ref_mov=None, right=None, failed=True), "Could not be run."),

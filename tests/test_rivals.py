@@ -83,7 +83,7 @@ def test_swapping_the_two_maps_inverts_the_answer_of_every_method(method):
 
 @pytest.mark.parametrize("method", RIVALS)
 def test_a_rival_does_not_look_at_the_sighting(method):
-    elsewhere = replace(SEEN, observed_x=SEEN.observed_x + 1.0, range=SEEN.range + 0.5)
+    elsewhere = replace(SEEN, observed_x=SEEN.observed_x + 3.0, range=SEEN.range + 0.5)
     told = merge(REF, MOV, elsewhere, method)
     assert told.T_ref_mov == there(method).T_ref_mov
     assert told.value == there(method).value
@@ -305,7 +305,7 @@ def test_pictures_of_large_maps_are_bounded():
 
 
 def test_what_helps_after_a_rival_was_refused_is_a_method_that_looks_at_the_sighting():
-    elsewhere = replace(SEEN, observed_x=SEEN.observed_x + 1.0)
+    elsewhere = replace(SEEN, observed_x=SEEN.observed_x + 3.0)
     refused = merge(REF, MOV, elsewhere, "orb")
     assert words.remedy(refused) == "This method does not look at the observation: take one that does."
     assert words.remedy(there("orb")) == ""

@@ -174,11 +174,13 @@ def test_without_a_truth_the_index_is_that_of_the_estimate_and_nothing_is_called
 def test_a_method_that_cannot_be_run_says_so_and_is_tried_again_next_time(small_case):
     seen = replace(small_case.observations[0], bearing_back=None)
     case, journal = replace(small_case, observations=(seen,)), Journal()
-    asked = Plan("bilateral", METHODS["bilateral"].defaults, Axis(("verdict", "wall"), (5.0,)), seeds=(0,))
+    asked = Plan(
+        "bilateral", METHODS["bilateral"].defaults, Axis(("verdict", "bent_from"), (0.2,)), seeds=(0,)
+    )
     (point,) = sweep(case, asked, Here(), journal)
     assert "needs measurement.bearing_back" in point.failed
     assert point.index is None
-    assert journal.get(point_keys(case, asked)[5.0, None]) is None
+    assert journal.get(point_keys(case, asked)[0.2, None]) is None
 
 
 def test_a_journal_that_cannot_be_written_names_the_remedy(tmp_path):

@@ -107,7 +107,16 @@ def test_what_cannot_be_swept_is_told_in_one_line(case_folder, capsys):
 
 
 def test_a_method_that_cannot_be_run_ends_with_1_and_says_why(strangers_folder, tmp_path, capsys):
-    words = ["--method", "bilateral", "--x", "verdict.wall=5,6", "--out", str(tmp_path), "--jobs", "1"]
+    words = [
+        "--method",
+        "bilateral",
+        "--x",
+        "verdict.bent_from=0.1,0.2",
+        "--out",
+        str(tmp_path),
+        "--jobs",
+        "1",
+    ]
     assert main(["sweep", str(strangers_folder), *words]) == 1
     assert "could not be run: the bilateral method needs" in capsys.readouterr().out
 

@@ -1,3 +1,7 @@
+"""Three outcomes, told apart, with what speaks against a merge in the order of its weight."""
+
+from __future__ import annotations
+
 from dataclasses import replace
 
 import numpy as np
@@ -6,164 +10,186 @@ from drawn import flat_pair
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.evidence import Evidence, evidence
+from algorithms.errors import SettingError
+from algorithms.evidence import Apart, Evidence
 from algorithms.fuse import fuse
 from algorithms.observation import encounter
 from algorithms.pose import Pose2
-from algorithms.verdict import Rival, VerdictConfig, deviation_from, judge, others
+from algorithms.ranking import Weighed, weigh
+from algorithms.verdict import Outcome, VerdictConfig, judge, merges_of
+from algorithms.verdict_model import Fit, misfit_of, quantities_of, shipped_model
+from algorithms.whole_maps import make_whole_maps
+from algorithms.window import WindowConfig, coupled_window
 
 REF, MOV, SEEN, T = flat_pair()
 AT = encounter(SEEN)
-CLEAN = Evidence(100.0, 1.0, 98.0, 3.0)
+WHOLE = make_whole_maps(REF, MOV, [AT], coupled_window([AT], WindowConfig()), 0.25, 0.4)
+MODEL = shipped_model()
 FUSION = fuse(REF, MOV, T)
 TURNED = T @ Pose2(*AT.x_mov.tolist()) @ Pose2(theta=np.pi) @ Pose2(*(-AT.x_mov).tolist())
 
-
-def verdict_on(weighed=CLEAN, T_ref_mov=T, rivals=(), doubts=(), encounters=(AT,), **config):
-    return judge(FUSION, weighed, T_ref_mov, encounters, rivals, VerdictConfig(**config), doubts=doubts)
-
-
-def after_slipping(contradiction, before, metres):
-    """Evidence over so many metres of wall, a share of which contradicts after and before slipping."""
-    return Evidence(
-        metres * (1 - contradiction), metres * contradiction, metres * (1 - before), metres * before
-    )
+CLEAN = Evidence(100.0, 1.0, 98.0, 3.0, across=30.0, floor=60.0)
+BENT = Evidence(90.0, 6.0, 60.0, 36.0, across=30.0, floor=120.0, apart=(Apart(3.0, -4.0, 0.7, 12.0),))
+STRANGERS = Evidence(30.0, 30.0, 25.0, 35.0, across=8.0, floor=30.0)
+CORRIDOR = Evidence(40.0, 2.0, 40.0, 3.0, across=0.3, floor=12.0)
 
 
-def test_the_known_pose_is_accepted_with_its_numbers_in_the_sentence():
-    verdict = verdict_on(evidence(REF, MOV, T))
+def told(evidence: Evidence, T_ref_mov=T, deviations=(0.5,)) -> Weighed:
+    quantities = quantities_of(Fit(evidence, misfit_of(deviations, 3.5)))
+    return Weighed(T_ref_mov, T_ref_mov, evidence, deviations, quantities, MODEL.score(quantities))
+
+
+def verdict_on(named, others=(), doubts=(), **config):
+    return judge(FUSION, named, others, AT.x_mov, VerdictConfig(**config), doubts)
+
+
+def test_the_known_pose_is_merged_with_its_numbers_in_the_sentence():
+    verdict = verdict_on(weigh(WHOLE, T, MODEL))
+    assert verdict.outcome is Outcome.MERGED
     assert verdict.accepted
     assert verdict.reason.startswith("Merged: ")
+    assert "of 1,000 such merges are right" in verdict.reason
     assert f"{1 - verdict.contradiction:.0%}" in verdict.reason
     assert f"{verdict.shared_wall:.0f} m" in verdict.reason
     assert verdict.deviation < 0.5
 
 
-def test_a_wrong_turn_is_refused_because_the_maps_disagree():
-    verdict = verdict_on(evidence(REF, MOV, TURNED), TURNED)
-    assert not verdict.accepted
-    assert "the maps disagree on" in verdict.reason
+def test_a_wrong_turn_is_refused_because_the_maps_contradict_each_other():
+    verdict = verdict_on(weigh(WHOLE, TURNED, MODEL))
+    assert verdict.outcome is Outcome.REFUSED
+    assert "the maps contradict each other on" in verdict.reason.lower()
+    assert verdict.probability < 0.05
 
 
-def test_too_little_wall_in_common_is_refused_whatever_agrees():
-    verdict = verdict_on(after_slipping(0.0, 0.0, 8.0))
-    assert not verdict.accepted
-    assert "only 8 m of wall were seen by both robots" in verdict.reason
-
-
-@given(st.floats(0, 1), st.floats(0, 1), st.floats(19, 500))
-def test_more_contradiction_never_turns_a_refusal_into_a_merge(contradiction, more, metres):
-    little = verdict_on(after_slipping(contradiction, 0.9, metres))
-    much = verdict_on(after_slipping(min(1.0, contradiction + more), 0.9, metres))
-    assert little.accepted or not much.accepted
-
-
-@given(st.floats(0, 1), st.floats(0, 1), st.floats(0, 500), st.floats(0, 500))
-def test_more_wall_never_turns_a_merge_into_a_refusal(contradiction, before, metres, more):
-    short = verdict_on(after_slipping(contradiction, before, metres))
-    long = verdict_on(after_slipping(contradiction, before, metres + more))
-    assert long.accepted or not short.accepted
-
-
-def test_contradictions_are_forgiven_where_they_go_away_when_patches_slip_and_much_wall_agrees():
-    assert verdict_on(after_slipping(0.2, 0.45, 120.0)).accepted
-    assert not verdict_on(after_slipping(0.2, 0.25, 120.0)).accepted  # slipping mends little: not bent, wrong
-    assert not verdict_on(after_slipping(0.2, 0.45, 40.0)).accepted  # too little wall for so vague a fit
-    assert not verdict_on(after_slipping(0.4, 0.8, 120.0)).accepted
-
-
-def test_a_rival_nearly_as_good_is_a_reason_to_refuse_that_says_where_it_is():
-    verdict = verdict_on(rivals=[Rival(TURNED, 0.97, CLEAN)])
-    assert not verdict.accepted
-    assert "two answers fit almost equally well, 180° apart: a second observation would decide" in (
-        verdict.reason
-    )
-    assert verdict.rival == TURNED
-    moved = Pose2(1.2, 0.0, 0.0) @ T
-    assert "1.2 m apart" in verdict_on(rivals=[Rival(moved, 0.97, CLEAN)]).reason
-
-
-def test_a_rival_that_the_rest_of_the_maps_contradicts_is_none():
-    verdict = verdict_on(rivals=[Rival(TURNED, 0.97, after_slipping(0.4, 0.5, 100.0))])
+def test_a_bent_merge_is_accepted_with_how_far_the_maps_lie_apart_and_where():
+    verdict = verdict_on(told(BENT))
+    assert verdict.outcome is Outcome.BENT
     assert verdict.accepted
-    assert verdict.ambiguity == 0.97
-    assert verdict.rival is None
+    assert "bent" in verdict.reason
+    assert "0.7 m beside each other" in verdict.reason
+    assert "(3.0, -4.0)" in verdict.reason
+    assert "double" in verdict.reason
 
 
-def test_a_weaker_rival_counts_where_it_is_clean_and_the_answer_is_not():
-    rival = Rival(TURNED, 0.6, CLEAN)
-    assert verdict_on(rivals=[rival]).accepted
-    doubted = verdict_on(after_slipping(0.2, 0.45, 120.0), rivals=[rival])
-    assert not doubted.accepted
-    assert "another answer, 180° apart, is contradicted less" in doubted.reason
+def test_where_bent_merges_are_not_wanted_a_bent_one_is_refused_for_that_alone():
+    verdict = verdict_on(told(BENT), refuse_bent=True)
+    assert verdict.outcome is Outcome.REFUSED
+    assert not verdict.accepted
+    assert verdict.only_bent
+    assert verdict.probability == verdict_on(told(BENT)).probability
+    assert "0.7 m beside each other" in verdict.reason
+    assert verdict_on(told(CLEAN), refuse_bent=True) == verdict_on(told(CLEAN))
+    assert not verdict_on(told(STRANGERS), refuse_bent=True).only_bent
 
 
-@given(st.floats(18, 100), st.floats(18, 100), st.floats(0.5, 1), st.floats(0.5, 1))
-def test_less_wall_and_a_nearer_rival_never_turn_a_refusal_into_a_merge(wall, other, share, higher):
-    least, most = sorted((wall, other))
-    near, nearer = sorted((share, higher))
-    doubted = verdict_on(after_slipping(0, 0, least), rivals=[Rival(TURNED, nearer, CLEAN)])
-    assured = verdict_on(after_slipping(0, 0, most), rivals=[Rival(TURNED, near, CLEAN)])
-    assert assured.accepted or not doubted.accepted
+def test_maps_that_share_little_are_not_said_to_contradict_each_other():
+    verdict = verdict_on(told(Evidence(6.0, 0.0, 6.0, 0.0, across=1.0, floor=4.0)), accept_from=0.99)
+    assert "contradict each other" not in verdict.reason
+    assert "only 6 m of wall and 4 m² of floor in common" in verdict.reason
 
 
-def test_where_little_wall_speaks_a_rival_counts_whatever_contradicts_it():
-    rival = Rival(TURNED, 0.6, after_slipping(0.5, 0.5, 100.0))
-    assert verdict_on(after_slipping(0.0, 0.0, 40.0), rivals=[rival]).accepted
-    little = verdict_on(after_slipping(0.0, 0.0, 20.0), rivals=[rival])
-    assert not little.accepted
-    assert "is not ruled out by so little wall" in little.reason
+def test_contradictions_that_no_slipping_mends_are_no_bend():
+    furniture = replace(BENT, agreeing=62.0, contradicting=34.0, floor=1000.0, apart=())
+    assert verdict_on(told(furniture), accept_from=0.5).outcome is not Outcome.BENT
+    assert verdict_on(told(BENT), bent_from=0.5).outcome is Outcome.MERGED
 
 
-def test_any_of_several_rivals_is_enough():
-    harmless = Rival(TURNED, 0.99, after_slipping(0.5, 0.5, 100.0))
-    assert not verdict_on(rivals=[harmless, Rival(TURNED, 0.9, CLEAN)]).accepted
+@given(st.floats(0.5, 0.999), st.floats(0.5, 0.999))
+def test_whoever_demands_more_accepts_no_more(one, other):
+    least, most = sorted((one, other))
+    for evidence in (CLEAN, BENT, STRANGERS, CORRIDOR):
+        eager, strict = (verdict_on(told(evidence), accept_from=p) for p in (least, most))
+        assert eager.accepted or not strict.accepted
+        assert eager.accepted == (eager.probability >= least)
 
 
-def test_an_answer_far_from_a_sighting_is_refused():
-    beside = Pose2(1.5, 0, 0) @ T
-    assert "standard deviations from where it was seen" in verdict_on(T_ref_mov=beside).reason
-
-
-def test_of_several_sightings_the_worst_counts():
-    elsewhere = replace(AT, x_ref=AT.x_ref + (0.0, 2.0))
-    assert verdict_on(encounters=(AT,)).accepted
-    assert not verdict_on(encounters=(AT, elsewhere)).accepted
-    assert verdict_on(encounters=(AT, elsewhere)).deviation == verdict_on(encounters=(elsewhere,)).deviation
-
-
-def test_every_doubt_is_named():
-    told = ["the search was stopped before it had ruled out a better place"]
-    verdict = verdict_on(
-        after_slipping(0.5, 0.5, 50.0), Pose2(1.5, 0, 1.0) @ T, [Rival(TURNED, 0.99, CLEAN)], told
+def test_a_twin_is_refused_and_named_however_much_more_wall_the_answer_has():
+    less = replace(CLEAN, agreeing=57.0, rigid_agreeing=57.0, across=18.0, floor=35.0)
+    verdict = verdict_on(told(CLEAN), [told(less, TURNED)])
+    assert not verdict.accepted
+    assert verdict.probability < 0.55
+    assert verdict.rival == TURNED
+    assert (
+        "wo answers fit almost equally well, 180° apart: a second observation would decide" in verdict.reason
     )
-    assert verdict.reason.count(";") == 3
-    assert told[0] in verdict.reason
+    moved = Pose2(1.2, 0.0, 0.0) @ T
+    assert "1.2 m apart" in verdict_on(told(CLEAN), [told(less, moved)]).reason
 
 
-def test_a_method_without_rivals_says_so():
-    assert verdict_on(rivals=None).ambiguity is None
-    assert verdict_on(rivals=[]).ambiguity == 0.0
+def test_another_answer_that_the_rest_of_the_maps_contradicts_is_no_rival():
+    verdict = verdict_on(told(CLEAN), [told(STRANGERS, TURNED)])
+    assert verdict.accepted
+    assert verdict.rival is None
+    assert verdict.ambiguity < 0.05
 
 
-@given(st.floats(0, 5), st.floats(0, 2 * np.pi))
-def test_the_deviation_grows_with_the_distance_from_the_sighting(metres, direction):
-    def at(distance):
-        return deviation_from(Pose2(distance * np.cos(direction), distance * np.sin(direction)) @ T, AT, 0.05)
-
-    assert at(metres + 0.1) > at(metres)
+def test_the_likeliest_of_several_others_is_the_rival():
+    others = [told(STRANGERS, Pose2()), told(CLEAN, TURNED), told(CORRIDOR, Pose2(1, 0, 0) @ T)]
+    assert verdict_on(told(CLEAN), others).rival == TURNED
 
 
-def test_one_standard_deviation_is_one():
-    along = replace(AT, covariance=np.diag([0.3**2 - 0.05**2, 1.0]))
-    assert deviation_from(Pose2(0.3, 0, 0) @ T, along, 0.05) == pytest.approx(1.0, rel=1e-3)
+def test_an_answer_that_a_likelier_one_lies_beside_is_told_to_move_there():
+    beside = Pose2(0.3, 0.0, 0.0) @ T
+    verdict = verdict_on(told(BENT, beside), [told(CLEAN, T)])
+    assert not verdict.accepted
+    assert "fit better 0.30 m" in verdict.reason
+    assert verdict.ambiguity > 1
 
 
-def test_an_answer_is_its_own_neighbours_keeper_and_rivals_are_elsewhere():
-    best, neighbour = Pose2(0, 0, 0), Pose2(0.1, 0, 0.01)
-    turned, beside, moved = Pose2(0, 0, 3.1), Pose2(0, 0.1, 3.1), Pose2(3.0, 0, 0)
-    origin = np.zeros(2)
-    assert others([(best, 10), (neighbour, 9.9)], origin, 0.7, 0.17) == []
-    found = others([(best, 10), (neighbour, 9.9), (turned, 6), (beside, 5), (moved, 4)], origin, 0.7, 0.17)
-    assert found == [(turned, 6), (moved, 4)]
-    assert others([], origin, 0.7, 0.17) == []
+def test_a_method_that_knows_no_others_says_so():
+    assert verdict_on(told(CLEAN), None).ambiguity is None
+    assert verdict_on(told(CLEAN), []).ambiguity == 0.0
+
+
+def test_what_speaks_against_a_merge_is_named_by_its_weight():
+    verdict = verdict_on(told(STRANGERS, deviations=(3.4,)))
+    names = verdict.against
+    weights = [verdict.contributions[name] for name in names]
+    assert weights == sorted(weights)
+    assert all(weight < 0 for weight in weights)
+    assert "contradict each other on 58% of the 60 m" in verdict.reason
+    assert "3.4 standard deviations from where it was seen" in verdict.reason
+
+
+def test_a_corridor_is_told_that_little_keeps_it_in_its_place():
+    verdict = verdict_on(told(CORRIDOR), accept_from=0.999)
+    assert "across" in verdict.against
+    assert "keeps map 2 in its place" in verdict.reason
+
+
+def test_maps_that_share_no_wall_are_told_so():
+    verdict = verdict_on(told(Evidence(0.0, 0.0, 0.0, 0.0)))
+    assert not verdict.accepted
+    assert "no wall was seen by both robots" in verdict.reason.lower()
+
+
+def test_what_a_method_has_against_its_own_answer_refuses_it_whatever_the_walls_say():
+    doubt = "the search was stopped before it had ruled out a better place"
+    verdict = verdict_on(told(CLEAN), doubts=[doubt])
+    assert verdict.probability > 0.99
+    assert not verdict.accepted
+    assert doubt[1:] in verdict.reason
+
+
+def test_of_several_sightings_the_worst_is_told():
+    assert verdict_on(told(CLEAN, deviations=(0.5, 2.5, 1.0))).deviation == 2.5
+
+
+@pytest.mark.parametrize(
+    ("probability", "words"),
+    [
+        (0.9971, "997 of 1,000 such merges are right"),
+        (0.99999, "more than 999 of 1,000 such merges are right"),
+        (0.5, "500 of 1,000 such merges are right"),
+        (0.0012, "1 of 1,000 such merges is right"),
+        (1e-9, "less than 1 of 1,000 such merges is right"),
+    ],
+)
+def test_a_probability_is_told_as_a_count_of_merges(probability, words):
+    assert merges_of(probability) == words
+
+
+def test_limits_that_make_no_sense_are_refused():
+    for wrong in ({"accept_from": 0.2}, {"accept_from": 1.0}, {"bent_from": -0.1}, {"robot_size": 9.0}):
+        with pytest.raises(SettingError):
+            VerdictConfig(**wrong)

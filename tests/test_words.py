@@ -13,6 +13,7 @@ from algorithms.certificate import ProofState
 from algorithms.methods import METHODS, run
 from algorithms.pose import Pose2
 from algorithms.steps import MergeResult, ProofDetail, ProvenDetail, Step
+from algorithms.verdict import Outcome
 from app import words
 from app.measure import AGREEMENT, GAMMA, measure_of
 from app.story import Story
@@ -137,24 +138,58 @@ def test_each_objective_has_its_name():
 
 
 def refused(result: MergeResult, proof: ProofState | None = None, **changes) -> MergeResult:
-    return replace(result, verdict=replace(result.verdict, accepted=False, **changes), proof=proof)
+    verdict = replace(result.verdict, accepted=False, outcome=Outcome.REFUSED, **changes)
+    return replace(result, verdict=verdict, proof=proof)
 
 
 def test_an_accepted_merge_needs_no_remedy(result):
-    assert words.remedy(result, PROVEN) == ""
+    assert words.remedy(result) == ""
+
+
+def test_a_bent_merge_is_told_what_to_mind(result):
+    bent = replace(result, verdict=replace(result.verdict, outcome=Outcome.BENT))
+    assert "double" in words.remedy(bent)
+    assert words.mood(bent.verdict) == "bent"
 
 
 @pytest.mark.parametrize(
-    ("changes", "remedy"),
+    ("against", "remedy"),
     [
-        ({"rival": Pose2()}, "second observation would tell"),
-        ({"shared_wall": 3.0}, "drive on"),
-        ({"deviation": 9.0}, "Check the observation's numbers"),
-        ({"contradiction": 0.5}, "maps of one building"),
+        ("others", "second observation would tell"),
+        ("across", "drive on"),
+        ("misfit", "Check the observation's numbers"),
+        ("contradiction", "maps of one building"),
+        ("unbent", "maps of one building"),
     ],
 )
-def test_every_reason_to_refuse_has_its_remedy(result, changes, remedy):
-    assert remedy in words.remedy(refused(result, proof_state(), **changes), PROVEN)
+def test_what_speaks_most_against_a_merge_decides_what_would_help(result, against, remedy):
+    contributions = dict.fromkeys(result.verdict.contributions, 1.0) | {"misfit": -0.6, against: -5.0}
+    told = replace(result.weighed[0].evidence, rigid_contradicting=9.0)
+    contradicted = replace(result, weighed=(replace(result.weighed[0], evidence=told),))
+    assert remedy in words.remedy(refused(contradicted, proof_state(), contributions=contributions))
+
+
+def test_maps_that_share_little_and_contradict_nowhere_are_not_said_to_be_of_two_buildings(result):
+    contributions = dict.fromkeys(result.verdict.contributions, 1.0) | {"unbent": -5.0}
+    told = replace(result.weighed[0].evidence, rigid_contradicting=0.1)
+    little = replace(result, weighed=(replace(result.weighed[0], evidence=told),))
+    assert "share more" in words.remedy(refused(little, contributions=contributions))
+
+
+def test_a_rival_that_nobody_would_believe_in_is_not_told(result):
+    likely = {"rival": Pose2(1.0, 2.0, 3.0), "probability": 0.6}
+    assert words.rival(refused(result, ambiguity=0.5, **likely)).endswith("turned, 30%")
+    assert words.rival(refused(result, ambiguity=0.001, **likely)) == ""
+    assert words.odds_of_rival(refused(result, ambiguity=1e20, **likely).verdict) == "likelier than this"
+
+
+def test_a_merge_that_is_refused_for_its_bend_alone_says_how_to_take_it(result):
+    assert "--strict" in words.remedy(refused(result, only_bent=True))
+
+
+def test_a_cause_that_was_found_is_told_before_anything_else(result):
+    hint = "Mirrored, map 2 agrees on 99% of 42 m of wall."
+    assert words.remedy(refused(result, proof_state(), hint=hint)) == hint
 
 
 @pytest.mark.parametrize(
@@ -166,23 +201,28 @@ def test_every_reason_to_refuse_has_its_remedy(result, changes, remedy):
     ],
 )
 def test_a_proof_that_failed_has_its_remedy(result, changes, remedy):
-    assert remedy in words.remedy(refused(result, proof_state(**{"ceiling": 30.0} | changes)), PROVEN)
+    assert remedy in words.remedy(refused(result, proof_state(**{"ceiling": 30.0} | changes)))
 
 
-def test_the_thresholds_of_the_settings_decide_which_remedy_is_told(result):
-    strict = replace(PROVEN, verdict=replace(PROVEN.verdict, wall=200.0))
-    assert "drive on" in words.remedy(refused(result), strict)
-
-
-def test_a_rival_is_told_by_how_it_differs_and_how_near_it_comes(result):
-    other = Pose2.from_array(proof_state().rivals[0])
-    doubtful = refused(replace(result, T_ref_mov=Pose2(1.0, 2.0, 0.5)), proof_state(), rival=other)
-    assert words.rival(doubtful) == "178° turned, 75%"
-    shifted = Pose2(1.9, 2.0, 0.5)
-    state = proof_state(rivals=np.array([shifted.array()]))
-    doubtful = refused(replace(result, T_ref_mov=Pose2(1.0, 2.0, 0.5)), state, rival=shifted)
-    assert words.rival(doubtful) == "0.9 m shifted, 75%"
+def test_a_rival_is_told_by_how_it_differs_and_how_likely_it_is(result):
+    doubt = {"probability": 0.6, "ambiguity": 0.5}
+    at = replace(result, T_ref_mov=Pose2(1.0, 2.0, 0.5))
+    turned = Pose2.from_array(proof_state().rivals[0])
+    assert words.rival(refused(at, rival=turned, **doubt)) == "178° turned, 30%"
+    assert words.rival(refused(at, rival=Pose2(1.9, 2.0, 0.5), **doubt)) == "0.9 m shifted, 30%"
     assert words.rival(result) == ""
+
+
+def test_two_answers_are_never_told_to_be_likelier_together_than_certain(result):
+    doubtful = refused(result, rival=Pose2(), probability=0.8, ambiguity=1.0)
+    assert words.likelihood_of_rival(doubtful) == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize(
+    ("probability", "told"), [(0.99999, "> 99.9%"), (0.9944, "99.4%"), (0.5, "50.0%"), (1e-6, "< 0.1%")]
+)
+def test_no_probability_is_told_to_be_certain(probability, told):
+    assert words.likelihood(probability) == told
 
 
 def test_the_swarm_that_is_shown_in_the_end_is_the_one_that_got_highest(told):

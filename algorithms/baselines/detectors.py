@@ -24,7 +24,6 @@ from typing import Annotated, Any
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from skimage.feature import corner_orientations
 
 from algorithms.baselines.pictures import Picture, Turn
 from algorithms.bounds import Bounds, check_bounds
@@ -198,6 +197,8 @@ _KINDS: dict[type, Callable[..., Described]] = {
 
 def _orientations(picture: Picture, at: FloatArray, radius: float) -> list[float]:
     """Which way each place points: to where it is brighter; degrees from the columns to the rows."""
+    from skimage.feature import corner_orientations  # slow to load, and no other method needs it
+
     if len(at) == 0:
         return []
     reach = max(1, round(radius / picture.cell))

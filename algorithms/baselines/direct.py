@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, field
 
+from algorithms.agreement import AgreementConfig
 from algorithms.chain import Chain, Memo
 from algorithms.conclude import conclude
 from algorithms.fuse import Conflict, Fusion, fuse
 from algorithms.gridmap import GridMap
-from algorithms.observation import Observation, encounter
-from algorithms.pose import FloatArray
-from algorithms.steps import AnswersDetail, ObservationDetail, Step
+from algorithms.observation import Encounter, Observation, encounter, robots_of
+from algorithms.pose import FloatArray, Pose2
+from algorithms.ranking import better_beside, weigh
+from algorithms.steps import AnswersDetail, ObservationDetail, Step, WeighedDetail
 from algorithms.verdict import VerdictConfig
+from algorithms.verdict_model import shipped_model
+from algorithms.whole_maps import make_whole_maps
+from algorithms.window import WindowConfig, coupled_window
 
 Found = tuple[AnswersDetail, FloatArray]
 """Answers, best first, and the (3, 3) covariance of x, y, theta of the best; m and rad."""
@@ -53,23 +58,28 @@ def run_direct(
         lambda: [ObservationDetail(tuple(encounter(observation) for observation in observations))],
     )
     found, covariance = yield from search(chain)
-    best = found.answers[0]
+    best, size = found.answers[0], config.verdict.robot_size
+    weighed: WeighedDetail = yield from chain.stage(
+        "weigh",
+        (ref, mov, seen, found, size),
+        lambda: [_weigh(ref, mov, seen.encounters, best.T_ref_mov, size)],
+    )
     fusion: Fusion = yield from chain.stage(
         "fuse",
-        (ref, mov, found, config.conflict),
-        lambda: [fuse(ref, mov, best.T_ref_mov, config.conflict)],
+        (ref, mov, weighed, config.conflict, size),
+        lambda: [fuse(ref, mov, best.T_ref_mov, config.conflict, robots_of(seen.encounters, size))],
     )
+    named, *beside = weighed.answers
     yield from chain.stage(
         "verdict",
-        (fusion, seen, config.verdict, method),
+        (fusion, weighed, config.verdict, method),
         lambda: [
             conclude(
-                ref,
-                mov,
-                best.T_ref_mov,
+                named,
+                beside or None,
                 fusion,
                 seen.encounters,
-                lambda _: covariance,
+                covariance,
                 config.verdict,
                 value=best.value if valued else None,
                 answers=found.answers,
@@ -79,3 +89,13 @@ def run_direct(
             )
         ],
     )
+
+
+def _weigh(
+    ref: GridMap, mov: GridMap, encounters: Sequence[Encounter], T_ref_mov: Pose2, robot_size: float
+) -> WeighedDetail:
+    """The method's own transform by the whole maps, and a better one beside it, where there is one."""
+    window = coupled_window(encounters, WindowConfig())
+    whole = make_whole_maps(ref, mov, encounters, window, AgreementConfig().evidence, robot_size)
+    named = weigh(whole, T_ref_mov, shipped_model())
+    return WeighedDetail((named, *better_beside(whole, named, shipped_model())))

@@ -11,9 +11,6 @@ from typing import Annotated
 from warnings import catch_warnings, filterwarnings
 
 import numpy as np
-from skimage.feature import match_descriptors
-from skimage.measure import ransac
-from skimage.transform import EuclideanTransform
 
 from algorithms.baselines.detectors import DetectorConfig, SiftConfig, describe
 from algorithms.baselines.direct import DirectConfig, Found, run_direct
@@ -88,6 +85,8 @@ def run(
 
 def match_features(ref: GridMap, mov: GridMap, config: FeatureConfig) -> MatchesDetail:
     """The features of both maps, and which of them look alike: mutually nearest, by the ratio test."""
+    from skimage.feature import match_descriptors  # slow to load, and no other method needs it
+
     cell = common_cell(ref, mov, config.picture.pixels)
     places, looks = [], []
     for grid in (ref, mov):
@@ -105,6 +104,9 @@ def match_features(ref: GridMap, mov: GridMap, config: FeatureConfig) -> Matches
 
 def _agree(matches: MatchesDetail, config: MatchConfig, seed: int) -> Iterator[Detail]:
     """The transform that most matches agree on."""
+    from skimage.measure import ransac
+    from skimage.transform import EuclideanTransform
+
     T, ref, mov = None, matches.ref, matches.mov
     if len(ref) >= max(LEAST, config.least):
         with catch_warnings():

@@ -8,7 +8,6 @@ from functools import cached_property
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from algorithms.baselines.pictures import Picture
 from algorithms.gridmap import GridMap
@@ -70,6 +69,8 @@ class Overlap:
 
         step : how far the first tries lie apart; metres, of a turn at the rim of the mov map
         """
+        from scipy.optimize import minimize  # slow to load, and no other method needs it
+
         if len(self.points) == 0:
             return T_ref_mov, UNLIKE
         middle = self.points.mean(axis=0)

@@ -15,8 +15,6 @@ from typing import Annotated
 
 import numpy as np
 from scipy.fft import fft, fft2, fftshift, ifft, next_fast_len
-from skimage.registration import phase_cross_correlation
-from skimage.transform import warp_polar
 
 from algorithms.baselines.direct import DirectConfig, Found, run_direct
 from algorithms.baselines.mse import check_walls, raster_covariance
@@ -116,6 +114,8 @@ def _search(ref: GridMap, mov: GridMap, config: PhaseCorrelationConfig, seed: in
 
 def turn_correlation(ref: Picture, mov: Picture, size: int, frequencies: float) -> FloatArray:
     """(DIRECTIONS / 2,) how well the amplitudes coincide when mov is turned by k steps, or by those and π."""
+    from skimage.transform import warp_polar  # slow to load, and no other method needs it
+
     polar = []
     for each in (ref, mov):
         amplitudes = np.log1p(np.abs(fftshift(fft2(1 - each.far.astype(np.float64), (size, size)))))
@@ -131,6 +131,8 @@ def turn_correlation(ref: Picture, mov: Picture, size: int, frequencies: float) 
 
 def _shift(ref: Picture, mov: Picture, turn: Turn, size: int) -> FloatArray:
     """(2,) columns and rows by which mov, turned, must be moved, from the phases of the spectra."""
+    from skimage.registration import phase_cross_correlation
+
     images = np.zeros((2, size, size), dtype=np.float32)
     height, width = ref.far.shape
     images[0, :height, :width] = 1 - ref.far

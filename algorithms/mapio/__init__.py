@@ -7,7 +7,7 @@ cells. An image has its top row first and a GridMap its bottom row: the flip liv
 from __future__ import annotations
 
 import io
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePath
 from typing import BinaryIO
 
@@ -16,6 +16,7 @@ from algorithms.errors import InputFileError, OutputError, SettingError, unreada
 from algorithms.gridmap import COARSEST, FINEST, CellArray, GridMap
 from algorithms.mapio import fields
 from algorithms.mapio.image import read_pixels
+from algorithms.mapio.reading import as_meant, count_greys, remarks
 from algorithms.mapio.shading import MODES, GreyArray, Shading, cells_of, greys_of
 from algorithms.pose import Pose2
 from algorithms.visible import visible
@@ -68,28 +69,40 @@ class GreyImage:
     grey: GreyArray
     alpha: GreyArray | None
 
-    def cells(self, shading: Shading) -> CellArray:
-        """(H, W) int8 cells under a shading, row 0 at the bottom."""
-        return cells_of(self.grey, self.alpha, shading)
+    def read(self, shading: Shading) -> tuple[CellArray, tuple[str, ...]]:
+        """(H, W) int8 cells, row 0 at the bottom, under a shading or the one that is unmistakably meant; and
+        what is odd about that, each a clause with the cure.
+        """
+        counts = count_greys(self.grey, self.alpha)
+        shading, meant = as_meant(shading, counts)
+        cells = cells_of(self.grey, self.alpha, shading)
+        told = remarks(shading, counts, cells)
+        return cells, (meant, *told) if meant else told
 
 
-def read_map(path: Path) -> GridMap:
-    """Read a map from disk.
+def read_map(path: Path, unknown_grey: int | None = None) -> GridMap:
+    """Read a map from disk. What is odd about its greys is told in ``GridMap.remarks``.
 
-    path   : its YAML file; or its image, where a YAML file of the same stem lies beside it
-    raises : InputFileError, TooLargeError
+    path         : its YAML file; or its image, where a YAML file of the same stem lies beside it
+    unknown_grey : 0 … 255, a grey that stands for unknown, whatever its thresholds say
+    raises       : InputFileError, TooLargeError
     """
     path = Path(path)
     if path.suffix.lower() in IMAGE_SUFFIXES:
         yaml_path = _yaml_beside(path)
-        meta = parse_meta(str(yaml_path), read_bytes(yaml_path, "a map"))
+        meta = _meta_of(yaml_path, unknown_grey)
         return _read_image(path, meta, yaml_path.stem)
-    meta = parse_meta(str(path), read_bytes(path, "a map"))
+    meta = _meta_of(path, unknown_grey)
     image_path = path.parent / meta.image
     if not image_path.is_file():
         found = f"its image {meta.image} is {'a folder' if image_path.is_dir() else 'not there'}"
         raise InputFileError(path, found, "put it there, or correct the key image")
     return _read_image(image_path, meta, path.stem)
+
+
+def _meta_of(path: Path, unknown_grey: int | None) -> MapMeta:
+    meta = parse_meta(str(path), read_bytes(path, "a map"))
+    return replace(meta, shading=replace(meta.shading, unknown_grey=unknown_grey))
 
 
 def read_image(path: Path, resolution: float, origin: Pose2 = AT_ZERO, shading: Shading = USUAL) -> GridMap:
@@ -243,9 +256,8 @@ def _read_image(path: Path, meta: MapMeta, name: str) -> GridMap:
 
 
 def _to_map(source: str, stream: BinaryIO, meta: MapMeta, name: str) -> GridMap:
-    grey, alpha = read_pixels(source, stream)
-    cells = cells_of(grey, alpha, meta.shading)
-    return GridMap(cells, meta.resolution, meta.origin, visible(name) or "map")
+    cells, told = GreyImage(*read_pixels(source, stream)).read(meta.shading)
+    return GridMap(cells, meta.resolution, meta.origin, visible(name) or "map", told)
 
 
 def _opened(data: bytes | BinaryIO) -> BinaryIO:

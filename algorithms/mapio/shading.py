@@ -33,6 +33,7 @@ class Shading:
     occupied_thresh: float = 0.65
     free_thresh: float = 0.196  # below 0.19608 of grey 205, which stands for unknown
     mode: str = "trinary"
+    unknown_grey: int | None = None  # a grey that stands for unknown, whatever the thresholds say
 
     def __post_init__(self) -> None:
         fault = self.fault()
@@ -60,6 +61,12 @@ class Shading:
         """(256,) int8: the cell value of each grey. In float32, as Nav2 computes it: the last bit
         decides where a grey meets a threshold.
         """
+        cells = self._by_thresholds()
+        if self.unknown_grey is not None:
+            cells[self.unknown_grey] = UNKNOWN
+        return cells
+
+    def _by_thresholds(self) -> CellArray:
         if self.mode == "raw":
             grey = np.arange(256)
             return np.where(grey <= OCCUPIED, grey, UNKNOWN).astype(np.int8)

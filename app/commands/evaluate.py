@@ -12,7 +12,7 @@ from typing import Any
 from algorithms.errors import OutputError
 from app.usage import Parser
 
-USAGE = "DIR [--rough | --both] [--json FILE] [--jobs N | --scheduler ADDRESS] [options]"
+USAGE = "DIR [--rough | --both] [--wrong-pairs N] [--json FILE] [--jobs N | --scheduler ADDRESS] [options]"
 DESCRIPTION = """\
 Run a method on every case folder under DIR and hold it against the truth.
 
@@ -20,13 +20,19 @@ Examples:
   mapmeld evaluate cases --jobs 4
   mapmeld evaluate cases --both --jobs 4 --json results.json
   mapmeld evaluate cases --rough --method paper-argmax
+  mapmeld evaluate cases --wrong-pairs 700
 
 A case is a folder of map1.yaml, map2.yaml, observation.yaml and, where the answer is known,
 truth.yaml; without it the case is run and not judged.
   right           within the case's tolerance (0.5 m and 3° where it names none), at the seen
                   robot; for a case with expected: refuse, refused
   fine            within 0.15 m and 1°
+  right accepted  right, and accepted: what the operator gets
   wrong accepted  accepted and not right: the number that must be 0
+Below stands how true the probabilities are: of the merges told to be right with such a probability,
+how many are. ECE is the mean distance of the two, Brier the mean squared error of the probability.
+With --wrong-pairs the cases are crossed, too: map 1 and its observer of one, map 2 and the seen robot
+of one of another building, all of which are to be refused.
 
 Exit status: 0 all cases ran, 1 some case failed with an error, 2 bad input, 130 interrupted."""
 
@@ -35,6 +41,7 @@ COLUMNS = {
     "n": "{}",
     "right": "{}",
     "fine": "{}",
+    "right_accepted": "{}",
     "refused": "{}",
     "wrong_accepted": "{}",
     "errors": "{}",
@@ -53,6 +60,13 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
         "--both", action="store_true", help="run each case with either file, and print a table for each"
     )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write every report and the totals there")
+    parser.add_argument(
+        "--wrong-pairs",
+        type=_count,
+        default=0,
+        metavar="N",
+        help="cross the cases into N pairs of different buildings, too, with made-up sightings",
+    )
     add_workers(parser, 1)
     add_method(parser, words)
 
@@ -61,7 +75,17 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     """Run all cases, print the table; 1 where a case could not be run."""
     from algorithms.atomic import check_file, write_file
     from algorithms.casefiles import case_folders
-    from app.evaluate import OVERALL, Order, evaluate, evaluate_both, rough_folders, totals_of
+    from app.evaluate import (
+        OVERALL,
+        Order,
+        calibration_of,
+        crossings,
+        evaluate,
+        evaluate_both,
+        is_wrong_accepted,
+        rough_folders,
+        totals_of,
+    )
     from app.executor import executor_for
     from app.flags import config_from
     from app.progress import bar
@@ -73,16 +97,26 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     executor = executor_for(args.jobs, args.scheduler)
     order = Order(args.folder, args.method, config_from(args), args.seed, args.rough)
     total = len(case_folders(args.folder)) + (len(rough_folders(args.folder)) if args.both else 0)
+    wrong = crossings(args.folder, args.wrong_pairs, args.seed) if args.wrong_pairs else []
     told = evaluate_both(order, executor) if args.both else evaluate(order, executor)
     entries = list(bar(iterable=told, total=total, unit="case"))
     entries.sort(key=lambda entry: (str(entry["observation"]), str(entry["case"])))
+    crossed: list[Any] = []
+    if wrong:
+        told = evaluate(order, executor, wrong)
+        crossed = sorted(
+            bar(iterable=told, total=len(wrong), unit="pair"), key=lambda entry: str(entry["case"])
+        )
+    calibration = calibration_of([*entries, *crossed])
     totals = totals_of(entries)
     by_observation = {
         file: totals_of([entry for entry in entries if entry["observation"] == file])
         for file in dict.fromkeys(entry["observation"] for entry in entries)
     }
     if args.json is not None:
-        answer = {"cases": entries, "totals": totals}
+        answer = {"cases": entries, "totals": totals, "calibration": calibration}
+        if wrong:
+            answer["wrong_pairs"] = crossed
         if args.both:
             answer["totals_by_observation"] = by_observation
         text = json.dumps(answer, indent=1, ensure_ascii=False, allow_nan=False)
@@ -92,7 +126,16 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
             print(f"{chr(10) if number else ''}{file}")
         for line in (*table(counts), *remarks([e for e in entries if e["observation"] == file])):
             print(line)
-    return 1 if totals[OVERALL]["errors"] else 0
+    print()
+    for line in calibration_lines(calibration):
+        print(line)
+    if wrong:
+        accepted = [entry for entry in crossed if is_wrong_accepted(entry)]
+        failed = sum("error" in entry for entry in crossed)
+        print(f"wrong pairs: {len(crossed)}, accepted {len(accepted)}, failed {failed}")
+        for line in remarks(crossed):
+            print(line)
+    return 1 if totals[OVERALL]["errors"] or any("error" in entry for entry in crossed) else 0
 
 
 def table(totals: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
@@ -106,6 +149,25 @@ def table(totals: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
             ["–" if values[name] is None else form.format(values[name]) for name, form in COLUMNS.items()]
         )
     yield from aligned(rows)
+
+
+def calibration_lines(calibration: Mapping[str, Any]) -> Iterator[str]:
+    """Lines of the reliability table, and what it comes to."""
+    from app.tables import aligned
+
+    rows = [["probability", "n", "mean", "right"]]
+    for each in calibration["bins"]:
+        numbers = ["–", "–"] if not each["n"] else [f"{each['probability']:.3f}", f"{each['right']:.3f}"]
+        rows.append([f"{each['low']:g} … {each['high']:g}", str(each["n"]), *numbers])
+    yield from aligned(rows)
+    if calibration["n"]:
+        yield f"ECE {calibration['ece']:.3f}, Brier {calibration['brier']:.3f} over {calibration['n']} merges"
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text} is no whole number from 1 up")
+    return int(text)
 
 
 def remarks(entries: Sequence[Mapping[str, Any]]) -> Iterator[str]:

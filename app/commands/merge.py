@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from algorithms.observation import Observation
     from algorithms.steps import MergeResult
 
-USAGE = "MAP1 MAP2 --observation FILE --out DIR [--json] [--force] [options]"
+USAGE = "MAP1 MAP2 --observation FILE --out DIR [--json] [--force] [--strict] [options]"
 DESCRIPTION = """\
 Merge two maps from one sighting of robot 2 by robot 1, or from several in one file.
 
@@ -35,11 +35,18 @@ Files in the folder of --out:
   report.html               all of it to read and print: verdict, pictures, numbers, settings
   report.json               transform, covariance, verdict, proof, times, settings
   overlay.png               both maps under the transform: agreement and contradiction
+A merge ends in one of three ways:
+  merged         the maps lie on each other
+  merged, bent   it is likely right, but no one transform lays the maps on each other everywhere: walls
+                 will be double
+  refused        it cannot be trusted; the reason says what speaks against it, and what would help
 A refused merge leaves the reports and overlay.png alone, and where the method found no transform
-at all only report.json. What an earlier run left of the other files is then removed, so that nobody
-takes it for this run's.
+at all only report.json; so does a bent one with --strict. What an earlier run left of the other files
+is then removed, so that nobody takes it for this run's. How a map was read is warned of on stderr
+where it looks wrong.
 
-Exit status: 0 merged, 1 refused (with --force too), 2 bad input, 130 interrupted."""
+Exit status: 0 merged, bent or not, 1 refused (with --force too), or bent with --strict, 2 bad input,
+130 interrupted."""
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
@@ -50,14 +57,16 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("map2", type=Path, metavar="MAP2", help="map of robot 2, the observed")
     parser.add_argument("--observation", type=Path, required=True, metavar="FILE", help="what robot 1 saw")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the files")
-    add_resolution(parser)
+    add_reading(parser)
     parser.add_argument("--json", action="store_true", help="print report.json and nothing else")
     parser.add_argument("--force", action="store_true", help="write the merged map of a refused merge, too")
     add_method(parser, words)
 
 
-def add_resolution(parser: Parser) -> None:
-    """Add ``--resolution``, for maps that are images without a YAML file."""
+def add_reading(parser: Parser) -> None:
+    """Add what says how maps are read: ``--resolution``, for images without a YAML file, and
+    ``--unknown-grey``.
+    """
     parser.add_argument(
         "--resolution",
         type=_resolutions,
@@ -65,11 +74,18 @@ def add_resolution(parser: Parser) -> None:
         help="metres per pixel of maps given as plain images, whose lower-left corner is then the origin; "
         "two numbers where the maps differ; a YAML file says its own",
     )
+    parser.add_argument(
+        "--unknown-grey",
+        type=_grey,
+        metavar="G",
+        help="a grey, 0 to 255, that stands for unknown in both maps, whatever their thresholds say",
+    )
 
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, write and tell; the exit status."""
     from algorithms import methods
+    from algorithms.refusal_causes import remarks_on
     from app.flags import config_from
     from app.inputs import Inputs
     from app.progress import result_of
@@ -85,14 +101,17 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     began = perf_counter()
     ref, mov, observations = read_inputs(args)
     load_s = perf_counter() - began
+    warnings = remarks_on(ref, mov)
+    for warning in warnings:
+        print(f"warning: {warning}", file=sys.stderr)
     _check_folder(args)
     given = {"map1": args.map1, "map2": args.map2, "observation": args.observation}
     named = {key: str(path) for key, path in given.items()}
     try:
-        result = result_of(methods.run(args.method, ref, mov, observations, config, args.seed))
+        result = result_of(methods.run_explained(args.method, ref, mov, observations, config, args.seed))
     except NoAnswerError as refusal:
-        return _without_answer(refusal, args, config, load_s, named)
-    report = report_of(result, config, load_s, named)
+        return _without_answer(refusal, args, config, load_s, named, warnings)
+    report = report_of(result, config, load_s, named, warnings)
     accepted = result.verdict.accepted
     inputs = Inputs(ref, mov, observations, f"{args.map1.stem} and {args.map2.stem}")
     files = result_files(result, inputs, config, report, with_merged=accepted or args.force)
@@ -101,12 +120,17 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     if args.json:
         sys.stdout.write(report_json(report).decode())
     else:
-        print("\n".join(_summary(result, config, args.out, files, removed)))
+        print("\n".join(_summary(result, config, args, files, removed)))
     return 0 if accepted else 1
 
 
 def _without_answer(
-    refusal: NoAnswerError, args: argparse.Namespace, config: Any, load_s: float, named: Mapping[str, str]
+    refusal: NoAnswerError,
+    args: argparse.Namespace,
+    config: Any,
+    load_s: float,
+    named: Mapping[str, str],
+    warnings: Sequence[str],
 ) -> int:
     """Leave and tell why there is no transform; the exit status."""
     from app.report import (
@@ -119,7 +143,9 @@ def _without_answer(
         report_of_no_answer,
     )
 
-    written = report_json(report_of_no_answer(refusal, args.method, args.seed, config, load_s, named))
+    written = report_json(
+        report_of_no_answer(refusal, args.method, args.seed, config, load_s, named, warnings)
+    )
     stale = [*MERGED_FILES, TRANSFORM_FILE, OVERLAY_FILE, PAGE_FILE]
     removed = _leave(args.out, {REPORT_FILE: written}, stale)
     if args.json:
@@ -137,7 +163,7 @@ def _without_answer(
 def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, tuple[Observation, ...]]:
     """Both maps and the observations that the command line names."""
     from algorithms.casefiles import read_observations
-    from algorithms.mapio import IMAGE_SUFFIXES, read_image, read_map
+    from algorithms.mapio import IMAGE_SUFFIXES, Shading, read_image, read_map
 
     paths, given = (args.map1, args.map2), args.resolution or ()
     plain = [path.suffix.lower() in IMAGE_SUFFIXES for path in paths]
@@ -148,7 +174,9 @@ def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, tuple[Obser
             "its own resolution; leave --resolution out, or correct the key resolution there"
         )
     ref, mov = (
-        read_image(path, resolution) if resolution is not None and image else read_map(path)
+        read_image(path, resolution, shading=Shading(unknown_grey=args.unknown_grey))
+        if resolution is not None and image
+        else read_map(path, args.unknown_grey)
         for path, resolution, image in zip(paths, (*given, *given, None, None), plain, strict=False)
     )
     return ref, mov, read_observations(args.observation)
@@ -195,28 +223,36 @@ def _check_folder(args: argparse.Namespace) -> None:
 
 
 def _summary(
-    result: MergeResult, config: Any, out: Path, files: Mapping[str, bytes], removed: list[str]
+    result: MergeResult,
+    config: Any,
+    args: argparse.Namespace,
+    files: Mapping[str, bytes],
+    removed: list[str],
 ) -> list[str]:
     from app import words
     from app.measure import measure_of
 
     T, verdict, proof, measure = result.T_ref_mov, result.verdict, result.proof, measure_of(config)
     lines = [verdict.reason]
-    if words.remedy(result, config):
-        lines.append(words.remedy(result, config))
+    if words.remedy(result):
+        lines.append(words.remedy(result))
     lines.append(f"map 2 in map 1: x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°")
     if result.value is not None:
         ended = "" if proof is None else f", {words.optimum(proof)} ({proof.nodes:,} blocks bounded)"
+        if proof is not None and result.weighed[0].moved:
+            ended += ", then moved to where the whole maps fit"
         lines.append(f"{measure.name} {measure.text(result.value)}{ended}")
-    if verdict.rival is not None:
-        lines.append(f"rival: {words.rival(result)} of the best")
+    if words.rival(result):
+        lines.append(f"another answer: {words.rival(result)} likely")
+    if verdict.cleared_cells:
+        lines.append(f"{verdict.cleared_cells} cells around robots were the robots themselves: floor now")
     lines += [
         f"acceptance index {verdict.acceptance_index:.3f} "
         f"over {verdict.overlap_cells} cells ({verdict.overlap_area:.1f} m²)",
-        f"written to {out}: {', '.join(files)}",
+        f"written to {args.out}: {', '.join(files)}",
     ]
     if removed:
-        lines.append(f"removed from {out}, being of an earlier run: {', '.join(removed)}")
+        lines.append(f"removed from {args.out}, being of an earlier run: {', '.join(removed)}")
     if not verdict.accepted:
         forced = any(name.startswith("merged.") for name in files)
         lines.append(
@@ -225,6 +261,12 @@ def _summary(
             else "no merged map was written; --force writes it all the same"
         )
     return lines
+
+
+def _grey(text: str) -> int:
+    if not text.isdecimal() or int(text) > 255:
+        raise argparse.ArgumentTypeError(f"{text} is no grey; give a whole number from 0 to 255")
+    return int(text)
 
 
 def _resolutions(text: str) -> tuple[float, ...]:

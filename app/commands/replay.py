@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -34,7 +35,7 @@ HTML_SUFFIXES = (".html", ".htm")
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     """Tell the parser what the command takes; flags of the settings depend on the method in ``words``."""
-    from app.commands.merge import add_resolution
+    from app.commands.merge import add_reading
     from app.flags import add_method
 
     parser.add_argument("first", metavar="CASE|MAP1", help="a sample's name or a case folder; or a map")
@@ -43,7 +44,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
         "--observation", type=Path, metavar="FILE", help="what robot 1 saw (default: that of the case)"
     )
     parser.add_argument("--out", type=Path, required=True, metavar="FILE.html", help="the page to write")
-    add_resolution(parser)
+    add_reading(parser)
     add_method(parser, words)
 
 
@@ -59,9 +60,11 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         parser.error(f"--out is {args.out}; let its name end in .html, or no browser will open it")
     if args.map2 is not None and args.observation is None:
         parser.error("two maps need their --observation FILE")
-    if args.map2 is None and args.resolution is not None:
-        parser.error("--resolution is for maps that are plain images: give MAP1 and MAP2")
+    if args.map2 is None and (args.resolution is not None or args.unknown_grey is not None):
+        parser.error("--resolution and --unknown-grey say how MAP1 and MAP2 are read: give both maps")
     config, inputs = config_from(args), _inputs(args, parser)
+    for warning in inputs.readings():
+        print(f"warning: {warning}", file=sys.stderr)
     check_file(args.out)
     assert inputs.ref is not None
     assert inputs.mov is not None

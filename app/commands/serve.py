@@ -43,12 +43,12 @@ read on the network, the token with it. SECURITY.md tells more. Ctrl-C ends it."
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     """Tell the parser what the command takes."""
-    from app.commands.merge import add_resolution
+    from app.commands.merge import add_reading
 
     parser.add_argument("map1", type=Path, metavar="MAP1", nargs="?", help="map of robot 1, the observer")
     parser.add_argument("map2", type=Path, metavar="MAP2", nargs="?", help="map of robot 2, the observed")
     parser.add_argument("--observation", type=Path, metavar="FILE", help="what robot 1 saw")
-    add_resolution(parser)
+    add_reading(parser)
     parser.add_argument("--host", default=LOCAL, help=f"address to listen at (default: {LOCAL})")
     parser.add_argument("--port", type=_port, default=PORT, help=f"0 for any free one (default: {PORT})")
     parser.add_argument("--token-file", type=Path, metavar="FILE", help="holds the token to enter with")

@@ -26,7 +26,7 @@ Examples:
   mapmeld sweep office_r2_r1         the paper's two sweeps on a sample, into sweep_office_r2_r1/
   mapmeld sweep cases/lab --x augment.spread=1:8:8
   mapmeld sweep cases/lab --x swarm.particles=20:2000:9:log --y refine.optimiser=pso,mco --out swarm
-  mapmeld sweep cases/lab --method spectra-proven --x verdict.contradiction=0.05,0.09,0.12
+  mapmeld sweep cases/lab --method spectra-proven --x verdict.accept_from=0.5,0.7,0.9
 
 A range is NAME=LOW:HIGH:COUNT in equal steps, NAME=LOW:HIGH:COUNT:log by equal factors, or
 NAME=V1,V2,…; names are those of the flags below. Each point is merged with --seeds seeds.

@@ -105,7 +105,7 @@ def _said(trial: Trial) -> tuple[str, str]:
     if trial.T_ref_mov is None:
         return "no transform found", NOTHING
     index = "" if trial.index is None else f"\neq. (23): {trial.index:.3f}"
-    verdict = "accepted" if trial.accepted else "refused"
+    verdict = ("accepted, bent" if trial.bent else "accepted") if trial.accepted else "refused"
     if trial.right is None:
         return f"{verdict}{index}", colour(LIGHT.text)
     word, hue = ("right", RIGHT) if trial.right else ("WRONG", WRONG)

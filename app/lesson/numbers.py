@@ -22,6 +22,7 @@ from algorithms.steps import (
 from algorithms.window import CoupledWindow
 from app.lesson.study import Study
 from app.measure import measure_of
+from app.words import likelihood
 
 Number = tuple[tuple[type, ...], Callable[[Study], str]]  # what the run must have come to, and the words
 
@@ -164,7 +165,17 @@ NUMBERS: dict[str, Number] = {
     "contradiction": (_RESULT, lambda s: f"{_verdict(s).contradiction:.1%}"),
     "shared_wall_m": (_RESULT, lambda s: _n(_verdict(s).shared_wall, 0)),
     "off_sigma": (_RESULT, lambda s: _n(_verdict(s).deviation, 1)),
-    "most_contradiction": ((), lambda s: f"{s.config.verdict.contradiction:.0%}"),
+    "rigid_contradiction": (_RESULT, lambda s: f"{_verdict(s).rigid_contradiction:.1%}"),
+    "across_m": (_RESULT, lambda s: _n(_verdict(s).wall_across, 0)),
+    "agreeing_m": (
+        _RESULT,
+        lambda s: _n(_verdict(s).shared_wall * (1 - _verdict(s).contradiction), 0),
+    ),
+    "floor_m2": (_RESULT, lambda s: _n(_verdict(s).shared_floor, 0)),
+    "answers_weighed": (_RESULT, lambda s: str(len(s.get(MergeResult).weighed))),
+    "probability": (_RESULT, lambda s: likelihood(_verdict(s).probability)),
+    "accept_from": ((), lambda s: f"{s.config.verdict.accept_from:.1%}"),
+    "bent_from": ((), lambda s: f"{s.config.verdict.bent_from:.0%}"),
     "verdict": (_RESULT, lambda s: _verdict(s).reason),
 }
 

@@ -19,7 +19,7 @@ from algorithms.methods import METHODS
 from algorithms.pipeline import PipelineConfig
 from app import paths
 from app.controls import Path as SettingPath
-from app.controls import Setting, settings_of, with_value
+from app.controls import Setting, settings_of, what_became_of, with_value
 from app.lesson import equations
 
 Settings = tuple[tuple[SettingPath, Any], ...]
@@ -226,6 +226,10 @@ def _settings(fields: Fields, config: Any, key: str = "settings") -> Settings:
         return ()
     section = fields.section(key, "give a mapping like {augment.intensity: 1}")
     known = {".".join(setting.path): setting for setting in settings_of(config)}
+    for name in section.values:
+        became = what_became_of(name)
+        if became:
+            raise section.error(name, "is no setting any more", became)
     section.refuse_unknown(*known)
     out = []
     for name in section.values:

@@ -118,12 +118,12 @@ def weighed_html(result: MergeResult, config: Any, method: Pose2 | None) -> str:
         measure = measure_of(config)
         rows.append((measure.row, measure.number(result.value)))
     rows += [
-        ("contradicted, patches slipped", f"{verdict.contradiction:.1%}"),
+        ("likely right", words.likelihood(verdict.probability)),
+        ("contradicted, as the maps are", f"{verdict.rigid_contradiction:.1%}"),
         ("wall in view of both", f"{verdict.shared_wall:.1f} m"),
         ("robot 2 off its sighting", f"{verdict.deviation:.1f} σ"),
     ]
     if method is not None:
         apart, turn = pose_error(result.T_ref_mov, method, result.encounter.x_mov)
         rows.append(("off the method's answer", f"{apart:.2f} m, {degrees(turn):.1f}°"))
-    mood = "accepted" if verdict.accepted else "refused"
-    return box(words.of_hand(result), mood) + table(rows)
+    return box(words.of_hand(result), words.mood(verdict)) + table(rows)

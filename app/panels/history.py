@@ -6,8 +6,11 @@ from html import escape
 
 import viser
 
+from algorithms.verdict import Outcome
 from app.history import Entry, History
 from app.panels.sparing import put
+
+DOTS = {Outcome.MERGED: "#009E73", Outcome.BENT: "#E69F00", Outcome.REFUSED: "#D55E00"}
 
 
 class HistoryPanel:
@@ -65,5 +68,5 @@ def _dot(entry: Entry) -> str:
     result = entry.desk.result
     if result is None:
         return "<i></i>"
-    colour, word = ("#009E73", "accepted") if result.verdict.accepted else ("#D55E00", "refused")
-    return f'<i style="background:{colour}" role="img" aria-label="{word}"></i>'
+    outcome = result.verdict.outcome
+    return f'<i style="background:{DOTS[outcome]}" role="img" aria-label="{outcome.value}"></i>'

@@ -13,11 +13,14 @@ from algorithms.handmade import BY_HAND
 from algorithms.merit import performance_index
 from algorithms.pose import pose_error
 from algorithms.steps import MergeResult
+from algorithms.verdict import Verdict
 from app import words
 from app.inputs import Inputs
 from app.measure import measure_of
+from app.palette import LIGHT
 from app.panels.places import places_html
 from app.panels.tables import box, table
+from app.pictures import judgement
 
 STAGES = {
     "observe": "observation",
@@ -27,8 +30,10 @@ STAGES = {
     "search": "candidates",
     "refine": "swarm",
     "prove": "proof",
+    "weigh": "whole maps",
     "fuse": "merged cells",
     "verdict": "verdict",
+    "explain": "cause of the refusal",
 }
 
 
@@ -45,13 +50,22 @@ def result_html(
     found  : where the maps contradict each other
     """
     verdict = result.verdict
-    mood = "accepted" if verdict.accepted else "refused"
-    note = "Out of date: something was changed." if faded else words.remedy(result, config)
+    note = "Out of date: something was changed." if faded else words.remedy(result)
     return (
-        box(verdict.reason, mood, note, faded)
+        box(verdict.reason, words.mood(verdict), note, faded)
+        + why_html(verdict, faded)
         + (places_html(found, faded) if found is not None else "")
         + table(numbers(result, inputs, config), faded=faded)
         + table(times(result), ("time per stage", "ms"), faded)
+    )
+
+
+def why_html(verdict: Verdict, faded: bool = False) -> str:
+    """HTML of the verdict to be opened: a bar per quantity that it rests on."""
+    dim = ";opacity:.4" if faded else ""
+    return (
+        f'<details style="margin:0 10px 8px;font-size:12.5px{dim}"><summary style="cursor:pointer">'
+        f"Why {words.likelihood(verdict.probability)}?</summary>{judgement.bars(verdict, LIGHT)}</details>"
     )
 
 
@@ -89,11 +103,14 @@ def numbers(result: MergeResult, inputs: Inputs, config: Any = None) -> list[tup
     else:
         rows.append(("eq. (23), at the estimated T", _share(performance_index(result.fusion))))
     rows += [
+        ("likely right", words.likelihood(verdict.probability)),
         ("acceptance index", f"{verdict.acceptance_index:.1%}"),
         ("area known to both", f"{verdict.overlap_area:.1f} m²"),
         ("wall in view of both", f"{verdict.shared_wall:.1f} m"),
         ("contradicted, patches slipped", f"{verdict.contradiction:.1%}"),
         ("contradicted, as the maps are", f"{verdict.rigid_contradiction:.1%}"),
+        ("agreeing wall across the others", f"{verdict.wall_across:.1f} m"),
+        *_moved(result),
         ("robot 2 off its sighting", f"{verdict.deviation:.1f} σ"),
         *_rivals(result),
         *_proof(result),
@@ -107,12 +124,21 @@ def _rivals(result: MergeResult) -> list[tuple[str, ...]]:
     verdict = result.verdict
     if verdict.ambiguity is None:
         return []
-    best = f"{verdict.ambiguity:.0%} of the best" if verdict.ambiguity > 0 else "none"
-    if verdict.ambiguity > 1:  # of what was made by hand
-        best = "better than this"
-    rows: list[tuple[str, ...]] = [("next best place", best)]
-    if verdict.rival is not None:
+    rows: list[tuple[str, ...]] = [("next best place", words.odds_of_rival(verdict))]
+    if words.rival(result):
         rows.append(("rival in doubt", words.rival(result)))
+    return rows
+
+
+def _moved(result: MergeResult) -> list[tuple[str, ...]]:
+    """By how much the whole maps moved the search's answer, and what was taken for a robot."""
+    rows: list[tuple[str, ...]] = []
+    if result.weighed and result.weighed[0].moved:
+        named = result.weighed[0]
+        off = words.apart(named.T_ref_mov, named.began, result)
+        rows.append(("moved by the whole maps", off))
+    if result.verdict.cleared_cells:
+        rows.append(("cells of robots, cleared", f"{result.verdict.cleared_cells:,}"))
     return rows
 
 

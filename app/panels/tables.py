@@ -34,8 +34,8 @@ def table(rows: Iterable[tuple[str, ...]], head: tuple[str, ...] = (), faded: bo
 
 
 def box(text: str, mood: str, note: str = "", faded: bool = False) -> str:
-    """HTML of a sentence in a coloured box; mood is accepted, refused or plain."""
-    colour = {"accepted": "#009E73", "refused": "#D55E00"}.get(mood, "#6B7280")
+    """HTML of a sentence in a coloured box; mood is accepted, bent, refused or plain."""
+    colour = {"accepted": "#009E73", "bent": "#E69F00", "refused": "#D55E00"}.get(mood, "#6B7280")
     small = f'<div style="font-weight:400;margin-top:4px;opacity:.85">{escape(note)}</div>' if note else ""
     dim = ";opacity:.4" if faded else ""
     return (

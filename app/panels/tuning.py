@@ -18,6 +18,7 @@ FOLDERS = {
     "augment": "Augmentation",
     "agreement": "Agreement",
     "proof": "Proof",
+    "whole_maps": "Proof",
     "verdict": "Result",
     "conflict": "Result",
 }

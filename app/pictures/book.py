@@ -21,6 +21,7 @@ from algorithms.steps import (
     RefineDetail,
     ShiftDetail,
     Step,
+    WeighedDetail,
 )
 from app.layout import Layout
 from app.lesson.study import FEW, Study
@@ -201,6 +202,7 @@ PICTURES: dict[str, Picture] = {
         (CandidatesDetail,), search.swarm, _searching(lambda study: study.few, 1), _swarm_dials, _moves
     ),
     "proof": Picture((ProvenDetail,), search.proof, _looking, _look_dial),
+    "answers": Picture((MergeResult,), judgement.answers, _up_to(WeighedDetail)),
     "merged": Picture((MergeResult,), maps.merged, _up_to(Fusion)),
     "verdict": Picture((MergeResult,), judgement.verdict, _up_to(MergeResult)),
 }  # fmt: skip

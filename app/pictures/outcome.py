@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from algorithms.certificate import ProofState
 from algorithms.conflicts import Conflicts
 from algorithms.fuse import Fusion
-from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap
+from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap, where
 from algorithms.observation import Encounter, Observation
 from algorithms.pose import FloatArray
 from algorithms.steps import MergeResult
@@ -168,7 +168,7 @@ class _Raster:
         seen[self._inside] = mask.ravel()[self._below]
         self.pixels[seen.reshape(self.pixels.shape[:2])] = colour
         if forward:
-            row, col, there = self._view.pixels_of(self._grid.centres(*np.nonzero(mask)))
+            row, col, there = self._view.pixels_of(self._grid.centres(*where(mask)))
             self.pixels[row[there], col[there]] = colour
 
 

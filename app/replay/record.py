@@ -120,9 +120,9 @@ def record(steps: Iterable[Step], inputs: Inputs, config: Any) -> Recording:
             break
     assert result is not None
     rows = _typeset(numbers(result, inputs, config))
-    mood = "accepted" if result.verdict.accepted else "refused"
+    mood = words.mood(result.verdict)
     stage.hud(mood=mood, state=result.verdict.reason)
-    stage.extra(table={"rows": rows, "says": words.remedy(result, config), "mood": mood})
+    stage.extra(table={"rows": rows, "says": words.remedy(result), "mood": mood})
     stage.flush()
     return {
         "frames": stage.frames,

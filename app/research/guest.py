@@ -13,7 +13,7 @@ from algorithms.observation import Observation, encounter
 from algorithms.pose import Pose2
 from algorithms.steps import Answer, AnswersDetail, AugmentDetail, ObservationDetail, Step
 from app.panels.tables import box, table
-from app.research.outcome import outcome_of
+from app.research.outcome import outcome_of, verdict_mood
 from app.story import Story
 from app.trial import Trial
 
@@ -79,6 +79,9 @@ class Guest:
             ("time of the merge", f"{self.trial.seconds:.2f} s"),
             ("seed", f"{self.seed}"),
         ]
-        mood = "accepted" if self.trial.accepted else "refused"
         says = "" if self.trial.right is None else f" {told.says}"
-        return box(f"{self.title}.{says}", told.mood) + box(told.verdict, mood, NOT_YOURS) + table(rows)
+        return (
+            box(f"{self.title}.{says}", told.mood)
+            + box(told.verdict, verdict_mood(self.trial), NOT_YOURS)
+            + table(rows)
+        )

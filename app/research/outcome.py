@@ -8,15 +8,15 @@ from typing import Literal
 
 from app.trial import Trial
 
-Mood = Literal["accepted", "refused", "plain"]
+Mood = Literal["accepted", "bent", "refused", "plain"]
 
 
 @dataclass(frozen=True)
 class Outcome:
     """A sentence, what mapmeld's verdict says, and numbers.
 
-    mood : accepted for what is right, or where nobody knows accepted; refused for the opposite; plain
-           where nothing was merged
+    mood : accepted for what is right, or where nobody knows accepted, bent where that is of bent maps;
+           refused for the opposite; plain where nothing was merged
     """
 
     says: str
@@ -39,7 +39,7 @@ def outcome_of(trial: Trial) -> Outcome:
 def _judgement(trial: Trial) -> str:
     """What the truth says; where none is known, what the verdict says."""
     if trial.right is None:
-        return "Accepted." if trial.accepted else "Refused."
+        return {"accepted": "Accepted.", "bent": "Accepted, bent."}.get(verdict_mood(trial), "Refused.")
     if trial.distance is None or trial.angle is None:  # maps that share no place
         return "✓ Right." if trial.right else "✗ Wrong: they share no place."
     metres, turn = trial.distance, degrees(trial.angle)
@@ -50,6 +50,13 @@ def _judgement(trial: Trial) -> str:
 def _mood(trial: Trial) -> Mood:
     if trial.right is not None:
         return "accepted" if trial.right else "refused"
+    return verdict_mood(trial)
+
+
+def verdict_mood(trial: Trial) -> Mood:
+    """The verdict's own colour, whatever the truth says."""
+    if trial.bent:
+        return "bent"
     return "accepted" if trial.accepted else "refused"
 
 

@@ -69,9 +69,7 @@ class Tab:
         self.page.goto(address)
         self.page.wait_for_function(READY, timeout=1000 * PATIENCE)
         # viser's toast about the software renderer lies over the page's top left
-        self.page.add_style_tag(
-            content=".mantine-Notifications-root{opacity:0!important;pointer-events:none}"
-        )
+        self.page.add_style_tag(content=".mantine-Notifications-root{display:none!important}")
 
     # --- reading ----------------------------------------------------------------------------------
 

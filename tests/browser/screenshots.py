@@ -25,14 +25,16 @@ from playwright.sync_api import Browser, sync_playwright  # noqa: E402
 from algorithms.casefiles import Case, read_case  # noqa: E402
 from algorithms.mapio import map_to_bytes  # noqa: E402
 from algorithms.observation import Observation  # noqa: E402
+from algorithms.simulator.training_pairs import training_pairs  # noqa: E402
 from app.paths import samples  # noqa: E402
 from app.server import make_server  # noqa: E402
 
 SIZE = (1280, 800)
 SAMPLE = "office_r2_r1"
-ALIKE = "corridor_r3_r2"  # two places that look alike when turned
+BENT = "bent_r2_r1"
+ALIKE = 8139  # a simulated corridor that looks alike when turned
 SHOWN = (
-    "swarm", "merged", "proof", "rival", "curtain", "by_hand", "place", "plain_image", "lesson_hough",
+    "swarm", "merged", "proof", "rival", "why", "curtain", "by_hand", "place", "plain_image", "lesson_hough",
     "lesson_swarm", "museum", "compared", "swept",
 )  # fmt: skip
 
@@ -71,7 +73,10 @@ def opened(browser: Browser, initial: Case | None) -> Iterator[Tab]:
 
 def opening(scene: Callable[[Tab, Keep], None]) -> Case | None:
     """What a scene begins with."""
-    case = read_case(samples()[ALIKE if scene is a_rival else SAMPLE])
+    if scene is a_rival:
+        alike = next(iter(training_pairs(ALIKE)))
+        return Case("a corridor", alike.case.ref, alike.case.mov, alike.observations, "", None)
+    case = read_case(samples()[BENT if scene is a_bend else SAMPLE])
     if scene is a_wrong_sighting:
         o = case.observations[0]
         wrong = Observation(o.observer, o.observed_x + 6.0, o.observed_y - 5.0, o.range, o.bearing)
@@ -163,6 +168,20 @@ def a_rival(tab: Tab, keep: Keep) -> None:
     """Two places fit nearly as well."""
     merged(tab, "refused")
     keep("rival")
+
+
+def a_bend(tab: Tab, keep: Keep) -> None:
+    """Maps that no one transform lays on each other, what counts for the merge, and what if."""
+    merged(tab, "bent")
+    keep("bent")
+    tab.page.locator("summary", has_text="Why").click()
+    tab.page.mouse.move(640, 500)
+    tab.page.wait_for_timeout(600)
+    keep("why")
+    tab.unfold("What if")
+    tab.page.get_by_text("Reset what if").scroll_into_view_if_needed()
+    tab.page.wait_for_timeout(600)
+    keep("what_if")
 
 
 def a_wrong_sighting(tab: Tab, keep: Keep) -> None:
@@ -263,6 +282,7 @@ SCENES: dict[Callable[[Tab, Keep], None], tuple[str, ...]] = {
     ),
     a_comparison: ("curtain", "blink", "difference", "by_hand", "keys"),
     a_rival: ("rival",),
+    a_bend: ("bent", "why", "what_if"),
     a_wrong_sighting: ("refused", "refused_download"),
     an_empty_page: ("empty", "plain_image"),
     a_placement: ("place",),

@@ -11,7 +11,7 @@ import pytest
 from driver import Tab, settle
 
 from algorithms.casefiles import observations_to_bytes
-from algorithms.gridmap import FREE, OCCUPIED, GridMap
+from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.mapio import map_from_bytes, map_to_bytes
 from algorithms.observation import Observation
 from algorithms.pose import Pose2
@@ -36,6 +36,7 @@ def many_rooms() -> GridMap:
         at, wide = at + wide, wide + 17
     cells[SIDE // 2 - 20 : SIDE // 2 + 20, ::7] = FREE  # doors, of a kind
     cells[PILLAR] = OCCUPIED
+    cells[-150:] = UNKNOWN  # a map without any would be warned of
     return GridMap(cells, CELL)
 
 

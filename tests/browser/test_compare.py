@@ -205,7 +205,7 @@ def test_everything_is_taken_away_at_once_and_reads_back_and_the_report_opens_wi
         assert [url.split(":")[0] for url in asked if not url.startswith("data:")] == ["file"]
         assert said == []  # nothing that the page's own policy had to forbid
         assert page.locator(".verdict.accepted").inner_text() == expected.verdict.reason
-        assert page.locator("figure svg").count() == 4
+        assert page.locator("figure svg").count() == 5
         drawn = "() => [...document.querySelectorAll('figure svg')].every((one) => one.clientHeight > 150)"
         assert page.evaluate(drawn)
         assert not page.evaluate("() => document.documentElement.scrollWidth > innerWidth")

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from drawn import symmetric_hall
 from driver import settle
 from rooms import l_room
 
-from algorithms.casefiles import Case, read_case
+from algorithms.casefiles import Case
 from algorithms.methods import METHODS
 from algorithms.observation import Observation
 from algorithms.pose import Pose2
 from app.palette import LIGHT
-from app.paths import samples
 from app.server import make_server
 
 pytestmark = pytest.mark.browser
@@ -91,8 +91,8 @@ def test_a_method_without_a_proof_says_so_on_the_page_of_the_proof(tab):
 
 
 def test_a_rival_that_leaves_the_answer_in_doubt_is_drawn_and_told(open_tab):
-    corridor = read_case(samples()["corridor_r3_r2"])
-    own = make_server(port=0, initial=corridor)
+    hall, (seen, _) = symmetric_hall()
+    own = make_server(port=0, initial=Case("a hall", hall, hall, (seen,), "", None))
     try:
         tab = open_tab(at=own)
         tab.press("Instant")
