@@ -64,6 +64,10 @@ class Truth:
         if not (self.tolerance_m > 0 and self.tolerance_rad > 0):
             raise SettingError("truth: both tolerances must be positive")
 
+    def allows(self, distance: float, angle: float) -> bool:
+        """Whether a transform that is off by so much is right; metres at the observed robot, radians."""
+        return distance <= self.tolerance_m and angle <= self.tolerance_rad
+
 
 @dataclass(frozen=True, eq=False)
 class Case:

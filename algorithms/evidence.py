@@ -68,7 +68,6 @@ class Evidence:
     rigid_agreeing, rigid_contradicting : the same with the maps as they are
     across   : agreeing wall that runs across the direction of most of it; the maps as they are. It is what
                keeps map 2 from sliding along a corridor
-    opposite : wall that is one in both maps, but seen from opposite sides; the maps as they are
     floor    : free floor that both have seen; m²
     slip     : how far patches slipped, root of the mean square over the agreeing wall
     apart    : where patches slipped by far, the farthest first
@@ -79,7 +78,6 @@ class Evidence:
     rigid_agreeing: float
     rigid_contradicting: float
     across: float = 0.0
-    opposite: float = 0.0
     floor: float = 0.0
     slip: float = 0.0
     apart: tuple[Apart, ...] = ()
@@ -130,7 +128,6 @@ def evidence(
         rigid_agreeing=rigid_agreeing,
         rigid_contradicting=sum(side.contradicting for side in sides),
         across=max(0.0, rigid_agreeing - one_way) / 2,
-        opposite=sum(side.opposite for side in sides),
         floor=sum(side.floor() for side in sides) / 2,
         slip=sqrt(squared / agreeing) if agreeing else 0.0,
         apart=tuple(sorted(apart, key=lambda place: (-place.metres, place.x, place.y))),
@@ -151,7 +148,7 @@ class _Slipped:
 class _Side:
     """One map's walls looked up in the other map as they lie, ``at`` in its cells.
 
-    agreeing, contradicting, opposite : metres, as in ``Evidence``
+    agreeing, contradicting : metres, as they lie
     """
 
     def __init__(
@@ -170,14 +167,11 @@ class _Side:
         at = self._T.apply(points) / target.grid.resolution
         sides = sectors(facing, self._T.theta)
         seen, agreeing = np.zeros(len(at), dtype=np.bool_), np.zeros(len(at))
-        contradicting, opposite = _look_up(
-            at, sides, target.level, target.sides, target.grid.free, seen, agreeing
-        )
+        contradicting = _look_up(at, sides, target.level, target.sides, target.grid.free, seen, agreeing)
         self.agreeing, self.contradicting = (
             float(agreeing.sum()) * source.metres,
             contradicting * source.metres,
         )
-        self.opposite = opposite * source.metres
         self._points, self._at, self._sides = points[seen], at[seen], sides[seen]
         self._facing, self._agreeing = facing[seen], agreeing[seen]
 
@@ -264,13 +258,13 @@ def _look_up(
     free: BoolArray,
     seen: BoolArray,
     agreeing: FloatArray,
-) -> tuple[float, float]:
-    """Points of wall that contradict, and those that were seen from the other side.
+) -> float:
+    """Points of wall that contradict.
 
     seen     : (N,) filled: which both robots should have seen
     agreeing : (N,) filled: by how much they are one wall
     """
-    contradicting, opposite = 0.0, 0.0
+    contradicting = 0.0
     for n in range(len(at)):
         col, row = int(np.floor(at[n, 0])), int(np.floor(at[n, 1]))
         if not (0 <= row < level.shape[0] and 0 <= col < level.shape[1]):
@@ -279,12 +273,10 @@ def _look_up(
         same = SHARES[near]
         if sides[n] == ANY_SIDE or (facing[row, col] >> sides[n]) & 1:
             agreeing[n] = same
-        else:
-            opposite += same
         if free[row, col]:
             contradicting += 1 - same
         seen[n] = free[row, col] or near >= NEAR
-    return contradicting, opposite
+    return contradicting
 
 
 @kernel

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -147,3 +148,13 @@ class GridMap:
         corner = self.origin.apply(np.array([self.width * self.resolution, 0.0]))
         origin = Pose2(-float(corner[0]), float(corner[1]), wrap_angle(-self.origin.theta))
         return replace(self, cells=np.ascontiguousarray(self.cells[:, ::-1]), origin=origin)
+
+
+def remarks_on(maps: Sequence[GridMap | None]) -> tuple[str, ...]:
+    """What is odd about how maps were read, in sentences that name them; None where one is not there yet."""
+    return tuple(
+        f"Map {number} ({grid.name}): {remark}."
+        for number, grid in enumerate(maps, 1)
+        if grid is not None
+        for remark in grid.remarks
+    )

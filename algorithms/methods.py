@@ -25,6 +25,7 @@ from algorithms.chain import Memo
 from algorithms.gridmap import GridMap
 from algorithms.observation import Observation, as_observations, check_standing
 from algorithms.pipeline import PipelineConfig, RefineConfig
+from algorithms.ranking import WINDOW_EDGE
 from algorithms.smm import CandidateConfig
 from algorithms.steps import CauseDetail, MergeResult, Step
 from algorithms.window import WindowConfig
@@ -66,7 +67,7 @@ METHODS: dict[str, Method] = {
         "Spectra, swarm, proven optimum",
         PipelineConfig(
             augment=AugmentConfig(spread=4.0),
-            window=WindowConfig(kind="coupled", deviations=3.5),
+            window=WindowConfig(kind="coupled", deviations=WINDOW_EDGE),
             refine=RefineConfig(objective="agreement"),
             proof=ProofConfig(whole_circle=True),
             whole_maps=True,

@@ -15,7 +15,7 @@ import numpy as np
 
 from algorithms import observation, pipeline
 from algorithms.errors import MapMergeError
-from algorithms.gridmap import GridMap
+from algorithms.gridmap import GridMap, remarks_on
 from algorithms.observation import Observation, check_standing
 from algorithms.pose import Pose2
 from algorithms.steps import CauseDetail, MergeResult, TriedDetail
@@ -95,15 +95,6 @@ def _causes(mov: GridMap) -> list[list[Cause]]:
     return causes
 
 
-def remarks_on(ref: GridMap, mov: GridMap) -> tuple[str, ...]:
-    """What is odd about how two maps were read, in sentences that name them."""
-    return tuple(
-        f"Map {number} ({grid.name}): {remark}."
-        for number, grid in enumerate((ref, mov), 1)
-        for remark in grid.remarks
-    )
-
-
 def find_cause(
     ref: GridMap,
     mov: GridMap,
@@ -114,7 +105,7 @@ def find_cause(
 
     config : of the default method
     """
-    told = " ".join(remarks_on(ref, mov))
+    told = " ".join(remarks_on((ref, mov)))
     causes = _causes(mov)
     ref, mov = _coarse(ref), _coarse(mov)
     total, number = sum(map(len, causes)), 0

@@ -203,6 +203,11 @@ def merges_of(probability: float) -> str:
     return f"{thousand:,} of 1,000 such merges {'is' if thousand == 1 else 'are'} right"
 
 
+def _share(share: float) -> str:
+    """Per cent, downwards: what is not all of it is not 100%."""
+    return f"{int(share * 100 + 1e-9)}%"
+
+
 def _sentence(clause: str) -> str:
     return clause[:1].upper() + clause[1:]
 
@@ -210,7 +215,7 @@ def _sentence(clause: str) -> str:
 def _accepted(outcome: Outcome, likely: float, told: Evidence) -> str:
     if outcome is Outcome.MERGED:
         return (
-            f"Merged: {merges_of(likely)}. The maps agree on {1 - told.contradiction:.0%} of the "
+            f"Merged: {merges_of(likely)}. The maps agree on {_share(1 - told.contradiction)} of the "
             f"{told.shared_wall:.0f} m of wall that both robots should have seen."
         )
     return (

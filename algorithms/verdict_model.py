@@ -69,7 +69,7 @@ QUANTITIES: dict[str, Quantity] = {
         lambda fit: _log(fit.evidence.rigid_contradicting) - _log(fit.evidence.rigid_agreeing),
     ),
     "unbent": Quantity(
-        "contradiction left when patches slip",
+        "left when patches slip",
         "Contradicting wall that is left when every patch of 7 m may slip by 0.6 m to where it fits best, "
         "against the floor that both robots saw.",
         False,

@@ -75,11 +75,6 @@ class WallMap:
     def _stride(self) -> int:
         return max(1, ceil(sqrt(self.grid.cells.size / MOST_FLOOR)))
 
-    @property
-    def wall(self) -> float:
-        """All wall that was seen; metres."""
-        return len(self.points) * self.metres
-
 
 def make_wall_map(grid: GridMap) -> WallMap:
     """Make a map ready; some 5 ms for 500 × 500 cells."""

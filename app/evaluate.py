@@ -242,7 +242,7 @@ def judge_case(case: Case, result: MergeResult | None) -> dict[str, Any] | None:
     else:
         assert distance is not None
         assert angle is not None
-        right = distance <= truth.tolerance_m and angle <= truth.tolerance_rad
+        right = truth.allows(distance, angle)
         fine = distance <= FINE_M and angle <= FINE_RAD
     return {
         "distance": distance,

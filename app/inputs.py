@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from algorithms.casefiles import Case, Truth
-from algorithms.gridmap import GridMap
+from algorithms.gridmap import GridMap, remarks_on
 from algorithms.observation import Encounter, Observation, encounter, name_of
 
 
@@ -103,13 +103,7 @@ class Inputs:
 
     def readings(self) -> tuple[str, ...]:
         """What is odd about how the maps were read, in sentences."""
-        grids = ((1, self.ref), (2, self.mov))
-        return tuple(
-            f"Map {number}: {remark}."
-            for number, grid in grids
-            if grid is not None
-            for remark in grid.remarks
-        )
+        return remarks_on((self.ref, self.mov))
 
     def doubts(self) -> tuple[str, ...]:
         """What is odd about each sighting, as a sentence; empty where nothing is."""

@@ -260,8 +260,7 @@ def _example(
 def _is_right(T: Pose2, truth: Truth | None, result: MergeResult) -> bool:
     if truth is None or truth.T_ref_mov is None:
         return False
-    distance, angle = pose_error(T, truth.T_ref_mov, result.encounter.x_mov)
-    return distance <= truth.tolerance_m and angle <= truth.tolerance_rad
+    return truth.allows(*pose_error(T, truth.T_ref_mov, result.encounter.x_mov))
 
 
 if __name__ == "__main__":

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from algorithms.gridmap import GridMap
+from algorithms.gridmap import GridMap, remarks_on
 from algorithms.methods import DEFAULT_METHOD, METHODS, merge, run_explained
 from algorithms.observation import mirrored
 from algorithms.pose import Pose2
-from algorithms.refusal_causes import find_cause, remarks_on
+from algorithms.refusal_causes import find_cause
 from algorithms.steps import CauseDetail, TriedDetail
 
 CONFIG = METHODS[DEFAULT_METHOD].defaults
@@ -81,7 +81,7 @@ def test_how_a_map_was_read_is_told_where_no_change_helps(strangers):
     odd = with_mov(strangers, replace(strangers.mov, remarks=("no wall was read in it",)))
     *_, last = find_cause(odd.ref, odd.mov, odd.observations, CONFIG)
     assert "no wall was read in it" in last.hint
-    assert remarks_on(odd.ref, odd.mov) == ("Map 2 (hall): no wall was read in it.",)
+    assert remarks_on((odd.ref, odd.mov)) == ("Map 2 (hall): no wall was read in it.",)
 
 
 def test_every_change_is_told_before_it_is_tried(strangers):

@@ -49,9 +49,14 @@ def test_the_known_pose_is_merged_with_its_numbers_in_the_sentence():
     assert verdict.accepted
     assert verdict.reason.startswith("Merged: ")
     assert "of 1,000 such merges are right" in verdict.reason
-    assert f"{1 - verdict.contradiction:.0%}" in verdict.reason
+    assert "agree on 100% of" in verdict.reason
     assert f"{verdict.shared_wall:.0f} m" in verdict.reason
     assert verdict.deviation < 0.5
+
+
+def test_what_is_not_all_of_the_wall_is_not_told_to_be_all():
+    verdict = verdict_on(told(replace(CLEAN, agreeing=999.0, contradicting=1.0)))
+    assert "agree on 99% of the 1000 m" in verdict.reason
 
 
 def test_a_wrong_turn_is_refused_because_the_maps_contradict_each_other():

@@ -37,15 +37,11 @@ def mismatch(a: Case, b: Case) -> Case:
 
 def crossed(a: Observation, b: Observation) -> Observation:
     """What the observer of ``a`` measured, as if it had seen the robot of ``b``."""
-    return Observation(
-        observer=a.observer,
+    return replace(
+        a,
         observed_x=b.observed_x,
         observed_y=b.observed_y,
         observed_heading=b.observed_heading,
-        range=a.range,
-        bearing=a.bearing,
-        sigma_range=a.sigma_range,
-        sigma_bearing=a.sigma_bearing,
         bearing_back=b.bearing_back,
     )
 

@@ -85,7 +85,7 @@ def add_reading(parser: Parser) -> None:
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, write and tell; the exit status."""
     from algorithms import methods
-    from algorithms.refusal_causes import remarks_on
+    from algorithms.gridmap import remarks_on
     from app.flags import config_from
     from app.inputs import Inputs
     from app.progress import result_of
@@ -101,7 +101,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     began = perf_counter()
     ref, mov, observations = read_inputs(args)
     load_s = perf_counter() - began
-    warnings = remarks_on(ref, mov)
+    warnings = remarks_on((ref, mov))
     for warning in warnings:
         print(f"warning: {warning}", file=sys.stderr)
     _check_folder(args)

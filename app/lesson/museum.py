@@ -99,7 +99,7 @@ class Museum:
         if exhibit is None or inputs is not self._inputs or truth is None or truth.T_ref_mov is None:
             return
         distance, angle = pose_error(result.T_ref_mov, truth.T_ref_mov, result.encounter.x_mov)
-        right = distance <= truth.tolerance_m and angle <= truth.tolerance_rad
+        right = truth.allows(distance, angle)
         verdict = "accepted" if result.verdict.accepted else "refused"
         where = apart_by(distance, angle)
         if (method, config) == self._failing(exhibit) and not right:

@@ -174,7 +174,7 @@ NUMBERS: dict[str, Number] = {
     "floor_m2": (_RESULT, lambda s: _n(_verdict(s).shared_floor, 0)),
     "answers_weighed": (_RESULT, lambda s: str(len(s.get(MergeResult).weighed))),
     "probability": (_RESULT, lambda s: likelihood(_verdict(s).probability)),
-    "accept_from": ((), lambda s: f"{s.config.verdict.accept_from:.1%}"),
+    "accept_from": ((), lambda s: f"{s.config.verdict.accept_from:.3g}"),
     "bent_from": ((), lambda s: f"{s.config.verdict.bent_from:.0%}"),
     "verdict": (_RESULT, lambda s: _verdict(s).reason),
 }

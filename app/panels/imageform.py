@@ -18,6 +18,7 @@ import viser
 from algorithms.errors import SettingError
 from algorithms.gridmap import COARSEST, FARTHEST, FINEST, FREE, FREE_UP_TO, OCCUPIED_FROM, CellArray
 from algorithms.mapio import GreyImage, MapMeta, Shading, grey_image, meta_to_bytes, parse_meta
+from algorithms.mapio.reading import MOST_WALL
 from algorithms.mapio.shading import MODES
 from algorithms.pose import Pose2
 from app import render
@@ -29,7 +30,7 @@ from app.png import data_uri
 
 RESOLUTION = 0.05  # metres per cell: what most robots' maps have
 PREVIEW = 280  # pixels of a side at most: as wide as the panel, so that every pixel is a square of its own
-MOST_WALL, LEAST_FREE = 0.5, 0.02  # shares that no map of a building has
+LEAST_FREE = 0.02  # a share that no map of a building has
 
 Shares = tuple[float, float, float]  # wall, free, neither
 

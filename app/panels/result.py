@@ -93,7 +93,7 @@ def numbers(result: MergeResult, inputs: Inputs, config: Any = None) -> list[tup
         index = performance_index(result.fusion, fuse(inputs.ref, inputs.mov, truth))
         rows.append(("eq. (23), over the true overlap", _share(index)))
         apart, turned = pose_error(result.T_ref_mov, truth, result.encounter.x_mov)
-        right = apart <= inputs.truth.tolerance_m and turned <= inputs.truth.tolerance_rad
+        right = inputs.truth.allows(apart, turned)
         rows.append(
             (
                 "error to the truth" if right else "✗ WRONG: error to the truth",
