@@ -5,6 +5,7 @@ By a proxy of our own that reads that file; and by nginx itself, where there is 
 
 from __future__ import annotations
 
+import asyncio
 import re
 import socket
 import ssl
@@ -15,8 +16,8 @@ import trustme
 import wire
 from proxy import EXAMPLE, PROXIES, ours
 from strangers import PATIENCE, SPEAKS
+from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
-from websockets.sync.client import connect
 
 from app.access import access_for
 from app.arrivals import PATH
@@ -43,16 +44,21 @@ class Outside:
 
     def connect(self, cookie="", origin=None, to=""):
         """The page's own connection, which goes to the folder without its slash, or to something in it."""
-        connect(
-            f"wss://{self.host}/maps{to}",
-            sock=self.knock(),
-            ssl=self.context,
-            server_hostname=NAME,
-            subprotocols=SPEAKS,
-            origin=origin or f"https://{self.host}",
-            additional_headers={"Cookie": cookie},
-            open_timeout=wire.PATIENCE,
-        ).close()
+
+        async def come() -> None:  # one thread: two may not share a TLS connection
+            async with connect(
+                f"wss://{self.host}/maps{to}",
+                host="127.0.0.1",
+                ssl=self.context,
+                server_hostname=NAME,
+                subprotocols=SPEAKS,
+                origin=origin or f"https://{self.host}",
+                additional_headers={"Cookie": cookie},
+                open_timeout=wire.PATIENCE,
+            ):
+                pass
+
+        asyncio.run(come())
 
     def enter(self):
         """The cookie that the token is changed for, and all that was said with it."""
