@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, log, sqrt
+from math import ceil, floor, log, sqrt
 from typing import Annotated
 
 import cv2
@@ -21,7 +21,7 @@ from algorithms.augment import AugmentConfig
 from algorithms.bounds import Bounds, check_bounds
 from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, BoolArray, CellArray, GridMap, where
 from algorithms.objective import PAD, Float32Array, Lookup, Objective, Side
-from algorithms.observation import Encounter
+from algorithms.observation import Encounter, robots_of
 from algorithms.pose import FloatArray
 from algorithms.window import CoupledWindow
 
@@ -83,7 +83,8 @@ def make_agreement(
                    intensity does not matter here
     window       : what a transform deviates from its sightings is taken off: half a squared standard
                    deviation costs ``config.evidence`` metres of wall
-    robot_size   : so near to an encounter there is a robot and no wall; metres
+    robot_size   : so near to a place where a robot is known to have stood nothing speaks for or against;
+                   metres
     """
     precision = np.asarray(np.linalg.inv(augmentation.covariance()), dtype=np.float64)
     far = REACH * sqrt(float(np.linalg.eigvalsh(augmentation.covariance())[-1]))
@@ -91,15 +92,17 @@ def make_agreement(
     x_mov = np.array([at.x_mov for at in encounters])
     # points lie within ``far`` of an encounter; a transform may be off by as much again
     around_ref, around_mov = _surroundings(ref, x_ref, 2 * far), _surroundings(mov, x_mov, 2 * far)
-    sides = []
-    for grid, table_of, source, points_of, anchors, backward in (
-        (ref, around_ref, mov, around_mov, x_mov, False),
-        (mov, around_mov, ref, around_ref, x_ref, True),
+    sides, robots = [], robots_of(encounters, robot_size)
+    for grid, table_of, stood, source, points_of, anchors, backward in (
+        (ref, around_ref, robots.in_ref, mov, around_mov, x_mov, False),
+        (mov, around_mov, robots.in_mov, ref, around_ref, x_ref, True),
     ):
         points, nearness = _weighted_surface(source, points_of, anchors, precision, robot_size)
+        table = wall_field(table_of.walls, table_of.free, grid.resolution, config.blur, config.penalty)
+        clear(table, grid, table_of.corner, stood, robot_size)
         side = Side(
             grid=grid,
-            table=wall_field(table_of.walls, table_of.free, grid.resolution, config.blur, config.penalty),
+            table=table,
             corner=table_of.corner,
             anchor=anchors[0],
             points=points - anchors[0],
@@ -146,6 +149,21 @@ def wall_field(
     """
     near = np.exp(-0.5 * (distance_to_walls(walls) * np.float32(cell / blur)) ** 2)
     return np.pad(near - np.float32(penalty) * free * (1 - near), PAD).astype(np.float32)
+
+
+def clear(table: Float32Array, grid: GridMap, corner: FloatArray, places: FloatArray, radius: float) -> None:
+    """Make a ``wall_field`` say nothing around places: the maker of the map stood there, and what the
+    other map shows there is the robot.
+
+    corner : (2,) column and row of the table's first cell, its pads apart, in the map
+    places : (N, 2) metres, the map's frame
+    """
+    reach = radius / grid.resolution
+    for col, row in (grid.grid_coordinates(places) - corner + PAD).tolist():
+        rows = np.arange(max(0, floor(row - reach)), min(len(table), ceil(row + reach)))
+        cols = np.arange(max(0, floor(col - reach)), min(table.shape[1], ceil(col + reach)))
+        within = np.hypot(rows[:, None] + 0.5 - row, cols + 0.5 - col) < reach
+        table[np.ix_(rows, cols)] *= ~within
 
 
 def _weighted_surface(

@@ -17,7 +17,7 @@ from algorithms.errors import SettingError
 from algorithms.fuse import Fusion, fuse
 from algorithms.gridmap import GridMap
 from algorithms.objective import Lookup, Objective
-from algorithms.observation import Encounter, Observation, check_standing, encounter, robots_of
+from algorithms.observation import Encounter, Observation, check_standing, encounters_of, robots_of
 from algorithms.pipeline import (
     OPTIMISERS,
     PipelineConfig,
@@ -74,7 +74,7 @@ class Scales:
     @cached_property
     def encounters(self) -> tuple[Encounter, ...]:
         """Where robot 2 was seen, in both maps."""
-        return tuple(encounter(observation) for observation in self.observations)
+        return encounters_of(self.observations, self.ref, self.mov)
 
     @cached_property
     def objective(self) -> Objective | None:

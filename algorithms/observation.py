@@ -111,7 +111,7 @@ class Encounter:
 
     x_ref      : (2,) x̂1 in the ref frame; metres
     x_mov      : (2,) x̂2 in the mov frame; metres
-    covariance : (2, 2) of x̂1 from range and bearing, first order; m²
+    covariance : (2, 2) of x̂1 from range, bearing and the maps' cells, first order; m²
     observer   : (2,) P_R1 in the ref frame; metres; None where it is not known
     """
 
@@ -149,11 +149,22 @@ def robots_of(encounters: Sequence[Encounter], size: float) -> Robots:
     return Robots(np.array(observers).reshape(-1, 2), np.array(observed).reshape(-1, 2), size)
 
 
-def encounter(observation: Observation) -> Encounter:
+def encounters_of(
+    observations: Sequence[Observation], ref: GridMap | None, mov: GridMap | None
+) -> tuple[Encounter, ...]:
+    """The encounter of each observation, in these two maps; a map that is not there yet is exact."""
+    cell = hypot(*(grid.resolution for grid in (ref, mov) if grid is not None))
+    return tuple(encounter(observation, cell) for observation in observations)
+
+
+def encounter(observation: Observation, cell: float = 0.0) -> Encounter:
     """x̂1 = P_R1 + C(φ1) R1_P_R2 and x̂2 = P_R2 (section III-B), with the covariance of x̂1.
 
     Where the range's own deviation reaches back to 0, the robots may have stood at one place, and then a
-    bearing says nothing: the nearer to that, the more the range's deviation holds across, too.
+    bearing says nothing: the nearer to that, the more the range's deviation holds across, too. And a map
+    knows its walls to a cell, so that robots stand among them no better than that.
+
+    cell : edge of a square over which both maps' cells together spread a place evenly; metres
     """
     o = observation
     direction = o.observer.theta + o.bearing
@@ -163,6 +174,7 @@ def encounter(observation: Observation) -> Encounter:
     covariance = jacobian @ np.diag([o.sigma_range**2, o.sigma_bearing**2]) @ jacobian.T
     at_one_place = exp(-0.5 * (o.range / o.sigma_range) ** 2)  # likelihood of range 0 over the likeliest
     covariance += np.outer(across, across) * (at_one_place * o.sigma_range) ** 2
+    covariance += np.eye(2) * cell**2 / 12
     return Encounter(
         x_ref=o.observer.xy + o.range * along,
         x_mov=np.array([o.observed_x, o.observed_y]),

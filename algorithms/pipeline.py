@@ -21,7 +21,7 @@ from algorithms.fuse import Conflict, Fusion, fuse
 from algorithms.gridmap import GridMap
 from algorithms.montecarlo import monte_carlo
 from algorithms.objective import Lookup, Objective, make_objective
-from algorithms.observation import Encounter, Observation, encounter, robots_of
+from algorithms.observation import Encounter, Observation, encounters_of, robots_of
 from algorithms.polish import Peak, covariance_of, peak_at, polish
 from algorithms.pose import FloatArray, Pose2, pose_error
 from algorithms.ranking import Weighed, better_beside, elsewhere, ranked, weigh
@@ -125,8 +125,8 @@ def run(
     chain = Chain({} if memo is None else memo)
     seen: ObservationDetail = yield from chain.stage(
         "observe",
-        (observations,),
-        lambda: [ObservationDetail(tuple(encounter(observation) for observation in observations))],
+        (ref, mov, observations),
+        lambda: [ObservationDetail(encounters_of(observations, ref, mov))],
     )
     augmented: AugmentDetail = yield from chain.stage(
         "augment",

@@ -17,7 +17,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from algorithms.agreement import wall_field
+from algorithms.agreement import clear, wall_field
 from algorithms.evidence import Evidence, evidence
 from algorithms.gridmap import GridMap
 from algorithms.kernels import spread
@@ -55,7 +55,7 @@ _PARABOLOID = np.linalg.pinv(
 class WholeMaps:
     """Both maps made ready.
 
-    robots : around them there is no wall to weigh; a climb does not know that
+    robots : around them there is no wall to weigh
     window : the sightings; what a transform deviates from them is taken off its value
     trust  : what half a squared standard deviation off a sighting costs; metres of wall
     """
@@ -145,9 +145,12 @@ class WholeMaps:
         anchor = self.window.x_ref[0] if backward else self.window.x_mov[0]
         stride = max(1, ceil(len(source.points) / MOST_POINTS))
         points = source.grid.origin.apply(source.points[::stride])
+        table = wall_field(grid.occupied, grid.free, grid.resolution, blur)
+        stood = self.robots.in_mov if backward else self.robots.in_ref  # in the target's own frame
+        clear(table, grid, np.zeros(2), stood, self.robots.size)
         return Side(
             grid=grid,
-            table=wall_field(grid.occupied, grid.free, grid.resolution, blur),
+            table=table,
             corner=np.zeros(2),
             anchor=anchor,
             points=points - anchor,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from algorithms.casefiles import Case, Truth
 from algorithms.gridmap import GridMap, remarks_on
-from algorithms.observation import Encounter, Observation, encounter, name_of
+from algorithms.observation import Encounter, Observation, encounters_of, name_of
 
 
 @dataclass(frozen=True)
@@ -58,12 +58,12 @@ class Inputs:
     @property
     def encounters(self) -> tuple[Encounter, ...]:
         """Where robot 2 was seen, in both maps; a place per sighting."""
-        return tuple(encounter(observation) for observation in self.observations)
+        return encounters_of(self.observations, self.ref, self.mov)
 
     @property
     def at(self) -> Encounter | None:
         """Where robot 2 was seen first."""
-        return encounter(self.observations[0]) if self.observations else None
+        return self.encounters[0] if self.observations else None
 
     @property
     def complete(self) -> bool:
@@ -112,8 +112,8 @@ class Inputs:
     def _doubt(self, number: int) -> str:
         o = self.observations[number - 1]
         for robot, grid, point, key in (
-            (1, self.ref, o.observer.xy, "observer.pose"),
-            (2, self.mov, encounter(o).x_mov, "observed.pose"),
+            (1, self.ref, (o.observer.x, o.observer.y), "observer.pose"),
+            (2, self.mov, (o.observed_x, o.observed_y), "observed.pose"),
         ):
             if grid is not None and not grid.contains(point):
                 return (

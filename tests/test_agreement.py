@@ -49,6 +49,23 @@ def test_a_wall_in_the_others_free_floor_takes_back_the_penalty_times_its_length
         )
 
 
+def test_robots_that_stand_in_each_others_maps_say_nothing():
+    """Map 1 shows robot 2 at (4, 4), map 2 shows robot 1 at (2, 4); their walls are the same."""
+    walls = [(1.0, 6.0, 7.0, 6.05)]
+    at = replace(MIDDLE, observer=np.array([2.0, 4.0]))
+    ring_1, ring_2 = (hall([*walls, (x - 0.2, 3.8, x + 0.2, 4.2)]) for x in (4.0, 2.0))
+
+    def weigh(ref, mov, size):
+        return float(
+            make_agreement(ref, mov, [at], WIDE, AgreementConfig(), None, Lookup.NEAREST, size)(
+                Pose2().array()[None]
+            )[0]
+        )
+
+    assert weigh(ring_1, ring_2, 0.5) == pytest.approx(weigh(hall(walls), hall(walls), 0.5), rel=1e-6)
+    assert weigh(ring_1, ring_2, 0.0) < weigh(ring_1, ring_2, 0.5) - 1
+
+
 def test_the_unknown_says_nothing():
     wall, blind = hall([(2.0, 4.0, 6.0, 4.05)]), hall(floor=UNKNOWN)
     assert value(wall, blind) == 0

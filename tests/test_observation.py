@@ -7,7 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from algorithms.errors import SettingError
-from algorithms.observation import bilateral_covariance, bilateral_transform, check_standing, encounter
+from algorithms.gridmap import GridMap
+from algorithms.observation import (
+    bilateral_covariance,
+    bilateral_transform,
+    check_standing,
+    encounter,
+    encounters_of,
+)
 from algorithms.pose import Pose2, pose_error
 
 in_flat = st.builds(Pose2, st.floats(0, 9), st.floats(0, 7), st.floats(-np.pi, np.pi))
@@ -49,6 +56,25 @@ def test_robots_at_one_place_are_known_to_a_disc_of_the_deviation_of_the_range()
     together = replace(SEEN, range=0.0, sigma_range=0.07)
     assert encounter(together).covariance == pytest.approx(0.07**2 * np.eye(2), abs=1e-12)
     assert encounter(together).x_ref == pytest.approx(together.observer.xy)
+
+
+@given(cell=st.floats(0.001, 0.5))
+def test_coarse_cells_leave_the_place_of_the_seen_robot_less_certain_in_every_direction(cell):
+    exact, coarse = encounter(SEEN).covariance, encounter(SEEN, cell).covariance
+    spread = np.random.default_rng(1).uniform(-cell / 2, cell / 2, 100_000).var()
+    np.testing.assert_allclose(np.linalg.eigvalsh(coarse - exact), spread, rtol=0.02)
+
+
+def test_the_encounters_in_two_maps_know_the_cells_of_both():
+    fine, coarse = (GridMap(np.zeros((9, 9), dtype=np.int8), cell) for cell in (0.05, 0.25))
+    grown = [
+        np.trace(encounters_of([SEEN], *grids)[0].covariance)
+        for grids in ((fine, fine), (fine, coarse), (coarse, coarse))
+    ]
+    assert grown == sorted(grown)
+    assert encounters_of([SEEN], fine, coarse)[0].covariance == pytest.approx(
+        encounters_of([SEEN], coarse, fine)[0].covariance
+    )
 
 
 def test_the_covariance_is_what_noise_on_the_measurement_does():

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from algorithms import kernels
+from algorithms.gridmap import OCCUPIED
 from algorithms.methods import METHODS, merge
 from algorithms.observation import encounter
 from algorithms.pose import Pose2, pose_error
@@ -57,6 +58,17 @@ def test_an_answer_climbs_to_the_known_pose_and_never_down(dx, dy, degrees):
     distance, turn = pose_error(found, T, AT.x_mov)
     assert found == begun or (distance < 0.08 and turn < radians(1))
     assert found != begun or WHOLE.value(T) < WHOLE.value(begun) + 2 * WORTH_MOVING
+
+
+def test_a_robot_that_stands_in_the_others_map_does_not_move_the_climb():
+    """Map 1 shows robot 2, where it was seen, as a block of wall."""
+    cells = REF.cells.copy()
+    col, row = REF.grid_coordinates(AT.x_ref).astype(int)
+    cells[row - 2 : row + 3, col - 2 : col + 3] = OCCUPIED
+    seen = whole_of(replace(REF, cells=cells), MOV, AT)
+    assert seen.value(T) == pytest.approx(WHOLE.value(T), abs=0.3)
+    blind = make_whole_maps(seen.ref.grid, seen.mov.grid, [AT], WHOLE.window, 0.25, 0.0)
+    assert blind.value(T) < WHOLE.value(T) - 0.5
 
 
 def test_an_answer_at_the_top_stays_where_it_is():

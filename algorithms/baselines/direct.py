@@ -10,7 +10,7 @@ from algorithms.chain import Chain, Memo
 from algorithms.conclude import conclude
 from algorithms.fuse import Conflict, Fusion, fuse
 from algorithms.gridmap import GridMap
-from algorithms.observation import Encounter, Observation, encounter, robots_of
+from algorithms.observation import Encounter, Observation, encounters_of, robots_of
 from algorithms.pose import FloatArray, Pose2
 from algorithms.ranking import better_beside, weigh
 from algorithms.steps import AnswersDetail, ObservationDetail, Step, WeighedDetail
@@ -54,8 +54,8 @@ def run_direct(
     chain = Chain({} if memo is None else memo)
     seen: ObservationDetail = yield from chain.stage(
         "observe",
-        (observations,),
-        lambda: [ObservationDetail(tuple(encounter(observation) for observation in observations))],
+        (ref, mov, observations),
+        lambda: [ObservationDetail(encounters_of(observations, ref, mov))],
     )
     found, covariance = yield from search(chain)
     best, size = found.answers[0], config.verdict.robot_size

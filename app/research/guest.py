@@ -9,7 +9,7 @@ from typing import Any
 from algorithms.fuse import fuse
 from algorithms.gridmap import GridMap
 from algorithms.methods import METHODS
-from algorithms.observation import Observation, encounter
+from algorithms.observation import Observation, encounters_of
 from algorithms.pose import Pose2
 from algorithms.steps import Answer, AnswersDetail, AugmentDetail, ObservationDetail, Step
 from app.panels.tables import box, table
@@ -52,7 +52,7 @@ class Guest:
         augmented = own.get(AugmentDetail)
         if augmented is not None:
             story.tell(Step("augment", augmented, 0.0))
-        encounters = tuple(encounter(observation) for observation in seen)
+        encounters = encounters_of(seen, ref, mov)
         answers = AnswersDetail((Answer(self.pose, 0.0, "of another method"),))
         for stage, detail in (
             ("observe", ObservationDetail(encounters)),
