@@ -19,7 +19,7 @@ from html import escape
 from ipaddress import ip_address
 from pathlib import Path
 
-from algorithms.errors import InputFileError, SettingError, unreadable
+from algorithms.common.errors import InputFileError, SettingError, unreadable
 
 LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
 TOKEN_VARIABLE = "MAPMELD_TOKEN"

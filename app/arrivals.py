@@ -24,7 +24,7 @@ import viser
 from viser._gui_handles import GuiUploadButtonHandle
 from websockets.exceptions import ConnectionClosed
 
-from algorithms.errors import InputFileError
+from algorithms.common.errors import InputFileError
 from app.gate import Gate, usable
 
 log = logging.getLogger(__name__)

@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from math import isfinite, log, sqrt
 from typing import Any
 
-from algorithms.errors import SettingError
+from algorithms.common.errors import SettingError
 from app.controls import Path, Setting, settings_of, what_became_of, with_value
 from app.sweep import SEEDS, Axis, Plan
 

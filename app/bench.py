@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator, Iterator
 from contextlib import closing
 from dataclasses import dataclass
 
-from algorithms.steps import Step
+from algorithms.methods.steps import Step
 from app.job import Job
 
 

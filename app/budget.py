@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from threading import Lock
 
-from algorithms.errors import TooLargeError
+from algorithms.common.errors import TooLargeError
 
 # Of the maps on all pages together. A page and its worker take about 27 bytes for a cell of its maps after
 # the first merge, and 43 with two results to go back to (measured with a pair of 4000 x 4000): 5 to 9 GB.

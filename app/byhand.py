@@ -10,12 +10,12 @@ from typing import Protocol
 
 import viser
 
-from algorithms.errors import MapMergeError
-from algorithms.handmade import Scales
-from algorithms.pipeline import PipelineConfig
-from algorithms.pose import Pose2, wrap_angle
-from algorithms.steps import MergeResult
-from algorithms.touch import Walls
+from algorithms.common.errors import MapMergeError
+from algorithms.common.pose import Pose2, wrap_angle
+from algorithms.methods.manual_merge import Scales
+from algorithms.methods.spectra_method import PipelineConfig
+from algorithms.methods.steps import MergeResult
+from algorithms.verdict.cell_agreement import Walls
 from app import words
 from app.channel import Channel
 from app.host import MapHost

@@ -6,11 +6,11 @@ from math import degrees
 
 import numpy as np
 
-from algorithms.certificate import ProofState
-from algorithms.pose import FloatArray
-from algorithms.smm import Candidate
-from algorithms.spectra import HoughMatch, ShiftMatch
-from algorithms.steps import TurnsDetail
+from algorithms.common.pose import FloatArray
+from algorithms.methods.steps import TurnsDetail
+from algorithms.optimisation.branch_and_bound import ProofState
+from algorithms.spectra.candidates import Candidate
+from algorithms.spectra.hough_spectra import HoughMatch, ShiftMatch
 from app.measure import Measure
 
 Columns = tuple[FloatArray, ...]

@@ -12,7 +12,7 @@ from contextlib import suppress
 from importlib import import_module
 from io import UnsupportedOperation
 
-from algorithms.errors import MapMergeError, NoAnswerError
+from algorithms.common.errors import MapMergeError, NoAnswerError
 from app.usage import Parser, did_you_mean
 
 PROG = "mapmeld"

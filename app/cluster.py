@@ -11,7 +11,7 @@ from concurrent.futures import CancelledError, ThreadPoolExecutor
 from threading import Event
 from typing import TYPE_CHECKING, Any
 
-from algorithms.errors import SettingError
+from algorithms.common.errors import SettingError
 from app.executor import Executor, Lost, Task, Work, unpacked
 from app.version import code, versions
 

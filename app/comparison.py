@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, get_args
 
-from algorithms.conflicts import Conflicts, Place
-from algorithms.pose import FloatArray
+from algorithms.common.pose import FloatArray
+from algorithms.verdict.contradictions import Conflicts, Place
 from app.palette import Palette, css
 from app.panels.places import MOST_PLACES
 from app.stage import Stage

@@ -9,9 +9,9 @@ from statistics import fmean, median
 from threading import Event
 from typing import Any
 
-from algorithms.casefiles import Case, case_folders, read_case
-from algorithms.errors import MapMergeError
-from algorithms.methods import METHODS
+from algorithms.common.errors import MapMergeError
+from algorithms.files.case_folder import Case, case_folders, read_case
+from algorithms.methods.registry import METHODS
 from app.evaluate import name_in
 from app.executor import Executor, Lost, Shared, Task
 from app.trial import Trial, attempt, true_fusion

@@ -8,8 +8,8 @@ from dataclasses import asdict
 from math import degrees
 from typing import Any
 
-from algorithms.casefiles import Case
-from algorithms.methods import METHODS
+from algorithms.files.case_folder import Case
+from algorithms.methods.registry import METHODS
 from app.contest import Configs, Score, Tally, tally
 from app.machine import machine
 from app.report import plain

@@ -15,7 +15,7 @@ from enum import Enum
 from functools import cache
 from typing import Any, Literal, get_args, get_origin, get_type_hints
 
-from algorithms.bounds import Bounds, bounds_of
+from algorithms.common.setting_bounds import Bounds, bounds_of
 
 Path = tuple[str, ...]
 

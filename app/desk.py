@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.methods import METHODS
-from algorithms.pose import Pose2
-from algorithms.steps import MergeResult
+from algorithms.common.pose import Pose2
+from algorithms.methods.registry import METHODS
+from algorithms.methods.steps import MergeResult
 from app.controls import settings_of, text_for, value_at
 from app.inputs import Files, Inputs
 from app.job import Goal

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from math import atan2, cos, hypot, sin
 from typing import Literal
 
-from algorithms.observation import SIGMA_BEARING, SIGMA_RANGE, Observation
-from algorithms.pose import Pose2, wrap_angle
+from algorithms.common.pose import Pose2, wrap_angle
+from algorithms.observations.observation import SIGMA_BEARING, SIGMA_RANGE, Observation
 
 Part = Literal["observer", "seen", "observed"]
 Point = tuple[float, float]

@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from algorithms import methods
-from algorithms.calibration import brier_score, calibration_error, reliability
-from algorithms.casefiles import (
+from algorithms.common.errors import InputFileError, MapMergeError, NoAnswerError
+from algorithms.common.pose import pose_error
+from algorithms.files.case_folder import (
     OBSERVATION_FILE,
     ROUGH_OBSERVATION_FILE,
     TRUTH_FILE,
@@ -29,10 +29,10 @@ from algorithms.casefiles import (
     read_case,
     read_truth,
 )
-from algorithms.errors import InputFileError, MapMergeError, NoAnswerError
-from algorithms.pose import pose_error
+from algorithms.methods import registry as methods
+from algorithms.methods.steps import MergeResult
 from algorithms.simulator.wrong_pairs import crossed
-from algorithms.steps import MergeResult
+from algorithms.verdict.calibration import brier_score, calibration_error, reliability
 from app.executor import Executor, Here, Lost, Task
 from app.report import plain, report_of
 

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from algorithms.casefiles import OBSERVATION_FILE, observations_to_bytes
-from algorithms.steps import MergeResult
+from algorithms.files.case_folder import OBSERVATION_FILE, observations_to_bytes
+from algorithms.methods.steps import MergeResult
 from app.errand import Check, unwatched
 from app.inputs import Inputs
 from app.report import (

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from algorithms.methods import DEFAULT_METHOD, METHODS
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from app.controls import Setting, settings_of, value_at, what_became_of, with_value
 from app.paths import samples
 from app.usage import Parser, did_you_mean

@@ -7,12 +7,12 @@ from functools import partial
 
 import viser
 
-from algorithms.casefiles import OBSERVATION_FILE, observations_to_bytes
-from algorithms.errors import MapMergeError
-from algorithms.handmade import Scales, known_answers, refine
-from algorithms.observation import Observation
-from algorithms.pose import Pose2
-from algorithms.steps import MergeResult, ObservationDetail, Step
+from algorithms.common.errors import MapMergeError
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import OBSERVATION_FILE, observations_to_bytes
+from algorithms.methods.manual_merge import Scales, known_answers, refine
+from algorithms.methods.steps import MergeResult, ObservationDetail, Step
+from algorithms.observations.observation import Observation
 from app.byhand import ByHand
 from app.desk import Desk
 from app.layout import Layout

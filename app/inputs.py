@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from algorithms.casefiles import Case, Truth
-from algorithms.gridmap import GridMap, remarks_on
-from algorithms.observation import Encounter, Observation, encounters_of, name_of
+from algorithms.files.case_folder import Case, Truth
+from algorithms.maps.grid_map import GridMap, remarks_on
+from algorithms.observations.observation import Encounter, Observation, encounters_of, name_of
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from algorithms import methods
-from algorithms.chain import Memo
-from algorithms.gridmap import GridMap
-from algorithms.observation import Observation
-from algorithms.steps import Step
+from algorithms.maps.grid_map import GridMap
+from algorithms.methods import registry as methods
+from algorithms.methods.stage_runner import Memo
+from algorithms.methods.steps import Step
+from algorithms.observations.observation import Observation
 
 Goal = Literal["merge", "candidates", "cause"]
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from algorithms.errors import OutputError, unreadable
+from algorithms.common.errors import OutputError, unreadable
 
 Record = dict[str, Any]
 

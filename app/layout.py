@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from algorithms.gridmap import UNKNOWN, GridMap
-from algorithms.observation import Encounter
-from algorithms.pose import FloatArray, Pose2
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.maps.grid_map import UNKNOWN, GridMap
+from algorithms.observations.observation import Encounter
 
 Rect = tuple[float, float, float, float]  # x low, y low, x high, y high; metres
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import viser
 
-from algorithms.errors import MapMergeError
-from algorithms.steps import AugmentDetail
+from algorithms.common.errors import MapMergeError
+from algorithms.methods.steps import AugmentDetail
 from app.desk import Desk
 from app.inputs import Files, Inputs
 from app.layout import Layout

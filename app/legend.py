@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from algorithms.fuse import Fusion
-from algorithms.steps import (
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import (
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import viser
 
-from algorithms.steps import MergeResult, RefineDetail
+from algorithms.methods.steps import MergeResult, RefineDetail
 from app import words
 from app.palette import DARK, LIGHT
 from app.panels.run import HEIGHTS, MAP, SWARM

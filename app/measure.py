@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
-from algorithms.baselines.features import FeatureConfig
-from algorithms.baselines.mse import MseConfig
-from algorithms.baselines.phase import PhaseCorrelationConfig
-from algorithms.baselines.smm_only import SmmConfig
+from algorithms.methods.baselines.carpin_spectra import SmmConfig
+from algorithms.methods.baselines.feature_matching import FeatureConfig
+from algorithms.methods.baselines.mse_registration import MseConfig
+from algorithms.methods.baselines.phase_correlation import PhaseCorrelationConfig
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 import viser
 
-from algorithms.errors import MapMergeError
+from algorithms.common.errors import MapMergeError
 
 log = logging.getLogger(__name__)
 

@@ -9,10 +9,10 @@ from typing import Any, Literal
 
 import viser
 
-from algorithms.casefiles import Case
-from algorithms.conflicts import Conflicts
-from algorithms.errors import InputFileError, MapMergeError, TooLargeError
-from algorithms.steps import MergeResult
+from algorithms.common.errors import InputFileError, MapMergeError, TooLargeError
+from algorithms.files.case_folder import Case
+from algorithms.methods.steps import MergeResult
+from algorithms.verdict.contradictions import Conflicts
 from app import words, workers
 from app.arrivals import Arrivals, Recipient
 from app.budget import Budget

@@ -13,8 +13,8 @@ from dataclasses import fields, is_dataclass
 from functools import cache
 from typing import Any
 
-from algorithms.search import SearchState
-from algorithms.steps import RefineDetail, Step
+from algorithms.methods.steps import RefineDetail, Step
+from algorithms.optimisation.optimiser import SearchState
 
 Number = tuple[str, int]  # of a thing: which end had it first, and its how many-th it was
 

@@ -8,11 +8,11 @@ from typing import Any, Literal
 
 import viser
 
-from algorithms.conflicts import Conflicts
-from algorithms.errors import MapMergeError
-from algorithms.handmade import Scales
-from algorithms.pose import Pose2
-from algorithms.steps import MergeResult
+from algorithms.common.errors import MapMergeError
+from algorithms.common.pose import Pose2
+from algorithms.methods.manual_merge import Scales
+from algorithms.methods.steps import MergeResult
+from algorithms.verdict.contradictions import Conflicts
 from app.byhand import ByHand
 from app.channel import Channel
 from app.comparison import Comparison

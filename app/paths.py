@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from algorithms.casefiles import FIRST_MAP_FILE
+from algorithms.files.case_folder import FIRST_MAP_FILE
 
 _APP = Path(__file__).resolve().parent
 

@@ -8,10 +8,10 @@ from typing import Protocol
 
 import numpy as np
 
-from algorithms.errors import MapMergeError
-from algorithms.gridmap import GridMap
-from algorithms.observation import Observation
-from algorithms.pose import FloatArray, Pose2
+from algorithms.common.errors import MapMergeError
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.maps.grid_map import GridMap
+from algorithms.observations.observation import Observation
 from app import words
 from app.channel import Channel, Numbers
 from app.draft import Draft, Part

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import exp
 from threading import Condition
 
-from algorithms.fuse import Fusion
-from algorithms.steps import (
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,

@@ -20,8 +20,8 @@ from typing import Any
 
 import cv2
 
-from algorithms import kernels
-from algorithms.errors import OutputError
+from algorithms.common import parallel_kernels as kernels
+from algorithms.common.errors import OutputError
 from app.executor import Executor, Lost, Shared, Task, Work, unpacked
 
 LOOK_S = 0.1  # how often it is looked whether all is to stop

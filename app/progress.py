@@ -7,7 +7,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from algorithms.steps import MergeResult, Step
+from algorithms.methods.steps import MergeResult, Step
 from app import words
 from app.story import Story
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from algorithms.mapio.fields import number_text, quoted
-from algorithms.steps import MergeResult
+from algorithms.files.yaml_fields import number_text, quoted
+from algorithms.methods.steps import MergeResult
 
 
 def publish_command(result: MergeResult) -> str:

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.augment import AugmentedMap
-from algorithms.conflicts import Conflicts
-from algorithms.fuse import Fusion
-from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, CellArray
-from algorithms.touch import AGREES, CONTRADICTS, Touch, Walls
+from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, CellArray
+from algorithms.maps.map_fusion import Fusion
+from algorithms.spectra.augmented_map import AugmentedMap
+from algorithms.verdict.cell_agreement import AGREES, CONTRADICTS, Touch, Walls
+from algorithms.verdict.contradictions import Conflicts
 from app.palette import Palette, Rgb, viridis
 
 Pixels = NDArray[np.uint8]

@@ -12,13 +12,13 @@ from typing import Any
 import cv2
 import numpy as np
 
-from algorithms.errors import NoAnswerError
-from algorithms.fuse import Fusion
-from algorithms.mapio import map_to_bytes
-from algorithms.merit import performance_index
-from algorithms.ranking import Weighed
-from algorithms.steps import MergeResult
-from algorithms.verdict import Outcome
+from algorithms.common.errors import NoAnswerError
+from algorithms.files.map_file import map_to_bytes
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import MergeResult
+from algorithms.verdict.decision import Outcome
+from algorithms.verdict.performance_index import performance_index
+from algorithms.verdict.ranking import Weighed
 from app import render
 from app.errand import Check, unwatched
 from app.inputs import Inputs

@@ -8,11 +8,11 @@ from math import degrees
 from pathlib import Path
 from typing import Any
 
-from algorithms.casefiles import observations_to_bytes
-from algorithms.conflicts import Conflicts, find_conflicts
-from algorithms.methods import METHODS
-from algorithms.steps import MergeResult
-from algorithms.verdict import Outcome, merges_of
+from algorithms.files.case_folder import observations_to_bytes
+from algorithms.methods.registry import METHODS
+from algorithms.methods.steps import MergeResult
+from algorithms.verdict.contradictions import Conflicts, find_conflicts
+from algorithms.verdict.decision import Outcome, merges_of
 from app import charts, words
 from app.controls import Setting, settings_of, value_at, word_for
 from app.errand import Check, unwatched

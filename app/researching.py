@@ -8,10 +8,10 @@ from typing import Any
 
 import viser
 
-from algorithms.conflicts import Conflicts, find_conflicts
-from algorithms.errors import MapMergeError
-from algorithms.fuse import Fusion
-from algorithms.methods import METHODS
+from algorithms.common.errors import MapMergeError
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.registry import METHODS
+from algorithms.verdict.contradictions import Conflicts, find_conflicts
 from app.errand import Left
 from app.panels.run import MAP
 from app.part import Part

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import viser
 
-from algorithms.casefiles import Case
-from algorithms.errors import MapMergeError
+from algorithms.common.errors import MapMergeError
+from algorithms.files.case_folder import Case
 from app import workers
 from app.access import Access
 from app.bench import Asker
@@ -90,9 +90,9 @@ def warm_up() -> None:
     """Merge a room of some cells: the kernels are compiled then, and the first Merge need not wait for it."""
     import numpy as np
 
-    from algorithms.gridmap import FREE, OCCUPIED, GridMap
-    from algorithms.observation import Observation
-    from algorithms.pose import Pose2
+    from algorithms.common.pose import Pose2
+    from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
+    from algorithms.observations.observation import Observation
 
     cells = np.full((40, 60), FREE, dtype=np.int8)
     cells[[0, -1], :], cells[:, [0, -1]] = OCCUPIED, OCCUPIED

@@ -12,8 +12,8 @@ from threading import Condition, RLock, Thread
 from time import perf_counter
 from typing import Protocol
 
-from algorithms.errors import MapMergeError
-from algorithms.steps import AnswersDetail, CandidatesDetail, MergeResult, Step
+from algorithms.common.errors import MapMergeError
+from algorithms.methods.steps import AnswersDetail, CandidatesDetail, MergeResult, Step
 from app.bench import Asker, Bench
 from app.job import Job
 from app.logs import facts

@@ -15,7 +15,7 @@ import numpy as np
 import viser
 from viser._messages import RunJavascriptMessage
 
-from algorithms.pose import FloatArray, Pose2
+from algorithms.common.pose import FloatArray, Pose2
 from app.layout import Rect
 from app.palette import Palette, Rgb, css
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any, TypeVar
 
-from algorithms.pose import Pose2
-from algorithms.steps import (
+from algorithms.common.pose import Pose2
+from algorithms.methods.steps import (
     AnswersDetail,
     Detail,
     MergeResult,

@@ -10,11 +10,11 @@ from statistics import fmean, median, pstdev
 from threading import Event
 from typing import Any
 
-from algorithms import merit
-from algorithms.casefiles import Case, observations_to_bytes, truth_to_bytes
-from algorithms.chain import Memo
-from algorithms.gridmap import GridMap
-from algorithms.methods import METHODS
+from algorithms.files.case_folder import Case, observations_to_bytes, truth_to_bytes
+from algorithms.maps.grid_map import GridMap
+from algorithms.methods.registry import METHODS
+from algorithms.methods.stage_runner import Memo
+from algorithms.verdict import performance_index as merit
 from app.controls import Path as SettingPath
 from app.controls import Setting, settings_of, with_value
 from app.executor import Executor, Lost, Shared, Task

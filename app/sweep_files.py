@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
-from algorithms.casefiles import Case
-from algorithms.methods import METHODS
+from algorithms.files.case_folder import Case
+from algorithms.methods.registry import METHODS
 from app.machine import machine
 from app.report import plain
 from app.sweep import Plan, Point, in_order

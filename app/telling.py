@@ -6,11 +6,11 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from algorithms import methods
-from algorithms.conflicts import Conflicts, find_conflicts
-from algorithms.errors import MapMergeError, NoAnswerError
-from algorithms.handmade import BY_HAND
-from algorithms.steps import AugmentDetail, CauseDetail, MergeResult, Step, TriedDetail
+from algorithms.common.errors import MapMergeError, NoAnswerError
+from algorithms.methods import registry as methods
+from algorithms.methods.manual_merge import BY_HAND
+from algorithms.methods.steps import AugmentDetail, CauseDetail, MergeResult, Step, TriedDetail
+from algorithms.verdict.contradictions import Conflicts, find_conflicts
 from app import mishap, words
 from app.export import Harvest
 from app.inputs import Inputs

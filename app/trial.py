@@ -10,17 +10,17 @@ from typing import Any
 
 import numpy as np
 
-from algorithms import methods
-from algorithms.casefiles import Case
-from algorithms.chain import Memo
-from algorithms.errors import MapMergeError, NoAnswerError
-from algorithms.fuse import Fusion, fuse
-from algorithms.gridmap import FREE, OCCUPIED, GridMap
-from algorithms.merit import performance_index
-from algorithms.observation import Observation
-from algorithms.pose import Pose2
-from algorithms.steps import MergeResult
-from algorithms.verdict import Outcome
+from algorithms.common.errors import MapMergeError, NoAnswerError
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import Case
+from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
+from algorithms.maps.map_fusion import Fusion, fuse
+from algorithms.methods import registry as methods
+from algorithms.methods.stage_runner import Memo
+from algorithms.methods.steps import MergeResult
+from algorithms.observations.observation import Observation
+from algorithms.verdict.decision import Outcome
+from algorithms.verdict.performance_index import performance_index
 from app.controls import settings_of, value_at
 from app.evaluate import judge_case
 

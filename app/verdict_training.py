@@ -19,17 +19,17 @@ from typing import Any
 
 import numpy as np
 
-from algorithms import methods
-from algorithms.atomic import write_files
-from algorithms.calibration import brier_score, calibration_error
-from algorithms.casefiles import ROUGH_OBSERVATION_FILE, Case, Truth, case_folders, read_case
-from algorithms.errors import MapMergeError
-from algorithms.pose import Pose2, pose_error
-from algorithms.refusal_causes import NO_SWARM
+from algorithms.common.errors import MapMergeError
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.files.atomic_write import write_files
+from algorithms.files.case_folder import ROUGH_OBSERVATION_FILE, Case, Truth, case_folders, read_case
+from algorithms.methods import registry as methods
+from algorithms.methods.refusal_causes import NO_SWARM
+from algorithms.methods.steps import MergeResult
 from algorithms.simulator.training_pairs import training_pairs
-from algorithms.steps import MergeResult
-from algorithms.verdict_fit import Example, Told, cross_validated, fit, most_likely_wrong, told_by
-from algorithms.verdict_model import MODEL_FILE, VerdictModel
+from algorithms.verdict.calibration import brier_score, calibration_error
+from algorithms.verdict.model_fit import Example, Told, cross_validated, fit, most_likely_wrong, told_by
+from algorithms.verdict.probability_model import MODEL_FILE, VerdictModel
 from app.evaluate import Crossing, building_of, crossed_case, crossings, group_of, name_in
 from app.executor import Executor, Lost, Task, executor_for
 from app.figures.reliability import reliability_figure

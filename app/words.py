@@ -7,12 +7,11 @@ from math import degrees, isfinite
 
 import numpy as np
 
-from algorithms.certificate import ProofState
-from algorithms.fuse import Fusion
-from algorithms.handmade import BY_HAND
-from algorithms.methods import METHODS
-from algorithms.pose import Pose2, pose_error
-from algorithms.steps import (
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.manual_merge import BY_HAND
+from algorithms.methods.registry import METHODS
+from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,
@@ -29,8 +28,9 @@ from algorithms.steps import (
     WeighedDetail,
     WindowDetail,
 )
-from algorithms.verdict import NEXT_TO_NO_WALL, SAME_PLACE, Outcome, Verdict
-from algorithms.verdict_model import OTHERS
+from algorithms.optimisation.branch_and_bound import ProofState
+from algorithms.verdict.decision import NEXT_TO_NO_WALL, SAME_PLACE, Outcome, Verdict
+from algorithms.verdict.probability_model import OTHERS
 from app.measure import Measure
 from app.story import Story
 

@@ -22,10 +22,10 @@ from threading import Lock
 from time import monotonic
 from typing import Any
 
-from algorithms import kernels
-from algorithms.chain import Memo
-from algorithms.errors import MapMergeError
-from algorithms.steps import Step
+from algorithms.common import parallel_kernels as kernels
+from algorithms.common.errors import MapMergeError
+from algorithms.methods.stage_runner import Memo
+from algorithms.methods.steps import Step
 from app.bench import Asker, Bench
 from app.job import Job
 from app.memory import give_back, whole

@@ -14,8 +14,9 @@ from drawn import flat_pair
 from hypothesis import HealthCheck, settings
 from strangers import TOKEN, Stand, standing
 
-from algorithms.atomic import write_files
-from algorithms.casefiles import (
+from algorithms.common.pose import Pose2
+from algorithms.files.atomic_write import write_files
+from algorithms.files.case_folder import (
     OBSERVATION_FILE,
     ROUGH_OBSERVATION_FILE,
     TRUTH_FILE,
@@ -24,11 +25,10 @@ from algorithms.casefiles import (
     observations_to_bytes,
     truth_to_bytes,
 )
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.mapio import map_to_bytes
-from algorithms.methods import merge
-from algorithms.pose import Pose2
-from algorithms.steps import MergeResult
+from algorithms.files.map_file import map_to_bytes
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.methods.registry import merge
+from algorithms.methods.steps import MergeResult
 from app.access import Access
 from app.guard import guarded_server
 from app.inputs import Inputs

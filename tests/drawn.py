@@ -8,13 +8,13 @@ from math import atan2, hypot
 import numpy as np
 from hypothesis import strategies as st
 
-from algorithms.agreement import AgreementConfig, make_agreement
-from algorithms.augment import AugmentConfig, augment
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.objective import Lookup, Objective, make_objective
-from algorithms.observation import Encounter, Observation
-from algorithms.pose import Pose2, rotation, wrap_angle
-from algorithms.window import CoupledWindow, WindowConfig, coupled_window
+from algorithms.common.pose import Pose2, rotation, wrap_angle
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.observations.observation import Encounter, Observation
+from algorithms.observations.search_window import CoupledWindow, WindowConfig, coupled_window
+from algorithms.optimisation.likelihood_field import AgreementConfig, make_agreement
+from algorithms.optimisation.objective import Lookup, Objective, make_objective
+from algorithms.spectra.augmented_map import AugmentConfig, augment
 
 finite = {"allow_nan": False, "allow_infinity": False}
 angles = st.floats(-np.pi, np.pi, **finite)

@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 import atheris
 
 with atheris.instrument_imports(
-    include=["algorithms.mapio", "algorithms.casefiles", "app.lesson.texts", "yaml"]
+    include=["algorithms.files.map_file", "algorithms.files.case_folder", "app.lesson.texts", "yaml"]
 ):
     from readers import MOST_MEMORY, READERS, SHAPES, TooSlowError, reads
 

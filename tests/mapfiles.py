@@ -8,8 +8,8 @@ import numpy as np
 import yaml
 from PIL import Image
 
-from algorithms.gridmap import GridMap
-from algorithms.mapio import map_from_bytes
+from algorithms.files.map_file import map_from_bytes
+from algorithms.maps.grid_map import GridMap
 
 HEADER = {
     "image": "m.pgm",

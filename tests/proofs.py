@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.certificate import ProofState
+from algorithms.optimisation.branch_and_bound import ProofState
 
 
 def proof_state(**changes: Any) -> ProofState:

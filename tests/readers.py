@@ -18,9 +18,9 @@ from imagefiles import bmp, interlaced_png
 from mapfiles import encoded
 from PIL import Image
 
-from algorithms.casefiles import observations_from_bytes, read_truth
-from algorithms.errors import MapMergeError
-from algorithms.mapio import grey_image, map_from_bytes, parse_meta
+from algorithms.common.errors import MapMergeError
+from algorithms.files.case_folder import observations_from_bytes, read_truth
+from algorithms.files.map_file import grey_image, map_from_bytes, parse_meta
 from app.lesson.numbers import NUMBERS
 from app.lesson.texts import read_exhibit, read_step
 from app.pictures.book import PICTURES

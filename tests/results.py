@@ -17,10 +17,10 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 import findings  # noqa: E402
 from findings import Finding, Swept  # noqa: E402
 
-from algorithms.atomic import write_files  # noqa: E402
-from algorithms.casefiles import Case, read_case  # noqa: E402
-from algorithms.methods import METHODS  # noqa: E402
-from algorithms.verdict_model import shipped_model  # noqa: E402
+from algorithms.files.atomic_write import write_files  # noqa: E402
+from algorithms.files.case_folder import Case, read_case  # noqa: E402
+from algorithms.methods.registry import METHODS  # noqa: E402
+from algorithms.verdict.probability_model import shipped_model  # noqa: E402
 from app import axes  # noqa: E402
 from app.contest import Score, contest, defaults_of, pairs_in, tally  # noqa: E402
 from app.contest_files import case_files, contest_files, remarks, table_rows  # noqa: E402

@@ -10,7 +10,7 @@ import trustme
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.errors import InputFileError, MapMergeError, SettingError
+from algorithms.common.errors import InputFileError, MapMergeError, SettingError
 from app.access import LEAST_TOKEN, Access, Asked, access_for, is_local, same
 from app.commands.serve import address, reach
 from app.gate import Gate

@@ -7,13 +7,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from algorithms.agreement import AgreementConfig, distance_to_walls, make_agreement, surface
-from algorithms.augment import AugmentConfig
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.objective import Lookup
-from algorithms.observation import Encounter, encounter
-from algorithms.pose import Pose2
-from algorithms.window import WindowConfig, coupled_window
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.observations.observation import Encounter, encounter
+from algorithms.observations.search_window import WindowConfig, coupled_window
+from algorithms.optimisation.likelihood_field import (
+    AgreementConfig,
+    distance_to_walls,
+    make_agreement,
+    surface,
+)
+from algorithms.optimisation.objective import Lookup
+from algorithms.spectra.augmented_map import AugmentConfig
 
 REF, MOV, SEEN, T = flat_pair()
 AT = encounter(SEEN)

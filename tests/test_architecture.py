@@ -48,7 +48,7 @@ def imports_of(module):
 
 def test_algorithms_load_neither_the_page_nor_a_plotting_library_nor_a_progress_bar():
     loaded = loaded_by(*modules("algorithms"))
-    assert "algorithms.methods" in loaded  # the question was asked of everything
+    assert "algorithms.methods.registry" in loaded  # the question was asked of everything
     assert not loaded & ({"app", "viser", "tqdm", "tyro", "rich"} | PLOTTERS)
 
 
@@ -67,19 +67,24 @@ def test_no_algorithm_imports_the_page_even_inside_a_function():
 
 
 def test_file_formats_know_no_method():
-    above = ("methods", "pipeline", "bilateral", "steps", "verdict", "fuse")
-    assert offenders("algorithms/mapio", {f"algorithms.{name}" for name in above}) == {}
+    above = ("methods", "verdict", "optimisation", "spectra", "maps.map_fusion")
+    assert offenders("algorithms/files", {f"algorithms.{name}" for name in above}) == {}
 
 
 def test_only_the_table_of_methods_knows_the_methods():
-    known = offenders("algorithms", {"algorithms.methods"})
+    known = offenders("algorithms", {"algorithms.methods.registry"})
     assert [module for module in known if not module.startswith("algorithms.simulator")] == []
 
 
-@pytest.mark.parametrize("module", ["swarm", "montecarlo", "search"])
+@pytest.mark.parametrize("module", ["particle_swarm", "monte_carlo", "optimiser"])
 def test_an_optimiser_knows_nothing_of_maps(module):
-    named = set(imports_of(f"algorithms.{module}"))
-    assert not named & {"algorithms.gridmap", "algorithms.objective", "algorithms.augment", "algorithms.fuse"}
+    named = set(imports_of(f"algorithms.optimisation.{module}"))
+    assert not named & {
+        "algorithms.maps.grid_map",
+        "algorithms.optimisation.objective",
+        "algorithms.spectra.augmented_map",
+        "algorithms.maps.map_fusion",
+    }
 
 
 def test_the_page_does_not_know_the_command_line():

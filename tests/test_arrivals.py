@@ -11,8 +11,8 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 from wire import WireFile, WireTab, until
 
-from algorithms.casefiles import Case
-from algorithms.mapio import map_to_bytes
+from algorithms.files.case_folder import Case
+from algorithms.files.map_file import map_to_bytes
 from app.access import Access
 from app.arrivals import LEAST, MAX_UPLOAD, MAX_UPLOADS, MOST, Recipient
 from app.guard import guarded_server

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from algorithms import atomic
-from algorithms.errors import OutputError
-from algorithms.gridmap import GridMap
-from algorithms.mapio import write_map
+from algorithms.common.errors import OutputError
+from algorithms.files import atomic_write as atomic
+from algorithms.files.map_file import write_map
+from algorithms.maps.grid_map import GridMap
 
 
 @pytest.fixture

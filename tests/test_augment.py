@@ -4,9 +4,9 @@ from drawn import T_REF_WORLD, drawn_map
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.augment import CUT_AT, AugmentConfig, augment
-from algorithms.errors import SettingError
-from algorithms.gridmap import GridMap
+from algorithms.common.errors import SettingError
+from algorithms.maps.grid_map import GridMap
+from algorithms.spectra.augmented_map import CUT_AT, AugmentConfig, augment
 
 FLAT = drawn_map(T_REF_WORLD)
 X_HAT = T_REF_WORLD.apply(np.array([3.0, 3.0]))

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.errors import SettingError
-from algorithms.fuse import Conflict
-from algorithms.methods import METHODS
-from algorithms.window import WindowConfig
+from algorithms.common.errors import SettingError
+from algorithms.maps.map_fusion import Conflict
+from algorithms.methods.registry import METHODS
+from algorithms.observations.search_window import WindowConfig
 from app import axes
 from app.axes import axis_from, setting_named, spaced
 from app.controls import settings_of, with_value

@@ -16,9 +16,10 @@ from imagefiles import COLOUR, GREY_ALPHA, SIGNATURE, bmp, chunk, ihdr, png
 from mapfiles import cells, encoded, header, load, pgm
 from PIL import Image
 
-from algorithms.errors import InputFileError, MapMergeError, TooLargeError
-from algorithms.mapio import image, map_from_bytes, read_image, read_map
-from algorithms.mapio.fields import MAX_ALIASES, MAX_DEPTH, MAX_VALUES, MAX_YAML_BYTES
+from algorithms.common.errors import InputFileError, MapMergeError, TooLargeError
+from algorithms.files import image_decoder as image
+from algorithms.files.map_file import map_from_bytes, read_image, read_map
+from algorithms.files.yaml_fields import MAX_ALIASES, MAX_DEPTH, MAX_VALUES, MAX_YAML_BYTES
 
 
 def indented(levels: int) -> bytes:

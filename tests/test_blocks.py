@@ -18,16 +18,16 @@ from drawn import (
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms import kernels
-from algorithms.agreement import AgreementConfig, make_agreement
-from algorithms.augment import AugmentConfig
-from algorithms.blocks import Bounder, Lattice
-from algorithms.errors import TooLargeError
-from algorithms.gridmap import GridMap
-from algorithms.objective import Lookup
-from algorithms.observation import Encounter, encounter
-from algorithms.pose import Pose2, wrap_angles
-from algorithms.window import WindowConfig, coupled_window
+from algorithms.common import parallel_kernels as kernels
+from algorithms.common.errors import TooLargeError
+from algorithms.common.pose import Pose2, wrap_angles
+from algorithms.maps.grid_map import GridMap
+from algorithms.observations.observation import Encounter, encounter
+from algorithms.observations.search_window import WindowConfig, coupled_window
+from algorithms.optimisation.likelihood_field import AgreementConfig, make_agreement
+from algorithms.optimisation.objective import Lookup
+from algorithms.optimisation.upper_bounds import Bounder, Lattice
+from algorithms.spectra.augmented_map import AugmentConfig
 
 
 def transforms_of(lattice, seed, most=50_000):

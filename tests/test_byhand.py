@@ -10,8 +10,8 @@ import pytest
 import viser
 from wire import WireTab, until
 
-from algorithms.casefiles import Case
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import Case
 from app.inputs import Inputs
 from app.layout import Layout, lay_out
 from app.server import make_server

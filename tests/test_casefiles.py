@@ -12,7 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.casefiles import (
+from algorithms.common.errors import InputFileError, SettingError
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import (
     MOST_OBSERVATIONS,
     Truth,
     case_folders,
@@ -24,10 +26,9 @@ from algorithms.casefiles import (
     truth_to_bytes,
     write_observations,
 )
-from algorithms.errors import InputFileError, SettingError
-from algorithms.gridmap import FARTHEST, MOST_TURN, GridMap
-from algorithms.mapio import write_map
-from algorithms.observation import (
+from algorithms.files.map_file import write_map
+from algorithms.maps.grid_map import FARTHEST, MOST_TURN, GridMap
+from algorithms.observations.observation import (
     MOST_RANGE,
     SIGMA_BEARING,
     SIGMA_BEARINGS,
@@ -35,7 +36,6 @@ from algorithms.observation import (
     SIGMA_RANGES,
     Observation,
 )
-from algorithms.pose import Pose2
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 positive = st.floats(min_value=0, exclude_min=True, allow_nan=False, allow_infinity=False)

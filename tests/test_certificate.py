@@ -8,16 +8,17 @@ from drawn import OBSERVED, OBSERVER, drawn_map, flat_pair, poses, problems, sig
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
-from algorithms import certificate, kernels
-from algorithms.agreement import AgreementConfig, make_agreement
-from algorithms.augment import AugmentConfig, augment
-from algorithms.blocks import Bounder, Lattice
-from algorithms.certificate import MOST_RIVALS, ProofConfig, prove
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.objective import Lookup, make_objective
-from algorithms.observation import Encounter, encounter
-from algorithms.pose import Pose2, pose_error, wrap_angles
-from algorithms.window import WindowConfig, coupled_window
+from algorithms.common import parallel_kernels as kernels
+from algorithms.common.pose import Pose2, pose_error, wrap_angles
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.observations.observation import Encounter, encounter
+from algorithms.observations.search_window import WindowConfig, coupled_window
+from algorithms.optimisation import branch_and_bound as certificate
+from algorithms.optimisation.branch_and_bound import MOST_RIVALS, ProofConfig, prove
+from algorithms.optimisation.likelihood_field import AgreementConfig, make_agreement
+from algorithms.optimisation.objective import Lookup, make_objective
+from algorithms.optimisation.upper_bounds import Bounder, Lattice
+from algorithms.spectra.augmented_map import AugmentConfig, augment
 
 NEAR = ProofConfig(angle=20, distance=0.3)
 configs = st.builds(

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from algorithms import chain
-from algorithms.chain import Chain
-from algorithms.steps import RefineDetail
-from algorithms.swarm import SwarmConfig, settled_within, swarm
-from algorithms.window import Box
+from algorithms.methods import stage_runner as chain
+from algorithms.methods.stage_runner import Chain
+from algorithms.methods.steps import RefineDetail
+from algorithms.observations.search_window import Box
+from algorithms.optimisation.particle_swarm import SwarmConfig, settled_within, swarm
 
 BOX = Box(-np.ones(3), np.ones(3), np.zeros(2))
 

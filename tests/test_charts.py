@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from proofs import proof_state
 
-from algorithms.certificate import ProofState
-from algorithms.pose import FloatArray, wrap_angles
+from algorithms.common.pose import FloatArray, wrap_angles
+from algorithms.optimisation.branch_and_bound import ProofState
 from app import charts
 from app.measure import AGREEMENT
 

@@ -7,9 +7,9 @@ import sys
 import pytest
 from commandline import ROOT, in_a_process, inputs, usage_error
 
-from algorithms import methods
-from algorithms.bounds import Bounds
-from algorithms.methods import METHODS
+from algorithms.common.setting_bounds import Bounds
+from algorithms.methods import registry as methods
+from algorithms.methods.registry import METHODS
 from app.cli import COMMANDS, main
 from app.controls import settings_of
 

@@ -11,7 +11,7 @@ import pytest
 from test_executor import fail, until
 from test_sweep import plan, untimed
 
-from algorithms.errors import SettingError
+from algorithms.common.errors import SettingError
 from app import cluster
 from app.cli import main
 from app.cluster import Cluster

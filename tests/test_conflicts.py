@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.casefiles import Case
-from algorithms.conflicts import LEAST, find_conflicts
-from algorithms.evidence import evidence
-from algorithms.fuse import fuse
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.observation import NOWHERE
-from algorithms.pose import Pose2
-from algorithms.wall_map import make_wall_map
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import Case
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.maps.map_fusion import fuse
+from algorithms.observations.observation import NOWHERE
+from algorithms.verdict.contradictions import LEAST, find_conflicts
+from algorithms.verdict.wall_evidence import evidence
+from algorithms.verdict.wall_map import make_wall_map
 
 CELL = 0.1
 

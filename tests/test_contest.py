@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from test_sweep import trials
 
-from algorithms.errors import NoAnswerError
-from algorithms.methods import METHODS
-from algorithms.pose import Pose2
+from algorithms.common.errors import NoAnswerError
+from algorithms.common.pose import Pose2
+from algorithms.methods.registry import METHODS
 from app.contest import Score, Unread, contest, defaults_of, pairs_in, tally
 from app.executor import Executor, Here, Lost
 from app.trial import attempt, true_fusion

@@ -8,10 +8,10 @@ from typing import Annotated, Literal
 
 import pytest
 
-from algorithms.bounds import Bounds, check_bounds
-from algorithms.errors import SettingError
-from algorithms.methods import METHODS
-from algorithms.pipeline import PipelineConfig
+from algorithms.common.errors import SettingError
+from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.methods.registry import METHODS
+from algorithms.methods.spectra_method import PipelineConfig
 from app.controls import field_docs, in_cells, settings_of, value_at, with_value, word_for
 from app.panels.tuning import idle
 

@@ -7,8 +7,8 @@ from drawn import small_maps
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.agreement import distance_to_walls
-from algorithms.discs import distances, near
+from algorithms.maps.wall_distance import distances, near
+from algorithms.optimisation.likelihood_field import distance_to_walls
 
 
 @given(small_maps(side=60), st.floats(0, 9))

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.casefiles import observations_from_bytes, observations_to_bytes
-from algorithms.observation import Observation, encounter
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import observations_from_bytes, observations_to_bytes
+from algorithms.observations.observation import Observation, encounter
 from app.draft import Draft
 
 metres, angles = st.floats(-50, 50), st.floats(-3.1, 3.1)

@@ -11,8 +11,8 @@ import pytest
 import viser
 from PIL import Image
 
-from algorithms.errors import InputFileError
-from algorithms.mapio import map_from_bytes
+from algorithms.common.errors import InputFileError
+from algorithms.files.map_file import map_from_bytes
 from app.errand import Errand, Left, Watched
 from app.panels.files import FilesPanel, Upload
 from app.panels.replay import ReplayButton

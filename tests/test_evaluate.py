@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from algorithms import methods
-from algorithms.casefiles import Truth
-from algorithms.errors import NoAnswerError
-from algorithms.pose import Pose2
+from algorithms.common.errors import NoAnswerError
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import Truth
+from algorithms.methods import registry as methods
 from app import evaluate
 from app.cli import main
 from app.evaluate import Order, judge_case, run_case, totals_of

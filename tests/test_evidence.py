@@ -10,12 +10,12 @@ from drawn import T_MOV_WORLD, WALLS, bent, drawn_map, flat_pair, poses
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms import kernels
-from algorithms.evidence import PATCH, SLIP, Evidence, evidence
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.observation import NOWHERE, Robots
-from algorithms.pose import Pose2, rotation
-from algorithms.wall_map import make_wall_map
+from algorithms.common import parallel_kernels as kernels
+from algorithms.common.pose import Pose2, rotation
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.observations.observation import NOWHERE, Robots
+from algorithms.verdict.wall_evidence import PATCH, SLIP, Evidence, evidence
+from algorithms.verdict.wall_map import make_wall_map
 
 REF, MOV, SEEN, T = flat_pair()
 
@@ -216,7 +216,7 @@ def test_a_turn_of_the_whole_by_a_patch_turn_is_bent_not_wrong():
 
 def test_of_a_map_with_very_much_wall_a_part_stands_for_all(monkeypatch):
     whole = weighed(REF, MOV, T)
-    for name in ("algorithms.wall_map.MOST_POINTS", "algorithms.evidence.MOST_SLIPPING"):
+    for name in ("algorithms.verdict.wall_map.MOST_POINTS", "algorithms.verdict.wall_evidence.MOST_SLIPPING"):
         monkeypatch.setattr(name, 300)
     part = weighed(REF, MOV, T)
     assert len(make_wall_map(REF).points) <= 300

@@ -12,12 +12,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from algorithms.augment import augment
-from algorithms.conflicts import find_conflicts
-from algorithms.fuse import fuse
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.pose import Pose2
-from algorithms.touch import Walls
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.maps.map_fusion import fuse
+from algorithms.spectra.augmented_map import augment
+from algorithms.verdict.cell_agreement import Walls
+from algorithms.verdict.contradictions import find_conflicts
 from app import render
 from app.layout import Layout
 from app.palette import LIGHT

@@ -14,8 +14,8 @@ import cv2
 import pytest
 from commandline import as_in_a_terminal
 
-from algorithms import kernels
-from algorithms.errors import InputFileError, NoAnswerError, OutputError, SettingError
+from algorithms.common import parallel_kernels as kernels
+from algorithms.common.errors import InputFileError, NoAnswerError, OutputError, SettingError
 from app.executor import Here, Lost, Shared, Task, executor_for, unpacked
 from app.processes import Processes
 

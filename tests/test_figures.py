@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 import pytest
 
-from algorithms.methods import METHODS
+from algorithms.methods.registry import METHODS
 from app.axes import axis_from
 from app.contest import Score
 from app.figures.contest import bars_figure, maps_figure

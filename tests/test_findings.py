@@ -10,7 +10,7 @@ from findings import Swept
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.methods import METHODS
+from algorithms.methods.registry import METHODS
 from app import axes
 from app.contest import Score, tally
 from app.sweep import Axis, Plan, Point

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from mapfiles import pgm
 from readers import READERS, SHAPES, SLOWER, reads
 
-from algorithms.errors import MapMergeError
-from algorithms.mapio import image
-from algorithms.visible import visible
+from algorithms.common.display_text import visible
+from algorithms.common.errors import MapMergeError
+from algorithms.files import image_decoder as image
 
 HEAVY = Path(__file__).with_name("heavy.py")
 

@@ -6,9 +6,9 @@ from drawn import poses
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.errors import SettingError, TooLargeError
-from algorithms.gridmap import FREE, UNKNOWN, GridMap, check_size
-from algorithms.pose import Pose2
+from algorithms.common.errors import SettingError, TooLargeError
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE, UNKNOWN, GridMap, check_size
 
 
 def grid(cells, **kw):

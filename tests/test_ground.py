@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from algorithms.casefiles import Case
+from algorithms.files.case_folder import Case
 from app.inputs import Inputs
 from app.layout import lay_out
 from app.palette import DARK, LIGHT

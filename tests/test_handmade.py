@@ -9,11 +9,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from algorithms.errors import SettingError
-from algorithms.handmade import BY_HAND, Scales, known_answers, refine
-from algorithms.methods import DEFAULT_METHOD, METHODS, merge
-from algorithms.pose import Pose2, pose_error
-from algorithms.steps import MergeResult, RefineDetail
+from algorithms.common.errors import SettingError
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.methods.manual_merge import BY_HAND, Scales, known_answers, refine
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
+from algorithms.methods.steps import MergeResult, RefineDetail
 
 DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 

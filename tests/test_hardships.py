@@ -11,14 +11,14 @@ from drawn import drawn_map
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN
-from algorithms.observation import encounter
-from algorithms.pose import Pose2, pose_error
-from algorithms.simulator.buildings import BUILDINGS, build
-from algorithms.simulator.canvas import WALL
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN
+from algorithms.observations.observation import encounter
+from algorithms.simulator.buildings.building_types import BUILDINGS, build
+from algorithms.simulator.buildings.floor_plan import WALL
 from algorithms.simulator.changes import AROUND, rearranged, with_pillars
-from algorithms.simulator.dice import stream
-from algorithms.simulator.driving import Drift
+from algorithms.simulator.path_planning import Drift
+from algorithms.simulator.portable_random import stream
 from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import simulate
 from algorithms.simulator.training_pairs import training_pairs

@@ -13,12 +13,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms.fuse import fuse
-from algorithms.gridmap import FREE, GridMap
-from algorithms.methods import DEFAULT_METHOD, METHODS
-from algorithms.observation import Observation
-from algorithms.pose import Pose2
-from algorithms.steps import Step
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE, GridMap
+from algorithms.maps.map_fusion import fuse
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS
+from algorithms.methods.steps import Step
+from algorithms.observations.observation import Observation
 from app.controls import with_value
 from app.desk import Desk, change
 from app.history import MOST, PAUSE, Entry, History

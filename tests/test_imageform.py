@@ -10,10 +10,10 @@ import viser
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.gridmap import COARSEST, FINEST, FREE, MOST_TURN, OCCUPIED, UNKNOWN
-from algorithms.mapio import MapMeta, Shading, image_map_from_bytes, meta_to_bytes, parse_meta
-from algorithms.mapio.shading import MODES
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.files.map_file import MapMeta, Shading, image_map_from_bytes, meta_to_bytes, parse_meta
+from algorithms.files.thresholds import MODES
+from algorithms.maps.grid_map import COARSEST, FINEST, FREE, MOST_TURN, OCCUPIED, UNKNOWN
 from app.inputs import Files
 from app.panels.files import FilesPanel
 from app.panels.imageform import doubt_about, shares

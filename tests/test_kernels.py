@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms import kernels
+from algorithms.common import parallel_kernels as kernels
 
 
 @given(st.integers(0, 200), st.integers(1, 300))

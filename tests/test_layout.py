@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.gridmap import FREE, UNKNOWN, GridMap
-from algorithms.observation import Observation, encounter
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE, UNKNOWN, GridMap
+from algorithms.observations.observation import Observation, encounter
 from app.layout import Layout, known_corners, lay_out, rect_of
 
 

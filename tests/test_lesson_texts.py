@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from algorithms.errors import InputFileError
+from algorithms.common.errors import InputFileError
 from app.lesson import equations
 from app.lesson.numbers import NUMBERS
 from app.lesson.texts import files, filled, lesson_folder, read_step

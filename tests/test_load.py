@@ -22,9 +22,9 @@ import viser
 from wire import PATIENCE, WireTab, until
 
 import app.server
-from algorithms.casefiles import Case, read_case
-from algorithms.errors import TooLargeError
-from algorithms.methods import merge
+from algorithms.common.errors import TooLargeError
+from algorithms.files.case_folder import Case, read_case
+from algorithms.methods.registry import merge
 from app.budget import Budget
 from app.job import Job
 from app.page import Page

@@ -15,9 +15,9 @@ from hypothesis.extra import numpy as hnp
 from mapfiles import cells, encoded, header, load, pgm
 from PIL import Image
 
-from algorithms.errors import InputFileError
-from algorithms.gridmap import COARSEST, FARTHEST, FINEST, MOST_TURN, GridMap
-from algorithms.mapio import (
+from algorithms.common.errors import InputFileError
+from algorithms.common.pose import Pose2
+from algorithms.files.map_file import (
     Shading,
     image_map_from_bytes,
     map_from_bytes,
@@ -26,7 +26,7 @@ from algorithms.mapio import (
     read_map,
     write_map,
 )
-from algorithms.pose import Pose2
+from algorithms.maps.grid_map import COARSEST, FARTHEST, FINEST, MOST_TURN, GridMap
 
 places, turns = st.floats(-FARTHEST, FARTHEST), st.floats(-MOST_TURN, MOST_TURN)
 origins = st.builds(Pose2, places, places, turns)

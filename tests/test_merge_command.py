@@ -12,13 +12,13 @@ import yaml
 from commandline import inputs
 from PIL import Image
 
-from algorithms import methods
-from algorithms.casefiles import read_case, write_observations
-from algorithms.errors import NoAnswerError
-from algorithms.gridmap import FREE, OCCUPIED
-from algorithms.mapio import read_map
-from algorithms.methods import METHODS
-from algorithms.pose import Pose2
+from algorithms.common.errors import NoAnswerError
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import read_case, write_observations
+from algorithms.files.map_file import read_map
+from algorithms.maps.grid_map import FREE, OCCUPIED
+from algorithms.methods import registry as methods
+from algorithms.methods.registry import METHODS
 from app.cli import main
 
 OF_A_REFUSAL = {"overlay.png", "report.html", "report.json"}

@@ -4,10 +4,10 @@ from drawn import flat_pair
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms.fuse import fuse
-from algorithms.gridmap import GridMap
-from algorithms.merit import performance_index
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import GridMap
+from algorithms.maps.map_fusion import fuse
+from algorithms.verdict.performance_index import performance_index
 
 REF, MOV, _, T = flat_pair()
 TRUE = fuse(REF, MOV, T)

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from wire import WireTab, until
 
-from algorithms.pipeline import PipelineConfig
-from algorithms.smm import CandidateConfig
+from algorithms.methods.spectra_method import PipelineConfig
+from algorithms.spectra.candidates import CandidateConfig
 from app import words as words_of_the_page
 from app import workers
 from app.export import Harvest

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from algorithms.errors import InputFileError
-from algorithms.methods import METHODS, merge
-from algorithms.pose import pose_error
-from algorithms.steps import MergeResult
+from algorithms.common.errors import InputFileError
+from algorithms.common.pose import pose_error
+from algorithms.methods.registry import METHODS, merge
+from algorithms.methods.steps import MergeResult
 from app.lesson.museum import changes, rows
 from app.lesson.texts import Exhibit, exhibit_case, files, museum_folder, read_exhibit, with_settings
 

@@ -21,8 +21,9 @@ import pytest
 import trustme
 from commandline import ROOT, in_a_process, inputs
 
-from algorithms import atomic, kernels
-from algorithms.errors import OutputError
+from algorithms.common import parallel_kernels as kernels
+from algorithms.common.errors import OutputError
+from algorithms.files import atomic_write as atomic
 from app.cli import main
 from app.executor import Shared, Task
 from app.journal import Journal
@@ -58,7 +59,7 @@ COMMANDS = {
     "samples that ship": lambda _, place: ["samples", place],
 }
 WORK = (
-    "algorithms.methods.run",
+    "algorithms.methods.registry.run",
     "app.contest.contest",
     "app.sweep.sweep",
     "app.evaluate.evaluate",

@@ -4,12 +4,12 @@ from drawn import drawn_map, flat_pair, poses
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms import kernels
-from algorithms.augment import augment
-from algorithms.gridmap import GridMap
-from algorithms.objective import Lookup, make_objective
-from algorithms.observation import encounter
-from algorithms.pose import Pose2
+from algorithms.common import parallel_kernels as kernels
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import GridMap
+from algorithms.observations.observation import encounter
+from algorithms.optimisation.objective import Lookup, make_objective
+from algorithms.spectra.augmented_map import augment
 
 REF, MOV, SEEN, T_REF_MOV = flat_pair()
 AT = encounter(SEEN)

@@ -6,16 +6,16 @@ from drawn import OBSERVED, OBSERVER, T_MOV_WORLD, T_REF_MOV, T_REF_WORLD, drawn
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.errors import SettingError
-from algorithms.gridmap import GridMap
-from algorithms.observation import (
+from algorithms.common.errors import SettingError
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.maps.grid_map import GridMap
+from algorithms.observations.observation import (
     bilateral_covariance,
     bilateral_transform,
     check_standing,
     encounter,
     encounters_of,
 )
-from algorithms.pose import Pose2, pose_error
 
 in_flat = st.builds(Pose2, st.floats(0, 9), st.floats(0, 7), st.floats(-np.pi, np.pi))
 SEEN = sighting(T_REF_WORLD, T_MOV_WORLD, OBSERVER, OBSERVED)

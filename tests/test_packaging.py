@@ -51,7 +51,7 @@ def run(installed, tmp_path, *words):
 
 def test_the_wheel_holds_both_packages_and_what_they_show(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
-    assert {"app/cli.py", "algorithms/methods.py"} <= names
+    assert {"app/cli.py", "algorithms/methods/registry.py"} <= names
     kinds = ("*.js", "*.css", "*.html")
     shown = {path.relative_to(ROOT).as_posix() for kind in kinds for path in (ROOT / "app").rglob(kind)}
     assert shown

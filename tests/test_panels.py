@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.casefiles import Truth, observations_to_bytes
-from algorithms.errors import InputFileError
-from algorithms.mapio import map_to_bytes
-from algorithms.methods import DEFAULT_METHOD, METHODS, merge, run
-from algorithms.pose import Pose2
-from algorithms.steps import CandidatesDetail, HoughDetail
+from algorithms.common.errors import InputFileError
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import Truth, observations_to_bytes
+from algorithms.files.map_file import map_to_bytes
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge, run
+from algorithms.methods.steps import CandidatesDetail, HoughDetail
 from app import charts
 from app.inputs import Inputs
 from app.panels.files import Upload, inputs_from

@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms.augment import augment
-from algorithms.casefiles import Case
-from algorithms.gridmap import FREE, OCCUPIED, GridMap
-from algorithms.methods import METHODS, run
-from algorithms.pose import Pose2
-from algorithms.spectra import hough_transform
-from algorithms.steps import HoughDetail, MergeResult, RefineDetail, ShiftDetail, Step
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import Case
+from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
+from algorithms.methods.registry import METHODS, run
+from algorithms.methods.steps import HoughDetail, MergeResult, RefineDetail, ShiftDetail, Step
+from algorithms.spectra.augmented_map import augment
+from algorithms.spectra.hough_spectra import hough_transform
 from app.inputs import Inputs
 from app.layout import lay_out
 from app.lesson import equations

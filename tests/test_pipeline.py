@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 from drawn import OBSERVED, OBSERVER, T_MOV_WORLD, T_REF_WORLD, drawn_map, flat_pair, sighting
 
-from algorithms import kernels
-from algorithms.augment import AugmentConfig
-from algorithms.errors import SettingError
-from algorithms.fuse import Conflict
-from algorithms.gridmap import GridMap
-from algorithms.methods import METHODS, merge, run
-from algorithms.pipeline import PipelineConfig, RefineConfig
-from algorithms.pose import Pose2, pose_error
-from algorithms.steps import CandidatesDetail, HoughDetail, MergeResult, RefineDetail, ShiftDetail
-from algorithms.swarm import SwarmConfig
-from algorithms.verdict import VerdictConfig
-from algorithms.window import WindowConfig
+from algorithms.common import parallel_kernels as kernels
+from algorithms.common.errors import SettingError
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.maps.grid_map import GridMap
+from algorithms.maps.map_fusion import Conflict
+from algorithms.methods.registry import METHODS, merge, run
+from algorithms.methods.spectra_method import PipelineConfig, RefineConfig
+from algorithms.methods.steps import CandidatesDetail, HoughDetail, MergeResult, RefineDetail, ShiftDetail
+from algorithms.observations.search_window import WindowConfig
+from algorithms.optimisation.particle_swarm import SwarmConfig
+from algorithms.spectra.augmented_map import AugmentConfig
+from algorithms.verdict.decision import VerdictConfig
 
 REF, MOV, SEEN, T_REF_MOV = flat_pair()
 QUICK = PipelineConfig(swarm=SwarmConfig(particles=100, iterations=40))

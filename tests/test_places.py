@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from algorithms.conflicts import Conflicts, Place, find_conflicts
-from algorithms.fuse import fuse
-from algorithms.gridmap import FREE, OCCUPIED, GridMap
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
+from algorithms.maps.map_fusion import fuse
+from algorithms.verdict.contradictions import Conflicts, Place, find_conflicts
 from app import render
 from app.comparison import rings
 from app.palette import DARK, LIGHT

@@ -6,13 +6,13 @@ from drawn import flat_pair
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms.agreement import AgreementConfig, make_agreement
-from algorithms.augment import AugmentConfig
-from algorithms.gridmap import FREE, OCCUPIED, GridMap
-from algorithms.observation import Observation, encounter
-from algorithms.polish import covariance_of, polish
-from algorithms.pose import Pose2, pose_error
-from algorithms.window import CoupledWindow, WindowConfig, coupled_window
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
+from algorithms.observations.observation import Observation, encounter
+from algorithms.observations.search_window import CoupledWindow, WindowConfig, coupled_window
+from algorithms.optimisation.likelihood_field import AgreementConfig, make_agreement
+from algorithms.optimisation.subcell_peak import covariance_of, polish
+from algorithms.spectra.augmented_map import AugmentConfig
 
 REF, MOV, SEEN, T = flat_pair()
 AT = encounter(SEEN)

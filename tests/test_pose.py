@@ -4,7 +4,7 @@ from drawn import angles, lengths, poses
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.pose import Pose2, pose_error, wrap_angle, wrap_angles
+from algorithms.common.pose import Pose2, pose_error, wrap_angle, wrap_angles
 
 points = st.lists(st.tuples(lengths, lengths), min_size=1, max_size=5).map(np.array)
 

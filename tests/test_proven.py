@@ -10,16 +10,16 @@ from drawn import OBSERVED, OBSERVER, T_MOV_WORLD, T_REF_WORLD, flat_pair, sight
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms import certificate
-from algorithms.augment import AugmentConfig
-from algorithms.casefiles import Case, read_case
-from algorithms.gridmap import FREE, OCCUPIED, GridMap
-from algorithms.methods import METHODS, merge, run
-from algorithms.pose import Pose2, pose_error
-from algorithms.smm import CandidateConfig
-from algorithms.steps import AnswersDetail, ProofDetail, ProvenDetail
-from algorithms.swarm import SwarmConfig
-from algorithms.window import BoxConfig
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.files.case_folder import Case, read_case
+from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
+from algorithms.methods.registry import METHODS, merge, run
+from algorithms.methods.steps import AnswersDetail, ProofDetail, ProvenDetail
+from algorithms.observations.search_window import BoxConfig
+from algorithms.optimisation import branch_and_bound as certificate
+from algorithms.optimisation.particle_swarm import SwarmConfig
+from algorithms.spectra.augmented_map import AugmentConfig
+from algorithms.spectra.candidates import CandidateConfig
 
 REF, MOV, SEEN, T = flat_pair()
 DEFAULT = METHODS["spectra-proven"].defaults

@@ -13,11 +13,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN
-from algorithms.mapio import image_map_from_bytes, map_from_bytes, map_to_bytes, read_map
-from algorithms.mapio.reading import as_meant, count_greys, remarks
-from algorithms.mapio.shading import Shading, cells_of
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.files.grey_levels import as_meant, count_greys, remarks
+from algorithms.files.map_file import image_map_from_bytes, map_from_bytes, map_to_bytes, read_map
+from algorithms.files.thresholds import Shading, cells_of
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN
 
 FLAT = drawn_map(Pose2())
 NAV2 = Shading(free_thresh=0.25)

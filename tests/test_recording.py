@@ -15,11 +15,11 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from PIL import Image
 
-from algorithms.casefiles import Case
-from algorithms.gridmap import FREE, OCCUPIED, GridMap
-from algorithms.methods import METHODS, run
-from algorithms.observation import Observation
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import Case
+from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
+from algorithms.methods.registry import METHODS, run
+from algorithms.observations.observation import Observation
 from app import words
 from app.cli import main
 from app.inputs import Inputs

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from algorithms.gridmap import GridMap, remarks_on
-from algorithms.methods import DEFAULT_METHOD, METHODS, merge, run_explained
-from algorithms.observation import mirrored
-from algorithms.pose import Pose2
-from algorithms.refusal_causes import find_cause
-from algorithms.steps import CauseDetail, TriedDetail
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import GridMap, remarks_on
+from algorithms.methods.refusal_causes import find_cause
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge, run_explained
+from algorithms.methods.steps import CauseDetail, TriedDetail
+from algorithms.observations.observation import mirrored
 
 CONFIG = METHODS[DEFAULT_METHOD].defaults
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from algorithms.augment import augment
-from algorithms.fuse import fuse
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.maps.map_fusion import fuse
+from algorithms.spectra.augmented_map import augment
 from app import render
 from app.palette import DARK, LIGHT, VIRIDIS
 

@@ -11,9 +11,9 @@ import yaml
 from drawn import T_REF_MOV
 from PIL import Image
 
-from algorithms.gridmap import OCCUPIED_FROM, UNKNOWN
-from algorithms.methods import METHODS, merge
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN
+from algorithms.methods.registry import METHODS, merge
 from app import report
 from app.inputs import Inputs
 from app.palette import LIGHT

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 import yaml
 
-from algorithms.casefiles import observations_from_bytes
-from algorithms.mapio import read_map
-from algorithms.methods import DEFAULT_METHOD, METHODS, merge
-from algorithms.pose import Pose2
-from algorithms.steps import MergeResult
-from algorithms.verdict import Outcome
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import observations_from_bytes
+from algorithms.files.map_file import read_map
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
+from algorithms.methods.steps import MergeResult
+from algorithms.verdict.decision import Outcome
 from app.export import ACTED_UPON, ALONE, Harvest
 from app.inputs import Inputs
 from app.panels.tables import box

@@ -12,10 +12,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from test_sweep import SMALL, trials
 
-from algorithms.bounds import Bounds
-from algorithms.errors import SettingError
-from algorithms.methods import METHODS
-from algorithms.pose import Pose2
+from algorithms.common.errors import SettingError
+from algorithms.common.pose import Pose2
+from algorithms.common.setting_bounds import Bounds
+from algorithms.methods.registry import METHODS
 from app.controls import settings_of, with_value
 from app.executor import Task
 from app.palette import DARK, LIGHT

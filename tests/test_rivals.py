@@ -13,8 +13,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from skimage.feature import match_descriptors
 
-from algorithms.baselines import detectors, phase
-from algorithms.baselines.detectors import (
+from algorithms.common.errors import NoAnswerError, SettingError
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.methods.baselines import feature_detectors as detectors
+from algorithms.methods.baselines import phase_correlation as phase
+from algorithms.methods.baselines.distance_image import (
+    MARGIN,
+    Turn,
+    common_cell,
+    known_cells,
+    picture,
+    pose_of,
+)
+from algorithms.methods.baselines.distance_image import drawn as coarsened
+from algorithms.methods.baselines.feature_detectors import (
     HarrisConfig,
     OrbConfig,
     ShiTomasiConfig,
@@ -22,16 +35,11 @@ from algorithms.baselines.detectors import (
     SurfConfig,
     describe,
 )
-from algorithms.baselines.features import FeatureConfig, MatchConfig, agreeing, fit_covariance
-from algorithms.baselines.overlap import Overlap
-from algorithms.baselines.phase import DIRECTIONS, turn_correlation
-from algorithms.baselines.pictures import MARGIN, Turn, common_cell, known_cells, picture, pose_of
-from algorithms.baselines.pictures import drawn as coarsened
-from algorithms.errors import NoAnswerError, SettingError
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.methods import METHODS, merge, run
-from algorithms.pose import Pose2, pose_error
-from algorithms.steps import MatchesDetail, ObservationDetail, TurnsDetail
+from algorithms.methods.baselines.feature_matching import FeatureConfig, MatchConfig, agreeing, fit_covariance
+from algorithms.methods.baselines.overlap_error import Overlap
+from algorithms.methods.baselines.phase_correlation import DIRECTIONS, turn_correlation
+from algorithms.methods.registry import METHODS, merge, run
+from algorithms.methods.steps import MatchesDetail, ObservationDetail, TurnsDetail
 from app import charts, words
 
 # Both robots have seen the whole flat.

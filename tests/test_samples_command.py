@@ -1,7 +1,7 @@
 import pytest
 
-from algorithms.casefiles import case_folders, read_case
-from algorithms.observation import encounter
+from algorithms.files.case_folder import case_folders, read_case
+from algorithms.observations.observation import encounter
 from app.cli import main
 
 

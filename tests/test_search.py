@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms.montecarlo import monte_carlo
-from algorithms.search import keep_inside
-from algorithms.swarm import SwarmConfig, settled_within, swarm
-from algorithms.window import Box
+from algorithms.observations.search_window import Box
+from algorithms.optimisation.monte_carlo import monte_carlo
+from algorithms.optimisation.optimiser import keep_inside
+from algorithms.optimisation.particle_swarm import SwarmConfig, settled_within, swarm
 
 OPTIMISERS = [swarm, monte_carlo]
 TOP = np.array([0.3, -0.2, 0.05])

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from proofs import proof_state
 
-from algorithms.errors import MapMergeError
-from algorithms.gridmap import FREE, GridMap
-from algorithms.observation import Encounter, Observation
-from algorithms.pose import Pose2
-from algorithms.search import SearchState
-from algorithms.steps import AnswersDetail, ObservationDetail, ProofDetail, RefineDetail, Step
-from algorithms.window import Box, WindowConfig, coupled_window
+from algorithms.common.errors import MapMergeError
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE, GridMap
+from algorithms.methods.steps import AnswersDetail, ObservationDetail, ProofDetail, RefineDetail, Step
+from algorithms.observations.observation import Encounter, Observation
+from algorithms.observations.search_window import Box, WindowConfig, coupled_window
+from algorithms.optimisation.optimiser import SearchState
 from app.bench import Bench
 from app.job import Job
 from app.player import DWELL, FRAME, Waiting, dwell

@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from proofs import proof_state
 
-from algorithms.observation import encounter
-from algorithms.pose import Pose2, rotation
-from algorithms.steps import WindowDetail
-from algorithms.window import WindowConfig, coupled_window, paper_window
+from algorithms.common.pose import Pose2, rotation
+from algorithms.methods.steps import WindowDetail
+from algorithms.observations.observation import encounter
+from algorithms.observations.search_window import WindowConfig, coupled_window, paper_window
 from app.layout import known_hull, lay_out
 from app.palette import LIGHT
 from app.views.signs import discs, further, proof, rival, windows

@@ -11,26 +11,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import ndimage
 
-from algorithms.casefiles import read_case
-from algorithms.errors import SettingError
-from algorithms.observation import bilateral_transform, encounter
-from algorithms.pose import Pose2, pose_error, wrap_angle
-from algorithms.simulator.buildings import BUILDINGS, build
-from algorithms.simulator.canvas import AIR, DARK, WALL, Building, Canvas
-from algorithms.simulator.dice import COSINES, SINES, TRIG_GRID, TURN, normals, radians, stream
-from algorithms.simulator.driving import STEP, Planner
+from algorithms.common.errors import SettingError
+from algorithms.common.pose import Pose2, pose_error, wrap_angle
+from algorithms.files.case_folder import read_case
+from algorithms.observations.observation import bilateral_transform, encounter
+from algorithms.simulator.buildings.building_types import BUILDINGS, build
+from algorithms.simulator.buildings.floor_plan import AIR, DARK, WALL, Building, Canvas
 from algorithms.simulator.lidar import Lidar, first_hit, scan, sees, true_ranges
-from algorithms.simulator.meeting import APART, FURTHEST, NEAREST, measured_overlap
+from algorithms.simulator.path_planning import STEP, Planner
+from algorithms.simulator.portable_random import COSINES, SINES, TRIG_GRID, TURN, normals, radians, stream
 from algorithms.simulator.robot import drive, make_body
-from algorithms.simulator.samples import (
-    DESCRIPTIONS,
-    SAMPLES,
-    case_files,
-    generate_cases,
-    write_case,
-)
+from algorithms.simulator.room_tours import Surveyor
+from algorithms.simulator.samples import DESCRIPTIONS, SAMPLES, case_files, generate_cases, write_case
 from algorithms.simulator.scenario import Scenario, simulate
-from algorithms.simulator.tours import Surveyor
+from algorithms.simulator.sighting import APART, FURTHEST, NEAREST, measured_overlap
 from algorithms.simulator.wrong_pairs import mismatch
 
 SHIPPED = Path(__file__).parents[1] / "sample_maps"

@@ -4,11 +4,11 @@ from drawn import drawn_map, lengths
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms.augment import augment
-from algorithms.gridmap import GridMap
-from algorithms.pose import Pose2, wrap_angle
-from algorithms.smm import CandidateConfig, circular_peaks, match_turns
-from algorithms.spectra import (
+from algorithms.common.pose import Pose2, wrap_angle
+from algorithms.maps.grid_map import GridMap
+from algorithms.spectra.augmented_map import augment
+from algorithms.spectra.candidates import CandidateConfig, circular_peaks, match_turns
+from algorithms.spectra.hough_spectra import (
     SpectraConfig,
     correlate_turns,
     hough_spectrum,

@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from proofs import proof_state
 
-from algorithms.polish import Peak
-from algorithms.pose import Pose2
-from algorithms.search import SearchState
-from algorithms.steps import ProvenDetail, RefineDetail, Step
-from algorithms.window import Box
+from algorithms.common.pose import Pose2
+from algorithms.methods.steps import ProvenDetail, RefineDetail, Step
+from algorithms.observations.search_window import Box
+from algorithms.optimisation.optimiser import SearchState
+from algorithms.optimisation.subcell_peak import Peak
 from app.palette import DARK, LIGHT
 from app.stage import Stage
 from app.story import Story

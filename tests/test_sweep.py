@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.errors import OutputError, SettingError
-from algorithms.gridmap import GridMap
-from algorithms.methods import METHODS
+from algorithms.common.errors import OutputError, SettingError
+from algorithms.maps.grid_map import GridMap
+from algorithms.methods.registry import METHODS
 from app import sweep as sweeping
 from app import version
 from app.executor import Executor, Here
@@ -150,14 +150,22 @@ def test_what_a_point_rests_on_is_its_key(small_case):
 
 
 def test_the_code_that_a_method_stands_on_is_told_apart_from_all_other_code():
-    swarm = version._stands_on("algorithms.pipeline")
-    assert {"algorithms/swarm.py", "algorithms/pose.py", "algorithms/kernels.py"} <= swarm
-    assert "algorithms/methods.py" not in swarm
+    swarm = version._stands_on("algorithms.methods.spectra_method")
+    assert {
+        "algorithms/optimisation/particle_swarm.py",
+        "algorithms/common/pose.py",
+        "algorithms/common/parallel_kernels.py",
+    } <= swarm
+    assert "algorithms/methods/registry.py" not in swarm
     assert not [path for path in swarm if "simulator" in path]
-    assert version._stands_on("algorithms.pose") == {"algorithms/pose.py"}
-    told = {version.code(), version.code("algorithms.pipeline"), version.code("algorithms.pose")}
+    assert version._stands_on("algorithms.common.pose") == {"algorithms/common/pose.py"}
+    told = {
+        version.code(),
+        version.code("algorithms.methods.spectra_method"),
+        version.code("algorithms.common.pose"),
+    }
     assert len(told) == 3
-    assert version.code("algorithms.pose") == version.code("algorithms.pose")
+    assert version.code("algorithms.common.pose") == version.code("algorithms.common.pose")
 
 
 def test_a_value_out_of_bounds_is_refused_before_anything_is_run():

@@ -13,7 +13,7 @@ from types import SimpleNamespace
 import pytest
 import viser
 
-from algorithms.methods import METHODS
+from algorithms.methods.registry import METHODS
 from app.inputs import Inputs
 from app.panels.files import FilesPanel
 from app.panels.tuning import TuningPanel

@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.pose import Pose2
-from algorithms.touch import AGREES, CONTRADICTS, SILENT, Walls
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.verdict.cell_agreement import AGREES, CONTRADICTS, SILENT, Walls
 
 
 def room(origin: Pose2 = Pose2()) -> GridMap:  # noqa: B008 - it is frozen

@@ -10,16 +10,16 @@ from drawn import flat_pair
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.errors import SettingError
-from algorithms.evidence import Apart, Evidence
-from algorithms.fuse import fuse
-from algorithms.observation import encounter
-from algorithms.pose import Pose2
-from algorithms.ranking import Weighed, weigh
-from algorithms.verdict import Outcome, VerdictConfig, judge, merges_of
-from algorithms.verdict_model import Fit, misfit_of, quantities_of, shipped_model
-from algorithms.whole_maps import make_whole_maps
-from algorithms.window import WindowConfig, coupled_window
+from algorithms.common.errors import SettingError
+from algorithms.common.pose import Pose2
+from algorithms.maps.map_fusion import fuse
+from algorithms.observations.observation import encounter
+from algorithms.observations.search_window import WindowConfig, coupled_window
+from algorithms.verdict.decision import Outcome, VerdictConfig, judge, merges_of
+from algorithms.verdict.probability_model import Fit, misfit_of, quantities_of, shipped_model
+from algorithms.verdict.ranking import Weighed, weigh
+from algorithms.verdict.wall_evidence import Apart, Evidence
+from algorithms.verdict.whole_maps import make_whole_maps
 
 REF, MOV, SEEN, T = flat_pair()
 AT = encounter(SEEN)

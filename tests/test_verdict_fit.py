@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.calibration import brier_score, calibration_error, reliability
-from algorithms.verdict_fit import Example, Told, cross_validated, fit, most_likely_wrong, told_by
-from algorithms.verdict_model import QUANTITIES
+from algorithms.verdict.calibration import brier_score, calibration_error, reliability
+from algorithms.verdict.model_fit import Example, Told, cross_validated, fit, most_likely_wrong, told_by
+from algorithms.verdict.probability_model import QUANTITIES
 
 NAMES = list(QUANTITIES)
 SIGNS = np.array([1.0 if quantity.rises else -1.0 for quantity in QUANTITIES.values()])

@@ -15,14 +15,14 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from algorithms.gridmap import UNKNOWN
-from algorithms.methods import DEFAULT_METHOD, METHODS, merge
-from algorithms.observation import Observation, encounter
-from algorithms.pose import Pose2, rotation, wrap_angle
-from algorithms.refusal_causes import NO_SWARM
+from algorithms.common.pose import Pose2, rotation, wrap_angle
+from algorithms.maps.grid_map import UNKNOWN
+from algorithms.methods.refusal_causes import NO_SWARM
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
+from algorithms.observations.observation import Observation, encounter
 from algorithms.simulator.scenario import Case, simulate
 from algorithms.simulator.wrong_pairs import mismatch
-from algorithms.wall_map import SAME_WALL
+from algorithms.verdict.wall_map import SAME_WALL
 
 DEFAULT = METHODS[DEFAULT_METHOD].defaults
 QUICK = replace(DEFAULT, swarm=NO_SWARM)  # the proof finds what the swarm does not

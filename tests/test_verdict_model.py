@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.evidence import Evidence
-from algorithms.verdict_model import (
+from algorithms.verdict.probability_model import (
     ENOUGH,
     OTHERS,
     QUANTITIES,
@@ -21,6 +20,7 @@ from algorithms.verdict_model import (
     quantities_of,
     shipped_model,
 )
+from algorithms.verdict.wall_evidence import Evidence
 
 MODEL = shipped_model()
 CLEAN = Evidence(100.0, 1.0, 98.0, 3.0, across=30.0, floor=60.0)

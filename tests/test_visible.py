@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mapfiles import header, pgm
 
-from algorithms.errors import InputFileError, NoAnswerError, OutputError, SettingError, TooLargeError
-from algorithms.gridmap import GridMap
-from algorithms.mapio import map_from_bytes, map_to_bytes
-from algorithms.visible import visible
+from algorithms.common.display_text import visible
+from algorithms.common.errors import InputFileError, NoAnswerError, OutputError, SettingError, TooLargeError
+from algorithms.files.map_file import map_from_bytes, map_to_bytes
+from algorithms.maps.grid_map import GridMap
 from app.inputs import Upload
 from app.panels.files import inputs_from
 

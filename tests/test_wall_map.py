@@ -10,10 +10,10 @@ from drawn import drawn_map, small_maps
 from hypothesis import given
 from hypothesis import strategies as st
 
-from algorithms.agreement import distance_to_walls, surface
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.pose import Pose2
-from algorithms.wall_map import (
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.optimisation.likelihood_field import distance_to_walls, surface
+from algorithms.verdict.wall_map import (
     ANOTHER_WALL,
     ANY_SIDE,
     LEVELS,
@@ -105,7 +105,7 @@ def test_floor_is_sampled_where_there_is_much_of_it(monkeypatch):
     area = np.count_nonzero(grid.free) * grid.resolution**2
     all_of_it = make_wall_map(grid)
     assert len(all_of_it.floor) * all_of_it.floor_area == pytest.approx(area)
-    monkeypatch.setattr("algorithms.wall_map.MOST_FLOOR", 2_000)
+    monkeypatch.setattr("algorithms.verdict.wall_map.MOST_FLOOR", 2_000)
     part = make_wall_map(grid)
     assert len(part.floor) < 2_000
     assert len(part.floor) * part.floor_area == pytest.approx(area, rel=0.1)

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strangers import standing
 
-from algorithms.methods import merge
-from algorithms.verdict import Outcome, VerdictConfig
-from algorithms.verdict_model import OTHERS
+from algorithms.methods.registry import merge
+from algorithms.verdict.decision import Outcome, VerdictConfig
+from algorithms.verdict.probability_model import OTHERS
 from app.panels.what_if import DEVIATION, DIALS, OTHER, WhatIfPanel, numbers_of, supposed
 
 RULES = VerdictConfig()

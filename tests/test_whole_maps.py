@@ -11,19 +11,19 @@ from drawn import flat_pair
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms import kernels
-from algorithms.gridmap import OCCUPIED
-from algorithms.methods import METHODS, merge
-from algorithms.observation import encounter
-from algorithms.pose import Pose2, pose_error
-from algorithms.ranking import better_beside, elsewhere, probability_of, ranked, weigh
-from algorithms.simulator.driving import Drift
+from algorithms.common import parallel_kernels as kernels
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.maps.grid_map import OCCUPIED
+from algorithms.methods.registry import METHODS, merge
+from algorithms.observations.observation import encounter
+from algorithms.observations.search_window import WindowConfig, coupled_window
+from algorithms.optimisation.particle_swarm import SwarmConfig
+from algorithms.simulator.path_planning import Drift
 from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import simulate
-from algorithms.swarm import SwarmConfig
-from algorithms.verdict_model import shipped_model
-from algorithms.whole_maps import WORTH_MOVING, make_whole_maps
-from algorithms.window import WindowConfig, coupled_window
+from algorithms.verdict.probability_model import shipped_model
+from algorithms.verdict.ranking import better_beside, elsewhere, probability_of, ranked, weigh
+from algorithms.verdict.whole_maps import WORTH_MOVING, make_whole_maps
 
 REF, MOV, SEEN, T = flat_pair()
 AT = encounter(SEEN)

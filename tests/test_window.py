@@ -7,9 +7,9 @@ from drawn import OBSERVED, OBSERVER, T_MOV_WORLD, T_REF_WORLD, angles, lengths,
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from algorithms.observation import encounter
-from algorithms.pose import Pose2, pose_error, rotation
-from algorithms.window import (
+from algorithms.common.pose import Pose2, pose_error, rotation
+from algorithms.observations.observation import encounter
+from algorithms.observations.search_window import (
     Box,
     BoxConfig,
     CoupledWindow,
@@ -108,7 +108,7 @@ def test_the_box_stays_in_the_window(sigma_x, sigma_y):
     ("field", "value"), [("sigma_x", 0.0), ("sigma_theta", 400.0), ("sigma_y", float("nan"))]
 )
 def test_a_margin_out_of_bounds_is_refused_by_name_and_range(field, value):
-    from algorithms.errors import SettingError
+    from algorithms.common.errors import SettingError
 
     with pytest.raises(SettingError, match=rf"BoxConfig.{field} .* must lie in \["):
         BoxConfig(**{field: value})

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from proofs import proof_state
 
-from algorithms.certificate import ProofState
-from algorithms.methods import METHODS, run
-from algorithms.pose import Pose2
-from algorithms.steps import MergeResult, ProofDetail, ProvenDetail, Step
-from algorithms.verdict import Outcome
+from algorithms.common.pose import Pose2
+from algorithms.methods.registry import METHODS, run
+from algorithms.methods.steps import MergeResult, ProofDetail, ProvenDetail, Step
+from algorithms.optimisation.branch_and_bound import ProofState
+from algorithms.verdict.decision import Outcome
 from app import words
 from app.measure import AGREEMENT, GAMMA, measure_of
 from app.story import Story

@@ -19,12 +19,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from wire import until
 
-from algorithms.errors import NoAnswerError, SettingError
-from algorithms.gridmap import FREE, GridMap
-from algorithms.handmade import Scales, refine
-from algorithms.methods import METHODS
-from algorithms.pose import Pose2
-from algorithms.steps import MergeResult, ObservationDetail, Step
+from algorithms.common.errors import NoAnswerError, SettingError
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE, GridMap
+from algorithms.methods.manual_merge import Scales, refine
+from algorithms.methods.registry import METHODS
+from algorithms.methods.steps import MergeResult, ObservationDetail, Step
 from app.bench import Asker
 from app.job import Job
 from app.memory import whole

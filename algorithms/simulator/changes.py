@@ -10,9 +10,9 @@ import cv2
 import numpy as np
 from scipy.spatial import cKDTree
 
-from algorithms.pose import FloatArray
-from algorithms.simulator.canvas import AIR, WALL, Building, Canvas
-from algorithms.simulator.dice import TURN, chance, uniform, whole
+from algorithms.common.pose import FloatArray
+from algorithms.simulator.buildings.floor_plan import AIR, WALL, Building, Canvas
+from algorithms.simulator.portable_random import TURN, chance, uniform, whole
 
 LOOSE = 1.5  # metres; what is smaller than this each way and touches nothing is furniture
 TAKEN_AWAY = 0.35  # how likely a piece of furniture is gone

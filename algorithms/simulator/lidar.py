@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.kernels import kernel
-from algorithms.pose import FloatArray
-from algorithms.simulator.canvas import AIR, DARK, Building, Surface
-from algorithms.simulator.dice import COSINES, SINES, TURN, Ticks, normals, uniforms
+from algorithms.common.parallel_kernels import kernel
+from algorithms.common.pose import FloatArray
+from algorithms.simulator.buildings.floor_plan import AIR, DARK, Building, Surface
+from algorithms.simulator.portable_random import COSINES, SINES, TURN, Ticks, normals, uniforms
 
 
 @dataclass(frozen=True)

@@ -6,15 +6,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from algorithms.gridmap import GridMap
-from algorithms.pose import FloatArray
-from algorithms.simulator.canvas import Building
+from algorithms.common.pose import FloatArray
+from algorithms.maps.grid_map import GridMap
+from algorithms.simulator.buildings.floor_plan import Building
 from algorithms.simulator.changes import rearranged
-from algorithms.simulator.dice import TURN, pick, snap, stream, uniform, whole
-from algorithms.simulator.driving import STEP, Drift, Planner, Track, believe
 from algorithms.simulator.lidar import Lidar, scan
-from algorithms.simulator.mapping import build_map
-from algorithms.simulator.tours import Tour
+from algorithms.simulator.log_odds_mapping import build_map
+from algorithms.simulator.path_planning import STEP, Drift, Planner, Track, believe
+from algorithms.simulator.portable_random import TURN, pick, snap, stream, uniform, whole
+from algorithms.simulator.room_tours import Tour
 from algorithms.simulator.wear import Wear, worn
 
 

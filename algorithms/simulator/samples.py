@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from itertools import permutations, product
 from pathlib import Path
 
-from algorithms.atomic import write_files
-from algorithms.casefiles import (
+from algorithms.files.atomic_write import write_files
+from algorithms.files.case_folder import (
     FIRST_MAP_FILE,
     OBSERVATION_FILE,
     ROUGH_OBSERVATION_FILE,
@@ -18,8 +18,8 @@ from algorithms.casefiles import (
     observations_to_bytes,
     truth_to_bytes,
 )
-from algorithms.mapio import map_to_bytes
-from algorithms.simulator.driving import Drift
+from algorithms.files.map_file import map_to_bytes
+from algorithms.simulator.path_planning import Drift
 from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import Case, simulate
 from algorithms.simulator.wrong_pairs import mismatch

@@ -7,15 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from algorithms.gridmap import GridMap
-from algorithms.observation import Observation
-from algorithms.pose import FloatArray, Pose2
-from algorithms.simulator.buildings import build
-from algorithms.simulator.canvas import Building
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.maps.grid_map import GridMap
+from algorithms.observations.observation import Observation
+from algorithms.simulator.buildings.building_types import build
+from algorithms.simulator.buildings.floor_plan import Building
 from algorithms.simulator.changes import with_pillars
-from algorithms.simulator.dice import chance, stream, uniform
-from algorithms.simulator.driving import Planner
-from algorithms.simulator.meeting import (
+from algorithms.simulator.path_planning import Planner
+from algorithms.simulator.portable_random import chance, stream, uniform
+from algorithms.simulator.robot import Conditions, Robot, drive, make_body
+from algorithms.simulator.room_tours import Surveyor
+from algorithms.simulator.sighting import (
     ROUGH_BEARING,
     ROUGH_RANGE,
     Meeting,
@@ -25,8 +27,6 @@ from algorithms.simulator.meeting import (
     measured_overlap,
     observe,
 )
-from algorithms.simulator.robot import Conditions, Robot, drive, make_body
-from algorithms.simulator.tours import Surveyor
 
 LEAST, MOST = 0.05, 0.6  # overlaps that are drawn where none is asked for
 TOLERANCE = 0.02  # an overlap this near to the one asked for is good enough

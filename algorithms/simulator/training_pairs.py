@@ -13,10 +13,10 @@ from typing import Literal
 
 import numpy as np
 
-from algorithms.observation import Observation
-from algorithms.simulator.buildings import BUILDINGS
-from algorithms.simulator.dice import chance, pick, stream, uniform, whole
-from algorithms.simulator.driving import Drift
+from algorithms.observations.observation import Observation
+from algorithms.simulator.buildings.building_types import BUILDINGS
+from algorithms.simulator.path_planning import Drift
+from algorithms.simulator.portable_random import chance, pick, stream, uniform, whole
 from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import Case, simulate
 from algorithms.simulator.wear import Wear

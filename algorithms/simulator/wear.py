@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.simulator.dice import uniforms
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.simulator.portable_random import uniforms
 
 
 @dataclass(frozen=True)

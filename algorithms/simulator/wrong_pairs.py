@@ -7,11 +7,11 @@ from math import atan2, cos, hypot, sin
 
 import numpy as np
 
-from algorithms import observation
-from algorithms.gridmap import GridMap
-from algorithms.observation import Observation
-from algorithms.pose import wrap_angle
-from algorithms.simulator.dice import chance, uniform
+from algorithms.common.pose import wrap_angle
+from algorithms.maps.grid_map import GridMap
+from algorithms.observations import observation
+from algorithms.observations.observation import Observation
+from algorithms.simulator.portable_random import chance, uniform
 from algorithms.simulator.scenario import Case
 
 FROM, TO = 3.0, 8.0  # metres by which a wrong sighting is wrong: out of reach of a badly measured one

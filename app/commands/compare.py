@@ -40,7 +40,7 @@ Exit status: 0 done, 1 no method could be run on some case, 2 bad input, 130 int
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     """Tell the parser what the command takes."""
-    from algorithms.methods import METHODS
+    from algorithms.methods.registry import METHODS
     from app.flags import add_seed, add_workers
 
     parser.add_argument(
@@ -61,7 +61,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Run all, print the table, leave the files; 1 where no method could be run on a case."""
-    from algorithms.atomic import check_folder
+    from algorithms.files.atomic_write import check_folder
     from app.contest import contest, defaults_of, pairs_in
     from app.contest_files import NOTES, remarks, table_rows
     from app.executor import executor_for
@@ -85,7 +85,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
 
 
 def _leave(args: argparse.Namespace, root: Path, scores: Sequence) -> None:  # type: ignore[type-arg]
-    from algorithms.atomic import write_files
+    from algorithms.files.atomic_write import write_files
     from app.contest import Unread, defaults_of, pairs_in
     from app.contest_files import case_files, contest_files
     from app.progress import bar
@@ -100,7 +100,7 @@ def _leave(args: argparse.Namespace, root: Path, scores: Sequence) -> None:  # t
 
 
 def _methods(text: str) -> tuple[str, ...]:
-    from algorithms.methods import METHODS
+    from algorithms.methods.registry import METHODS
 
     names = tuple(dict.fromkeys(name.strip() for name in text.split(",")))
     for name in names:

@@ -9,7 +9,7 @@ from math import degrees
 from pathlib import Path
 from typing import Any
 
-from algorithms.errors import OutputError
+from algorithms.common.errors import OutputError
 from app.usage import Parser
 
 USAGE = "DIR [--rough | --both] [--wrong-pairs N] [--json FILE] [--jobs N | --scheduler ADDRESS] [options]"
@@ -73,8 +73,8 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Run all cases, print the table; 1 where a case could not be run."""
-    from algorithms.atomic import check_file, write_file
-    from algorithms.casefiles import case_folders
+    from algorithms.files.atomic_write import check_file, write_file
+    from algorithms.files.case_folder import case_folders
     from app.evaluate import (
         OVERALL,
         Order,

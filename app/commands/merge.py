@@ -11,13 +11,13 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from algorithms.errors import NoAnswerError, OutputError, SettingError
+from algorithms.common.errors import NoAnswerError, OutputError, SettingError
 from app.usage import Parser
 
 if TYPE_CHECKING:
-    from algorithms.gridmap import GridMap
-    from algorithms.observation import Observation
-    from algorithms.steps import MergeResult
+    from algorithms.maps.grid_map import GridMap
+    from algorithms.methods.steps import MergeResult
+    from algorithms.observations.observation import Observation
 
 USAGE = "MAP1 MAP2 --observation FILE --out DIR [--json] [--force] [--strict] [options]"
 DESCRIPTION = """\
@@ -84,8 +84,8 @@ def add_reading(parser: Parser) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, write and tell; the exit status."""
-    from algorithms import methods
-    from algorithms.gridmap import remarks_on
+    from algorithms.maps.grid_map import remarks_on
+    from algorithms.methods import registry as methods
     from app.flags import config_from
     from app.inputs import Inputs
     from app.progress import result_of
@@ -162,8 +162,8 @@ def _without_answer(
 
 def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, tuple[Observation, ...]]:
     """Both maps and the observations that the command line names."""
-    from algorithms.casefiles import read_observations
-    from algorithms.mapio import IMAGE_SUFFIXES, Shading, read_image, read_map
+    from algorithms.files.case_folder import read_observations
+    from algorithms.files.map_file import IMAGE_SUFFIXES, Shading, read_image, read_map
 
     paths, given = (args.map1, args.map2), args.resolution or ()
     plain = [path.suffix.lower() in IMAGE_SUFFIXES for path in paths]
@@ -184,7 +184,7 @@ def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, tuple[Obser
 
 def _leave(folder: Path, files: Mapping[str, bytes], stale: Sequence[str]) -> list[str]:
     """Write the files, then remove what an earlier run left under the names in ``stale``."""
-    from algorithms.atomic import write_files
+    from algorithms.files.atomic_write import write_files
 
     write_files({folder / name: data for name, data in files.items()})
     removed = []
@@ -205,8 +205,8 @@ def _leave(folder: Path, files: Mapping[str, bytes], stale: Sequence[str]) -> li
 
 def _check_folder(args: argparse.Namespace) -> None:
     """Raise OutputError where the result could not be left, or would take the place of an input."""
-    from algorithms.atomic import check_folder
-    from algorithms.mapio import YAML_SUFFIXES, parse_meta, read_bytes
+    from algorithms.files.atomic_write import check_folder
+    from algorithms.files.map_file import YAML_SUFFIXES, parse_meta, read_bytes
     from app.report import MERGED_FILES, OVERLAY_FILE, PAGE_FILE, REPORT_FILE, TRANSFORM_FILE
 
     check_folder(args.out)

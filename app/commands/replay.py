@@ -50,8 +50,8 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, record, write; the exit status."""
-    from algorithms import methods
-    from algorithms.atomic import check_file, write_file
+    from algorithms.files.atomic_write import check_file, write_file
+    from algorithms.methods import registry as methods
     from app.flags import config_from
     from app.progress import with_bar
     from app.replay import About, record, replay_html
@@ -81,7 +81,7 @@ def _inputs(args: argparse.Namespace, parser: Parser) -> Inputs:
     """What the command line names: two maps, a sample by its name, or the folder of a case."""
     from dataclasses import replace
 
-    from algorithms.casefiles import read_case, read_observations
+    from algorithms.files.case_folder import read_case, read_observations
     from app.commands.merge import read_inputs
     from app.inputs import Inputs
     from app.paths import samples

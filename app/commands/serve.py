@@ -16,7 +16,7 @@ from app.access import TOKEN_VARIABLE, Access, access_for, is_local, numeric
 from app.usage import Parser
 
 if TYPE_CHECKING:
-    from algorithms.casefiles import Case
+    from algorithms.files.case_folder import Case
 
 LOCAL = "127.0.0.1"
 PORT = 8080
@@ -136,7 +136,7 @@ def _check_lesson(folder: Path) -> None:
 
 def _case(args: argparse.Namespace) -> Case | None:
     """What the page opens with: the maps that were named, else a sample; None if none is installed."""
-    from algorithms.casefiles import Case, read_case
+    from algorithms.files.case_folder import Case, read_case
     from app.commands.merge import read_inputs
     from app.paths import samples
 

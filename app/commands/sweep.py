@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from app.usage import Parser
 
 if TYPE_CHECKING:
-    from algorithms.casefiles import Case
+    from algorithms.files.case_folder import Case
     from app.sweep import Plan, Point
 
 SWARM = "spectra-swarm"  # the paper's method, whose settings the paper sweeps
@@ -58,7 +58,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Sweep, write, tell; the exit status."""
-    from algorithms.atomic import check_folder, write_files
+    from algorithms.files.atomic_write import check_folder, write_files
     from app.executor import executor_for
     from app.journal import Journal
     from app.progress import bar
@@ -100,7 +100,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
 
 
 def _case(args: argparse.Namespace, parser: Parser) -> Case:
-    from algorithms.casefiles import read_case
+    from algorithms.files.case_folder import read_case
     from app.flags import case_folder
 
     return read_case(case_folder(args.case, parser), args.rough)

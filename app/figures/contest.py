@@ -11,10 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from algorithms.casefiles import Case
-from algorithms.errors import TooLargeError
-from algorithms.fuse import fuse
-from algorithms.methods import METHODS
+from algorithms.common.errors import TooLargeError
+from algorithms.files.case_folder import Case
+from algorithms.maps.map_fusion import fuse
+from algorithms.methods.registry import METHODS
 from app.contest import Score, tally
 from app.figures.canvas import colour, figure_files
 from app.palette import LIGHT

@@ -9,8 +9,8 @@ from math import hypot
 
 from matplotlib.figure import Figure
 
-from algorithms.calibration import Bin, calibration_error, reliability
-from algorithms.verdict_fit import Told
+from algorithms.verdict.calibration import Bin, calibration_error, reliability
+from algorithms.verdict.model_fit import Told
 from app.figures.canvas import COLOURS, MARKERS, colour, figure_files
 from app.palette import LIGHT
 

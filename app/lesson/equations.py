@@ -9,7 +9,7 @@ from hashlib import sha256
 from html import escape
 from pathlib import Path
 
-from algorithms.errors import InputFileError
+from algorithms.common.errors import InputFileError
 from app import paths
 
 

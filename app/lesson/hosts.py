@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-from algorithms.errors import MapMergeError
+from algorithms.common.errors import MapMergeError
 from app.desk import Desk
 from app.host import RunHost
 from app.inputs import Inputs

@@ -9,10 +9,10 @@ from typing import Any
 
 import viser
 
-from algorithms.errors import MapMergeError
-from algorithms.methods import DEFAULT_METHOD, METHODS
-from algorithms.pipeline import PipelineConfig
-from algorithms.steps import Step
+from algorithms.common.errors import MapMergeError
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS
+from algorithms.methods.spectra_method import PipelineConfig
+from algorithms.methods.steps import Step
 from app.bench import Overheard
 from app.inputs import Inputs
 from app.job import Job

@@ -8,10 +8,10 @@ from typing import Any
 
 import viser
 
-from algorithms.errors import MapMergeError
-from algorithms.methods import METHODS
-from algorithms.pose import pose_error
-from algorithms.steps import MergeResult
+from algorithms.common.errors import MapMergeError
+from algorithms.common.pose import pose_error
+from algorithms.methods.registry import METHODS
+from algorithms.methods.steps import MergeResult
 from app.controls import settings_of, value_at, word_for
 from app.desk import Desk
 from app.inputs import Inputs

@@ -7,9 +7,8 @@ from math import degrees, hypot, pi
 
 import numpy as np
 
-from algorithms.certificate import ProofState
-from algorithms.fuse import Fusion
-from algorithms.steps import (
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,
@@ -19,7 +18,8 @@ from algorithms.steps import (
     ProvenDetail,
     WindowDetail,
 )
-from algorithms.window import CoupledWindow
+from algorithms.observations.search_window import CoupledWindow
+from algorithms.optimisation.branch_and_bound import ProofState
 from app.lesson.study import Study
 from app.measure import measure_of
 from app.words import likelihood

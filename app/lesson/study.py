@@ -8,22 +8,16 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from algorithms.agreement import make_agreement
-from algorithms.montecarlo import monte_carlo
-from algorithms.objective import Objective, make_objective
-from algorithms.pipeline import values_in
-from algorithms.pose import FloatArray
-from algorithms.search import SearchState
-from algorithms.spectra import hough_transform
-from algorithms.steps import (
-    AugmentDetail,
-    CandidatesDetail,
-    RefineDetail,
-    Step,
-    WindowDetail,
-)
-from algorithms.swarm import settled_within, swarm
-from algorithms.window import Box, box_around
+from algorithms.common.pose import FloatArray
+from algorithms.methods.spectra_method import values_in
+from algorithms.methods.steps import AugmentDetail, CandidatesDetail, RefineDetail, Step, WindowDetail
+from algorithms.observations.search_window import Box, box_around
+from algorithms.optimisation.likelihood_field import make_agreement
+from algorithms.optimisation.monte_carlo import monte_carlo
+from algorithms.optimisation.objective import Objective, make_objective
+from algorithms.optimisation.optimiser import SearchState
+from algorithms.optimisation.particle_swarm import settled_within, swarm
+from algorithms.spectra.hough_spectra import hough_transform
 from app.inputs import Inputs
 from app.story import Story
 

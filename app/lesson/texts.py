@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from algorithms.casefiles import read_case
-from algorithms.errors import InputFileError, MapMergeError, unreadable
-from algorithms.mapio.fields import Fields, parse, shown
-from algorithms.methods import METHODS
-from algorithms.pipeline import PipelineConfig
+from algorithms.common.errors import InputFileError, MapMergeError, unreadable
+from algorithms.files.case_folder import read_case
+from algorithms.files.yaml_fields import Fields, parse, shown
+from algorithms.methods.registry import METHODS
+from algorithms.methods.spectra_method import PipelineConfig
 from app import paths
 from app.controls import Path as SettingPath
 from app.controls import Setting, settings_of, what_became_of, with_value

@@ -9,7 +9,7 @@ from typing import Literal
 
 import viser
 
-from algorithms.methods import METHODS, Family
+from algorithms.methods.registry import METHODS, Family
 from app.palette import LIGHT, QUIET
 from app.panels.sparing import put
 from app.research.outcome import Outcome

@@ -10,11 +10,11 @@ from threading import RLock
 
 import viser
 
-from algorithms.casefiles import observations_from_bytes, read_case
-from algorithms.errors import MapMergeError
-from algorithms.gridmap import GridMap
-from algorithms.mapio import map_from_bytes, parse_meta
-from algorithms.visible import visible
+from algorithms.common.display_text import visible
+from algorithms.common.errors import MapMergeError
+from algorithms.files.case_folder import observations_from_bytes, read_case
+from algorithms.files.map_file import map_from_bytes, parse_meta
+from algorithms.maps.grid_map import GridMap
 from app import paths
 from app.errand import Check, Errand, Left, Watched, unwatched
 from app.inputs import Files, Inputs, Upload

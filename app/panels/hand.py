@@ -9,8 +9,8 @@ from typing import Any
 
 import viser
 
-from algorithms.pose import Pose2, pose_error
-from algorithms.steps import MergeResult
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.methods.steps import MergeResult
 from app import words
 from app.measure import measure_of
 from app.palette import LIGHT, QUIET

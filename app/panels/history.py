@@ -6,7 +6,7 @@ from html import escape
 
 import viser
 
-from algorithms.verdict import Outcome
+from algorithms.verdict.decision import Outcome
 from app.history import Entry, History
 from app.panels.sparing import put
 

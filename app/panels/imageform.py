@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 import viser
 
-from algorithms.errors import SettingError
-from algorithms.gridmap import COARSEST, FARTHEST, FINEST, FREE, FREE_UP_TO, OCCUPIED_FROM, CellArray
-from algorithms.mapio import GreyImage, MapMeta, Shading, grey_image, meta_to_bytes, parse_meta
-from algorithms.mapio.reading import MOST_WALL
-from algorithms.mapio.shading import MODES
-from algorithms.pose import Pose2
+from algorithms.common.errors import SettingError
+from algorithms.common.pose import Pose2
+from algorithms.files.grey_levels import MOST_WALL
+from algorithms.files.map_file import GreyImage, MapMeta, Shading, grey_image, meta_to_bytes, parse_meta
+from algorithms.files.thresholds import MODES
+from algorithms.maps.grid_map import COARSEST, FARTHEST, FINEST, FREE, FREE_UP_TO, OCCUPIED_FROM, CellArray
 from app import render
 from app.errand import Check, Watched, unwatched
 from app.inputs import Upload

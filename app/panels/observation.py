@@ -9,8 +9,14 @@ from typing import Any
 
 import viser
 
-from algorithms.gridmap import FARTHEST
-from algorithms.observation import MOST_RANGE, SIGMA_BEARINGS, SIGMA_RANGES, Encounter, Observation
+from algorithms.maps.grid_map import FARTHEST
+from algorithms.observations.observation import (
+    MOST_RANGE,
+    SIGMA_BEARINGS,
+    SIGMA_RANGES,
+    Encounter,
+    Observation,
+)
 from app import words
 from app.draft import Draft
 from app.inputs import Inputs

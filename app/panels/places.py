@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from algorithms.conflicts import Conflicts, Place
+from algorithms.verdict.contradictions import Conflicts, Place
 
 MOST_PLACES = 12  # that are listed, and ringed on the map; the smaller ones are told in sum
 

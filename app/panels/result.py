@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.conflicts import Conflicts
-from algorithms.fuse import fuse
-from algorithms.handmade import BY_HAND
-from algorithms.merit import performance_index
-from algorithms.pose import pose_error
-from algorithms.steps import MergeResult
-from algorithms.verdict import Verdict
+from algorithms.common.pose import pose_error
+from algorithms.maps.map_fusion import fuse
+from algorithms.methods.manual_merge import BY_HAND
+from algorithms.methods.steps import MergeResult
+from algorithms.verdict.contradictions import Conflicts
+from algorithms.verdict.decision import Verdict
+from algorithms.verdict.performance_index import performance_index
 from app import words
 from app.inputs import Inputs
 from app.measure import measure_of

@@ -8,7 +8,7 @@ from threading import Lock
 
 import viser
 
-from algorithms.methods import METHODS
+from algorithms.methods.registry import METHODS
 from app.palette import LIGHT, QUIET
 from app.player import PACES
 

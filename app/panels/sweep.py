@@ -11,7 +11,7 @@ import numpy as np
 import viser
 from viser import uplot
 
-from algorithms.bounds import Bounds
+from algorithms.common.setting_bounds import Bounds
 from app.controls import Setting
 from app.palette import LIGHT, QUIET, css
 from app.panels.compare import says_html

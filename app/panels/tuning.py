@@ -8,8 +8,8 @@ from typing import Any
 
 import viser
 
-from algorithms.errors import MapMergeError, SettingError
-from algorithms.methods import DEFAULT_METHOD, METHODS
+from algorithms.common.errors import MapMergeError, SettingError
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from app.controls import Path, Setting, in_cells, settings_of, value_at, with_value, word_for
 from app.palette import QUIET
 

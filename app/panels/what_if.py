@@ -10,12 +10,12 @@ from typing import Any
 
 import viser
 
-from algorithms.evidence import Evidence
-from algorithms.pose import Pose2
-from algorithms.ranking import WINDOW_EDGE, Weighed
-from algorithms.steps import MergeResult
-from algorithms.verdict import Verdict, VerdictConfig, judge
-from algorithms.verdict_model import Fit, misfit_of, probability, quantities_of, shipped_model
+from algorithms.common.pose import Pose2
+from algorithms.methods.steps import MergeResult
+from algorithms.verdict.decision import Verdict, VerdictConfig, judge
+from algorithms.verdict.probability_model import Fit, misfit_of, probability, quantities_of, shipped_model
+from algorithms.verdict.ranking import WINDOW_EDGE, Weighed
+from algorithms.verdict.wall_evidence import Evidence
 from app import words
 from app.palette import LIGHT, QUIET
 from app.panels.tables import box

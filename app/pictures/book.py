@@ -8,9 +8,8 @@ from math import radians
 
 import numpy as np
 
-from algorithms.fuse import Fusion
-from algorithms.search import SearchState
-from algorithms.steps import (
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import (
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
@@ -23,6 +22,7 @@ from algorithms.steps import (
     Step,
     WeighedDetail,
 )
+from algorithms.optimisation.optimiser import SearchState
 from app.layout import Layout
 from app.lesson.study import FEW, Study
 from app.palette import Palette

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from algorithms.steps import MergeResult
-from algorithms.verdict import Outcome, Verdict
-from algorithms.verdict_model import OTHERS, QUANTITIES, probability
+from algorithms.methods.steps import MergeResult
+from algorithms.verdict.decision import Outcome, Verdict
+from algorithms.verdict.probability_model import OTHERS, QUANTITIES, probability
 from app import words
 from app.lesson.study import Study
 from app.palette import LIGHT, Palette, Rgb, css

@@ -7,11 +7,11 @@ from math import cos, degrees, pi, sin
 
 import numpy as np
 
-from algorithms.fuse import Fusion
-from algorithms.gridmap import FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, CellArray
-from algorithms.observation import Encounter
-from algorithms.pose import Pose2
-from algorithms.steps import AugmentDetail, HoughDetail, MergeResult
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, CellArray
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import AugmentDetail, HoughDetail, MergeResult
+from algorithms.observations.observation import Encounter
 from app.lesson.study import Study
 from app.palette import VIRIDIS, Palette
 from app.pictures.plan import robot, scale_bar, scene, view_of

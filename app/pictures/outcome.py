@@ -10,13 +10,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.certificate import ProofState
-from algorithms.conflicts import Conflicts
-from algorithms.fuse import Fusion
-from algorithms.gridmap import FREE, FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap, where
-from algorithms.observation import Encounter, Observation
-from algorithms.pose import FloatArray
-from algorithms.steps import MergeResult
+from algorithms.common.pose import FloatArray
+from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap, where
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import MergeResult
+from algorithms.observations.observation import Encounter, Observation
+from algorithms.optimisation.branch_and_bound import ProofState
+from algorithms.verdict.contradictions import Conflicts
 from app import charts
 from app.layout import Rect, known_corners, rect_of
 from app.measure import Measure

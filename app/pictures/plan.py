@@ -6,7 +6,7 @@ from math import cos, sin
 
 import numpy as np
 
-from algorithms.pose import FloatArray
+from algorithms.common.pose import FloatArray
 from app.palette import Rgb
 from app.pictures.raster import View, around
 from app.pictures.sheet import INK, Plot, Sheet, number

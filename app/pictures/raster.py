@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.augment import AugmentedMap
-from algorithms.gridmap import OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap
-from algorithms.pose import FloatArray, Pose2
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap
+from algorithms.spectra.augmented_map import AugmentedMap
 from app.layout import Rect
 from app.palette import Palette, Rgb, viridis
 

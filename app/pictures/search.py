@@ -8,10 +8,10 @@ from math import degrees, hypot
 import numpy as np
 from skimage.measure import block_reduce
 
-from algorithms.objective import PAD, Objective
-from algorithms.pose import FloatArray, Pose2
-from algorithms.search import SearchState
-from algorithms.steps import AugmentDetail, ProofDetail, WindowDetail
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.methods.steps import AugmentDetail, ProofDetail, WindowDetail
+from algorithms.optimisation.objective import PAD, Objective
+from algorithms.optimisation.optimiser import SearchState
 from app import charts
 from app.lesson.study import FEW, Study
 from app.measure import AGREEMENT, GAMMA, Measure, measure_of

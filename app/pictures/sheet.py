@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.pose import FloatArray
+from algorithms.common.pose import FloatArray
 from app.palette import Palette, Rgb, css
 
 WIDE = 380.0

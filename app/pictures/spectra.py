@@ -8,8 +8,8 @@ from math import degrees
 import numpy as np
 from scipy.ndimage import maximum_filter
 
-from algorithms.pose import FloatArray, Pose2, rotation, wrap_angle
-from algorithms.steps import AugmentDetail, HoughDetail, ShiftDetail, WindowDetail
+from algorithms.common.pose import FloatArray, Pose2, rotation, wrap_angle
+from algorithms.methods.steps import AugmentDetail, HoughDetail, ShiftDetail, WindowDetail
 from app.layout import known_corners
 from app.lesson.study import Study
 from app.palette import Palette, viridis

@@ -8,8 +8,8 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from algorithms.gridmap import UNKNOWN, GridMap
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import UNKNOWN, GridMap
 from app.layout import known_hull, rect_of, union
 from app.palette import Palette
 from app.pictures.raster import Pixels, View, under, walls

@@ -15,7 +15,7 @@ from app.replay.record import record
 from app.story import Story
 
 if TYPE_CHECKING:
-    from algorithms.steps import Step
+    from algorithms.methods.steps import Step
     from app.job import Job
 
 __all__ = ["About", "record", "replay_html", "replay_of"]

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.pose import FloatArray
-from algorithms.steps import (
+from algorithms.common.pose import FloatArray
+from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from algorithms.gridmap import GridMap
-from algorithms.methods import METHODS
+from algorithms.maps.grid_map import GridMap
+from algorithms.methods.registry import METHODS
 from app import render
 from app.controls import settings_of, text_for, value_at
 from app.inputs import Inputs

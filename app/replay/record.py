@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.steps import AugmentDetail, MergeResult, ObservationDetail, RefineDetail, Step
+from algorithms.methods.steps import AugmentDetail, MergeResult, ObservationDetail, RefineDetail, Step
 from app import words
 from app.inputs import Inputs
 from app.layout import lay_out

@@ -7,7 +7,7 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from threading import Lock
 
-from algorithms.casefiles import Case
+from algorithms.files.case_folder import Case
 from app.contest import Configs, Score
 from app.contest_files import case_files, contest_files
 from app.sweep import Plan, Point

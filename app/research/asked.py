@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from algorithms.errors import SettingError
+from algorithms.common.errors import SettingError
 from app import axes
 from app.controls import Setting, value_at
 from app.sweep import Axis, Plan

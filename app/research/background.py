@@ -8,7 +8,7 @@ from contextlib import closing
 from threading import BoundedSemaphore, Event, RLock, Thread
 from typing import Any, Protocol
 
-from algorithms.errors import MapMergeError
+from algorithms.common.errors import MapMergeError
 from app.executor import Executor
 from app.processes import Processes, cores
 

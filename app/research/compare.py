@@ -11,8 +11,8 @@ from typing import Protocol
 import numpy as np
 import viser
 
-from algorithms.casefiles import Case
-from algorithms.methods import DEFAULT_METHOD, METHODS
+from algorithms.files.case_folder import Case
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from app.channel import Channel
 from app.contest import Score, contest
 from app.executor import Executor

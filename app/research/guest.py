@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from math import degrees
 from typing import Any
 
-from algorithms.fuse import fuse
-from algorithms.gridmap import GridMap
-from algorithms.methods import METHODS
-from algorithms.observation import Observation, encounters_of
-from algorithms.pose import Pose2
-from algorithms.steps import Answer, AnswersDetail, AugmentDetail, ObservationDetail, Step
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import GridMap
+from algorithms.maps.map_fusion import fuse
+from algorithms.methods.registry import METHODS
+from algorithms.methods.steps import Answer, AnswersDetail, AugmentDetail, ObservationDetail, Step
+from algorithms.observations.observation import Observation, encounters_of
 from app.panels.tables import box, table
 from app.research.outcome import outcome_of, verdict_mood
 from app.story import Story

@@ -9,9 +9,9 @@ from typing import Any, Protocol
 
 import viser
 
-from algorithms.casefiles import Case
-from algorithms.errors import SettingError
-from algorithms.methods import METHODS
+from algorithms.common.errors import SettingError
+from algorithms.files.case_folder import Case
+from algorithms.methods.registry import METHODS
 from app import axes
 from app.channel import Channel
 from app.controls import Setting, settings_of

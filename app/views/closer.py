@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from threading import RLock
 
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
 from app.channel import Channel, Numbers
 from app.newest import Newest
 from app.stage import Stage

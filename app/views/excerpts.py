@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from algorithms.pose import FloatArray, Pose2
+from algorithms.common.pose import FloatArray, Pose2
 from app.layout import Rect
 from app.render import Part
 

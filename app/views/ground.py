@@ -9,12 +9,12 @@ from typing import Any, Literal
 
 import viser
 
-from algorithms.conflicts import Conflicts
-from algorithms.fuse import Fusion
-from algorithms.gridmap import GridMap
-from algorithms.pose import Pose2
-from algorithms.steps import AugmentDetail
-from algorithms.touch import Touch, Walls
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import GridMap
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import AugmentDetail
+from algorithms.verdict.cell_agreement import Touch, Walls
+from algorithms.verdict.contradictions import Conflicts
 from app import render
 from app.layout import Layout
 from app.palette import Palette

@@ -6,9 +6,9 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from algorithms.augment import AugmentedMap
-from algorithms.pose import FloatArray
-from algorithms.steps import AugmentDetail
+from algorithms.common.pose import FloatArray
+from algorithms.methods.steps import AugmentDetail
+from algorithms.spectra.augmented_map import AugmentedMap
 from app.palette import Palette, css, viridis
 from app.stage import Item, Stage, path
 

@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy as np
 import viser
 
-from algorithms.gridmap import GridMap
-from algorithms.pose import FloatArray, Pose2
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.maps.grid_map import GridMap
 from app.png import png_base64
 from app.render import WHOLE, Part, Picture
 from app.stage import Stage

@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 import viser
 
-from algorithms.conflicts import Conflicts
-from algorithms.fuse import Fusion
-from algorithms.gridmap import FREE, OCCUPIED_FROM
-from algorithms.pose import FloatArray, Pose2
-from algorithms.steps import (
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.maps.grid_map import FREE, OCCUPIED_FROM
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,
@@ -25,8 +24,9 @@ from algorithms.steps import (
     TurnsDetail,
     WindowDetail,
 )
-from algorithms.touch import Touch, Walls
-from algorithms.window import CoupledWindow
+from algorithms.observations.search_window import CoupledWindow
+from algorithms.verdict.cell_agreement import Touch, Walls
+from algorithms.verdict.contradictions import Conflicts
 from app import words
 from app.inputs import Inputs
 from app.layout import Layout, Rect, known_hull, union

@@ -9,9 +9,8 @@ import numpy as np
 import viser
 from viser import uplot
 
-from algorithms.certificate import ProofState
-from algorithms.fuse import Fusion
-from algorithms.steps import (
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,
@@ -25,6 +24,7 @@ from algorithms.steps import (
     TurnsDetail,
     WindowDetail,
 )
+from algorithms.optimisation.branch_and_bound import ProofState
 from app import charts, words
 from app.palette import LIGHT, css
 from app.panels.tables import box, table

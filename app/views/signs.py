@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.certificate import ProofState
-from algorithms.observation import Encounter, Observation
-from algorithms.pose import FloatArray, Pose2, rotation
-from algorithms.steps import MatchesDetail, WindowDetail
-from algorithms.window import Box, CoupledWindow, Window
+from algorithms.common.pose import FloatArray, Pose2, rotation
+from algorithms.methods.steps import MatchesDetail, WindowDetail
+from algorithms.observations.observation import Encounter, Observation
+from algorithms.observations.search_window import Box, CoupledWindow, Window
+from algorithms.optimisation.branch_and_bound import ProofState
 from app.draft import Draft
 from app.layout import Layout, Rect
 from app.palette import Palette, css

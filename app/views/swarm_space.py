@@ -6,9 +6,9 @@ from math import pi
 
 import numpy as np
 
-from algorithms.pose import FloatArray, Pose2, pose_error, wrap_angle
-from algorithms.steps import ProvenDetail, RefineDetail
-from algorithms.window import Box
+from algorithms.common.pose import FloatArray, Pose2, pose_error, wrap_angle
+from algorithms.methods.steps import ProvenDetail, RefineDetail
+from algorithms.observations.search_window import Box
 from app import words
 from app.palette import Palette, css
 from app.stage import Item, Stage, cloud, mark, path

@@ -20,20 +20,20 @@ import cv2
 import numpy as np
 import pytest
 
-from algorithms.agreement import make_agreement
-from algorithms.augment import AugmentedMap, augment
-from algorithms.blocks import Lattice
-from algorithms.casefiles import write_observations
-from algorithms.certificate import ProofConfig, ProofState, prove
-from algorithms.gridmap import GridMap
-from algorithms.mapio import write_map
-from algorithms.methods import DEFAULT_METHOD, METHODS, merge
-from algorithms.objective import Lookup, Objective, make_objective
-from algorithms.observation import encounter
-from algorithms.pose import Pose2
-from algorithms.simulator.large import simulate_large
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import write_observations
+from algorithms.files.map_file import write_map
+from algorithms.maps.grid_map import GridMap
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
+from algorithms.observations.observation import encounter
+from algorithms.observations.search_window import CoupledWindow, coupled_window
+from algorithms.optimisation.branch_and_bound import ProofConfig, ProofState, prove
+from algorithms.optimisation.likelihood_field import make_agreement
+from algorithms.optimisation.objective import Lookup, Objective, make_objective
+from algorithms.optimisation.upper_bounds import Lattice
+from algorithms.simulator.large_pair import simulate_large
 from algorithms.simulator.scenario import Case, simulate
-from algorithms.window import CoupledWindow, coupled_window
+from algorithms.spectra.augmented_map import AugmentedMap, augment
 
 SIDE, WALLS, PARTICLES = 1000, 8_000, 400
 

@@ -10,7 +10,7 @@ from chromium import NoChromium, find_chromium
 from driver import ARGUMENTS, Tab
 from playwright.sync_api import Browser, sync_playwright
 
-from algorithms.casefiles import Case, read_case
+from algorithms.files.case_folder import Case, read_case
 from app.paths import samples
 from app.server import make_server
 

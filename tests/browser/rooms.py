@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from algorithms.casefiles import observations_to_bytes
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.mapio import map_to_bytes
-from algorithms.observation import Observation
+from algorithms.files.case_folder import observations_to_bytes
+from algorithms.files.map_file import map_to_bytes
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.observations.observation import Observation
 
 
 def l_room() -> GridMap:

@@ -22,9 +22,9 @@ from driver import ARGUMENTS, Tab, settle  # noqa: E402
 from PIL import Image  # noqa: E402
 from playwright.sync_api import Browser, sync_playwright  # noqa: E402
 
-from algorithms.casefiles import Case, read_case  # noqa: E402
-from algorithms.mapio import map_to_bytes  # noqa: E402
-from algorithms.observation import Observation  # noqa: E402
+from algorithms.files.case_folder import Case, read_case  # noqa: E402
+from algorithms.files.map_file import map_to_bytes  # noqa: E402
+from algorithms.observations.observation import Observation  # noqa: E402
 from algorithms.simulator.training_pairs import training_pairs  # noqa: E402
 from app.paths import samples  # noqa: E402
 from app.server import make_server  # noqa: E402

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from driver import Tab, settle
 
-from algorithms.casefiles import observations_to_bytes
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.mapio import map_from_bytes, map_to_bytes
-from algorithms.observation import Observation
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import observations_to_bytes
+from algorithms.files.map_file import map_from_bytes, map_to_bytes
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.observations.observation import Observation
 from app.palette import LIGHT
 from app.panels import files
 

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from driver import Tab, settle
 
-from algorithms.casefiles import Case, read_observations
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.mapio import read_map
-from algorithms.methods import merge
-from algorithms.observation import Observation
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import Case, read_observations
+from algorithms.files.map_file import read_map
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.methods.registry import merge
+from algorithms.observations.observation import Observation
 from app.palette import LIGHT
 from app.server import make_server
 

@@ -8,10 +8,10 @@ from drawn import symmetric_hall
 from driver import settle
 from rooms import l_room
 
-from algorithms.casefiles import Case
-from algorithms.methods import METHODS
-from algorithms.observation import Observation
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import Case
+from algorithms.methods.registry import METHODS
+from algorithms.observations.observation import Observation
 from app.palette import LIGHT
 from app.server import make_server
 

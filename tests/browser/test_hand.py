@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from driver import READY, SCALE, field, metres, settle
 
-from algorithms.casefiles import Case, read_observations
-from algorithms.observation import encounter
+from algorithms.files.case_folder import Case, read_observations
+from algorithms.observations.observation import encounter
 from app.access import Access
 from app.channel import Channel, Numbers
 from app.guard import guarded_server

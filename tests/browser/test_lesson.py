@@ -9,7 +9,7 @@ import pytest
 from driver import Tab, settle
 from rooms import write_case
 
-from algorithms.casefiles import Case
+from algorithms.files.case_folder import Case
 from app.lesson.texts import files, lesson_folder
 from app.pictures.book import PICTURES
 from app.server import make_server

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from driver import settle
 
-from algorithms.casefiles import Case, read_case
+from algorithms.files.case_folder import Case, read_case
 from app.server import make_server
 
 

@@ -9,11 +9,11 @@ import pytest
 from driver import settle
 from rooms import l_room, write_case
 
-from algorithms.casefiles import Case, observations_to_bytes
-from algorithms.mapio import read_map
-from algorithms.methods import merge
-from algorithms.observation import Observation
-from algorithms.pose import Pose2
+from algorithms.common.pose import Pose2
+from algorithms.files.case_folder import Case, observations_to_bytes
+from algorithms.files.map_file import read_map
+from algorithms.methods.registry import merge
+from algorithms.observations.observation import Observation
 from app.server import make_server
 
 pytestmark = pytest.mark.browser

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from driver import settle
 
-from algorithms.methods import METHODS
+from algorithms.methods.registry import METHODS
 
 pytestmark = pytest.mark.browser
 

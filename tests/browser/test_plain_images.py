@@ -10,8 +10,8 @@ import pytest
 from driver import Tab, settle
 from PIL import Image
 
-from algorithms.gridmap import FREE, OCCUPIED, UNKNOWN
-from algorithms.mapio import read_map
+from algorithms.files.map_file import read_map
+from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN
 from app.palette import LIGHT
 
 pytestmark = pytest.mark.browser

@@ -10,8 +10,8 @@ import pytest
 from driver import settle
 from playwright.sync_api import Browser, Page
 
-from algorithms.casefiles import Case
-from algorithms.methods import METHODS, run
+from algorithms.files.case_folder import Case
+from algorithms.methods.registry import METHODS, run
 from app.inputs import Inputs
 from app.palette import DARK, LIGHT
 from app.replay import About, record, replay_html

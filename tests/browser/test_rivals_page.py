@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 from driver import settle
 
-from algorithms.baselines.detectors import OrbConfig
-from algorithms.baselines.features import FeatureConfig, MatchConfig
-from algorithms.methods import METHODS
+from algorithms.methods.baselines.feature_detectors import OrbConfig
+from algorithms.methods.baselines.feature_matching import FeatureConfig, MatchConfig
+from algorithms.methods.registry import METHODS
 from app.page import Page
 from app.palette import LIGHT, css
 

@@ -1,0 +1,267 @@
+"""The fields of a small YAML file, taken out one by one; what does not fit is told by name.
+
+Every scalar comes out of the parser as the text that stands in the file, and becomes a number only
+where a number is asked for, as in Nav2's parser. So 1e-3, which YAML 1.1 takes for a string, is a
+number here, and an image called 2024 is a name.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+import reprlib
+from collections.abc import Hashable
+from dataclasses import dataclass
+from typing import Any
+
+import yaml
+
+from algorithms.common.errors import InputFileError
+from algorithms.maps.grid_map import FARTHEST, MOST_TURN
+
+MAX_YAML_BYTES = 32 * 1024  # ours have 400 bytes, and 64 sightings less than 30,000
+MAX_DEPTH = 20  # of lists and mappings in each other; ours are 3 deep
+MAX_ALIASES = 64
+MAX_VALUES = 5000  # keys count, too; 64 sightings have 2,000
+TRUE = ("true", "yes", "on", "y")
+HALVES = re.compile(r"[\ud800-\udfff]")  # of characters: no such text can be sent or saved
+FALSE = ("false", "no", "off", "n")
+
+
+class _TextLoader(yaml.BaseLoader):
+    """Mappings, lists and texts only; a key given twice is an error, not a silent choice.
+
+    Composing takes what the scanner finds as it comes, so its bounds end the scanning, too: that takes a
+    time that grows with the square of the depth.
+    """
+
+    _aliases = _values = _depth = 0
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        self._values += 1
+        self._aliases += self.check_event(yaml.AliasEvent)
+        if self._values > MAX_VALUES or self._aliases > MAX_ALIASES:
+            raise yaml.composer.ComposerError(None, None, "it holds too many values", None)
+        if self._depth >= MAX_DEPTH and self.check_event(yaml.CollectionStartEvent):
+            raise RecursionError
+        self._depth += 1
+        node: yaml.Node | None = super().compose_node(parent, index)
+        self._depth -= 1
+        return node
+
+    def compose_scalar_node(self, anchor: Any) -> yaml.ScalarNode:
+        node: yaml.ScalarNode = super().compose_scalar_node(anchor)
+        half = HALVES.search(node.value)  # only an escape can write one
+        if half:
+            raise yaml.composer.ComposerError(
+                None, None, f"a text holds half a character, U+{ord(half[0]):04X}", node.start_mark
+            )
+        return node
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
+        seen: set[str] = set()
+        for key_node, _ in node.value:
+            key = str(key_node.value)
+            if key in seen:
+                raise yaml.constructor.ConstructorError(
+                    None, None, f"the key {key} stands there twice", key_node.start_mark
+                )
+            seen.add(key)
+        return super().construct_mapping(node, deep=deep)
+
+
+@dataclass(frozen=True)
+class Fields:
+    """A mapping of a YAML file.
+
+    source : name of the file as the user knows it
+    values : texts, lists and mappings by key
+    prefix : way to this mapping inside the file, as it stands before a key: "tolerance.",
+             "observation 2: "; empty for the file itself
+    """
+
+    source: str
+    values: dict[str, Any]
+    prefix: str = ""
+
+    def error(self, key: str, found: str, remedy: str) -> InputFileError:
+        """The error about one key."""
+        return InputFileError(self.source, f"{self.prefix}{key} {found}", remedy)
+
+    def get(self, key: str, remedy: str) -> Any:
+        """The value as it stands; raises InputFileError where the key is missing."""
+        if key not in self.values:
+            raise self.error(key, "is missing", remedy)
+        return self.values[key]
+
+    def text(self, key: str, remedy: str) -> str:
+        """A text that is not empty."""
+        value = self.get(key, remedy)
+        if not isinstance(value, str) or not value.strip():
+            raise self.error(key, f"is {shown(value)}", remedy)
+        return value
+
+    def number(self, key: str, remedy: str) -> float:
+        """A finite number."""
+        value = self.get(key, remedy)
+        number = as_number(value)
+        if number is None:
+            raise self.error(key, f"is {shown(value)}, not a finite number", remedy)
+        return number
+
+    def numbers(self, key: str, lengths: tuple[int, ...], remedy: str) -> list[float]:
+        """A list of finite numbers, of one of the given lengths."""
+        value = self.get(key, remedy)
+        numbers = [as_number(item) for item in value] if isinstance(value, list) else []
+        finite = [number for number in numbers if number is not None]
+        if len(finite) != len(numbers) or len(finite) not in lengths:
+            wanted = " or ".join(str(length) for length in lengths)
+            raise self.error(key, f"is {shown(value)}, not {wanted} finite numbers", remedy)
+        return finite
+
+    def pose(self, key: str, lengths: tuple[int, ...], remedy: str) -> list[float]:
+        """[x, y] or [x, y, yaw] within FARTHEST and MOST_TURN; metres, metres, radians."""
+        pose = self.numbers(key, lengths, remedy)
+        if any(abs(metres) > FARTHEST for metres in pose[:2]):
+            found = f"is {shown(self.values[key])}, which is more than {FARTHEST / 1000:,.0f} km away"
+            raise self.error(key, found, remedy)
+        if any(abs(yaw) > MOST_TURN for yaw in pose[2:]):
+            found = f"is {shown(self.values[key])}, which turns by more than {MOST_TURN:,.0f} rad"
+            raise self.error(key, found, remedy)
+        return pose
+
+    def flag(self, key: str, remedy: str) -> bool:
+        """True or false; a whole number counts as in C, and 0 is false."""
+        value = self.get(key, remedy)
+        if isinstance(value, str):
+            if value.lower() in TRUE + FALSE:
+                return value.lower() in TRUE
+            number = as_number(value)
+            if number is not None and number.is_integer():
+                return number != 0
+        raise self.error(key, f"is {shown(value)}", remedy)
+
+    def section(self, key: str, remedy: str) -> Fields:
+        """A mapping inside this one."""
+        value = self.get(key, remedy)
+        if not isinstance(value, dict):
+            raise self.error(key, f"is {shown(value)}, not a mapping", remedy)
+        return Fields(self.source, value, f"{self.prefix}{key}.")
+
+    def refuse_unknown(self, *known: str, near_only: bool = False) -> None:
+        """Raise InputFileError for a key not among the known ones.
+
+        near_only : pass over keys that look like none of the known ones
+        """
+        for key in self.values:
+            if key in known:
+                continue
+            near = difflib.get_close_matches(key, known, n=1)
+            if near:
+                remedy = f"did you mean {near[0]}? Known are {', '.join(known)}"
+            elif near_only:
+                continue
+            else:
+                remedy = f"take it out; known are {', '.join(known)}"
+            raise self.error(shown(key).strip("'"), "is not a known key", remedy)
+
+
+def parse(source: str, data: bytes, what: str) -> Fields:
+    """The fields of a YAML file.
+
+    source : name of the file as the user knows it
+    what   : what the file should be, with its article: "a map's YAML file"
+    raises : InputFileError where it is too long, not YAML, or not a mapping
+    """
+    return _mapping(source, _load(source, data, what), what)
+
+
+def parse_entries(source: str, data: bytes, what: str, entry: str, most: int) -> list[Fields]:
+    """The fields of a YAML file that holds one mapping or a list of them, 1 … ``most``.
+
+    entry  : what one of them is called; errors in a list then begin with "ENTRY 2: "
+    raises : InputFileError as ``parse`` does, and for a list that is empty, too long, or holds
+             anything but mappings
+    """
+    values = _load(source, data, what)
+    if not isinstance(values, list):
+        return [_mapping(source, values, what)]
+    if not 1 <= len(values) <= most:
+        found = f"holds {len(values)} {entry}s" if values else "is an empty list"
+        raise InputFileError(source, found, f"give 1 to {most} {entry}s")
+    for number, value in enumerate(values, 1):
+        if not isinstance(value, dict):
+            raise InputFileError(
+                source,
+                f"{entry} {number} is {shown(value)}, not a mapping",
+                "give lines of the form key: value",
+            )
+    return [Fields(source, value, f"{entry} {number}: ") for number, value in enumerate(values, 1)]
+
+
+def _load(source: str, data: bytes, what: str) -> Any:
+    if len(data) > MAX_YAML_BYTES:
+        raise InputFileError(
+            source,
+            f"has {len(data):,} bytes, which is too long for {what}",
+            "give the small YAML file, not the image",
+        )
+    try:
+        return yaml.load(data, Loader=_TextLoader)
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        raise InputFileError(
+            source, f"is not YAML ({_cause(error)})", f"give {what}, or mend the line"
+        ) from error
+
+
+def _mapping(source: str, values: Any, what: str) -> Fields:
+    if not isinstance(values, dict):
+        found = "is empty" if values in (None, "") else "holds no keys"
+        raise InputFileError(source, found, f"give {what}, with lines of the form key: value")
+    return Fields(source, values)
+
+
+def as_number(value: Any) -> float | None:
+    """The finite number that a text stands for, or None."""
+    if not isinstance(value, str) or "_" in value:  # Python reads 1_0 as 10; Nav2 does not
+        return None
+    try:
+        number = float(value)
+    except ValueError:
+        return None
+    return number if math.isfinite(number) else None
+
+
+def shown(value: Any) -> str:
+    """A value of a file as an error message shows it: one line, however deep it is."""
+    if value == "":
+        return "empty"
+    short = reprlib.Repr()
+    short.maxlevel, short.maxlist, short.maxdict, short.maxstring = 2, 6, 4, 60
+    return short.repr(value).replace("'", "") if isinstance(value, list) else short.repr(value)
+
+
+def number_text(value: float) -> str:
+    """A number that reads back to the same bits, in YAML 1.1 and 1.2 alike."""
+    text = repr(float(value))
+    # YAML 1.1 takes 1e-05 for a string; with a point it is a number everywhere.
+    return text.replace("e", ".0e") if "e" in text and "." not in text else text
+
+
+def quoted(text: str) -> str:
+    """A text as it stands in a YAML file: plain where that is safe."""
+    if re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", text):
+        return text
+    whole = yaml.safe_dump(text, default_style='"', allow_unicode=True, width=float("inf"))
+    return str(whole).rstrip("\n")
+
+
+def _cause(error: Exception) -> str:
+    """One line of what the parser found."""
+    if isinstance(error, RecursionError):
+        return "it is nested too deeply"
+    if isinstance(error, yaml.MarkedYAMLError) and error.problem:
+        mark = error.problem_mark
+        return error.problem[:120] + (f", line {mark.line + 1}" if mark else "")
+    return (str(error) or type(error).__name__).splitlines()[0][:120]

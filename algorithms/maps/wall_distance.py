@@ -1,0 +1,64 @@
+"""What lies near a wall, without asking every cell of a large map how far it has to the nearest one."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.common.parallel_kernels import kernel
+from algorithms.maps.grid_map import BoolArray, where
+from algorithms.optimisation.objective import Float32Array
+
+KindArray = NDArray[np.uint8]
+
+
+def distances(reach: int) -> Float32Array:
+    """(2 reach + 1, 2 reach + 1) distance from the middle, in cells: as ``distance_to_walls`` measures it."""
+    along = np.arange(-reach, reach + 1)
+    return np.sqrt((along[:, None] ** 2 + along**2).astype(np.float32))
+
+
+def stamp(walls: BoolArray, disc: KindArray, ground: KindArray) -> None:
+    """Mark what is around the walls.
+
+    walls  : (H, W) bool
+    disc   : (2 r + 1, 2 r + 1) what a wall in its middle makes of the cells around it, as bits; what is
+             nearer to the wall must hold all bits of what is farther
+    ground : (H, W) takes those bits, beside what it holds
+    """
+    reach = len(disc) // 2
+    down, right = np.nonzero(disc)
+    rows, cols = where(walls)
+    _stamp(walls, rows, cols, down - reach, right - reach, disc[down, right], disc[reach, reach], ground)
+
+
+def near(walls: BoolArray, disc: BoolArray) -> BoolArray:
+    """(H, W) whether there is a wall within the disc around a cell."""
+    ground = np.zeros(walls.shape, dtype=np.uint8)
+    stamp(walls, disc.astype(np.uint8), ground)
+    return ground.view(np.bool_)
+
+
+@kernel
+def _stamp(
+    walls: BoolArray,
+    rows: NDArray[np.intp],
+    cols: NDArray[np.intp],
+    down: NDArray[np.intp],
+    right: NDArray[np.intp],
+    kind: KindArray,
+    middle: int,
+    ground: KindArray,
+) -> None:
+    height, width = walls.shape
+    for n in range(len(rows)):
+        row, col = rows[n], cols[n]
+        ground[row, col] |= middle
+        if 0 < row < height - 1 and 0 < col < width - 1:
+            above, below = walls[row + 1, col], walls[row - 1, col]
+            if above and below and walls[row, col - 1] and walls[row, col + 1]:
+                continue  # whatever is near this wall is nearer to one of these
+        for k in range(len(kind)):
+            i, j = row + down[k], col + right[k]
+            if 0 <= i < height and 0 <= j < width:
+                ground[i, j] |= kind[k]

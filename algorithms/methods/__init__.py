@@ -1,0 +1,1 @@
+"""The table of methods, the default method stage by stage, and merging by hand."""

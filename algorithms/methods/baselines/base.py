@@ -1,0 +1,101 @@
+"""What methods share that come to a transform in their own way: the sighting before, the verdict after."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.maps.grid_map import GridMap
+from algorithms.maps.map_fusion import Conflict, Fusion, fuse
+from algorithms.methods.merge_result import conclude
+from algorithms.methods.stage_runner import Chain, Memo
+from algorithms.methods.steps import AnswersDetail, ObservationDetail, Step, WeighedDetail
+from algorithms.observations.observation import Encounter, Observation, encounters_of, robots_of
+from algorithms.observations.search_window import WindowConfig, coupled_window
+from algorithms.optimisation.likelihood_field import AgreementConfig
+from algorithms.verdict.decision import VerdictConfig
+from algorithms.verdict.probability_model import shipped_model
+from algorithms.verdict.ranking import better_beside, weigh
+from algorithms.verdict.whole_maps import make_whole_maps
+
+Found = tuple[AnswersDetail, FloatArray]
+"""Answers, best first, and the (3, 3) covariance of x, y, theta of the best; m and rad."""
+
+Search = Callable[[Chain], Generator[Step, None, Found]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class DirectConfig:
+    """What follows the transform, whoever has found it."""
+
+    verdict: VerdictConfig = field(default_factory=VerdictConfig)
+    conflict: Conflict = Conflict.OCCUPIED_WINS
+    """Which map is believed where one says wall and the other says free."""
+
+
+def run_direct(
+    ref: GridMap,
+    mov: GridMap,
+    observations: tuple[Observation, ...],
+    config: DirectConfig,
+    seed: int,
+    memo: Memo | None,
+    method: str,
+    search: Search,
+    valued: bool = True,
+) -> Iterator[Step]:
+    """Yield the steps of a merge whose transform comes from ``search``; the last one's detail is the
+    MergeResult.
+
+    search : yields its steps, a stage or several of the chain, and returns what it has found
+    valued : whether the values of the answers say anything
+    """
+    chain = Chain({} if memo is None else memo)
+    seen: ObservationDetail = yield from chain.stage(
+        "observe",
+        (ref, mov, observations),
+        lambda: [ObservationDetail(encounters_of(observations, ref, mov))],
+    )
+    found, covariance = yield from search(chain)
+    best, size = found.answers[0], config.verdict.robot_size
+    weighed: WeighedDetail = yield from chain.stage(
+        "weigh",
+        (ref, mov, seen, found, size),
+        lambda: [_weigh(ref, mov, seen.encounters, best.T_ref_mov, size)],
+    )
+    fusion: Fusion = yield from chain.stage(
+        "fuse",
+        (ref, mov, weighed, config.conflict, size),
+        lambda: [fuse(ref, mov, best.T_ref_mov, config.conflict, robots_of(seen.encounters, size))],
+    )
+    named, *beside = weighed.answers
+    yield from chain.stage(
+        "verdict",
+        (fusion, weighed, config.verdict, method),
+        lambda: [
+            conclude(
+                named,
+                beside or None,
+                fusion,
+                seen.encounters,
+                covariance,
+                config.verdict,
+                value=best.value if valued else None,
+                answers=found.answers,
+                method=method,
+                seed=seed,
+                timings_s=chain.timings_s,
+            )
+        ],
+    )
+
+
+def _weigh(
+    ref: GridMap, mov: GridMap, encounters: Sequence[Encounter], T_ref_mov: Pose2, robot_size: float
+) -> WeighedDetail:
+    """The method's own transform by the whole maps, and a better one beside it, where there is one."""
+    window = coupled_window(encounters, WindowConfig())
+    whole = make_whole_maps(ref, mov, encounters, window, AgreementConfig().evidence, robot_size)
+    named = weigh(whole, T_ref_mov, shipped_model())
+    return WeighedDetail((named, *better_beside(whole, named, shipped_model())))

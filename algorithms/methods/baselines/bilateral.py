@@ -1,0 +1,43 @@
+"""Both robots saw each other: the transform follows from three angles and a range, eqs. (2), (3)."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass
+
+from algorithms.maps.grid_map import GridMap
+from algorithms.methods.baselines.base import DirectConfig, Found, run_direct
+from algorithms.methods.stage_runner import Chain, Memo
+from algorithms.methods.steps import Answer, AnswersDetail, Step
+from algorithms.observations.observation import Observation, bilateral_covariance, bilateral_transform
+
+
+@dataclass(frozen=True, kw_only=True)
+class BilateralConfig(DirectConfig):
+    """Settings of the bilateral method: it has none but what follows the transform."""
+
+
+def run(
+    ref: GridMap,
+    mov: GridMap,
+    observations: tuple[Observation, ...],
+    config: BilateralConfig,
+    seed: int = 0,
+    memo: Memo | None = None,
+    method: str = "bilateral",
+) -> Iterator[Step]:
+    """Yield the steps of the bilateral merge of the first sighting; the last one's detail is the MergeResult.
+
+    raises SettingError where the observation lacks the bearing back or the observed heading
+    """
+    observation = observations[0]
+
+    def search(chain: Chain) -> Generator[Step, None, Found]:
+        found: AnswersDetail = yield from chain.stage(
+            "search",
+            (observation, method),
+            lambda: [AnswersDetail((Answer(bilateral_transform(observation), 0.0, "closed form"),))],
+        )
+        return found, bilateral_covariance(observation)
+
+    return run_direct(ref, mov, observations, config, seed, memo, method, search, valued=False)

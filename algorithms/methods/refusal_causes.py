@@ -1,0 +1,153 @@
+"""Why a merge was refused, where the cause is simple: a map read wrongly, mirrored, or of another scale.
+
+Each simple change is made to map 2, and the default method asked whether the maps agree then. It is told only
+where the verdict on the changed maps accepts them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import ceil, sqrt
+from typing import Any
+
+import numpy as np
+
+from algorithms.common.errors import MapMergeError
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import GridMap, remarks_on
+from algorithms.methods import spectra_method as pipeline
+from algorithms.methods.steps import CauseDetail, MergeResult, TriedDetail
+from algorithms.observations import observation
+from algorithms.observations.observation import Observation, check_standing
+from algorithms.optimisation.particle_swarm import SwarmConfig
+from algorithms.verdict.decision import Verdict
+from algorithms.verdict.wall_map import pooled
+
+SCALES = (0.5, 2.0, 0.8, 1.25, 0.4, 2.5)  # between cells of 0.02, 0.025, 0.04, 0.05 and 0.1 m
+PATIENCE = 2  # of the proof, in 10⁵ nodes: how long each change is tried
+MOST_CELLS = 2_000_000
+NO_SWARM = SwarmConfig(particles=10, iterations=1)  # what it finds has no influence on a proven answer
+
+Change = Callable[[GridMap, Observation], tuple[GridMap, Observation]]
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One thing that may have been wrong with map 2.
+
+    clause : how it is told, as in "mirrored, map 2 agrees"
+    cure   : what to do
+    change : makes right of the map and of what robot 2 knows of itself
+    """
+
+    clause: str
+    cure: str
+    change: Change
+
+
+def _mirrored(grid: GridMap, o: Observation) -> tuple[GridMap, Observation]:
+    return grid.mirrored(), observation.mirrored(o)
+
+
+def _flipped(axis: int) -> Change:
+    """The image alone is turned over; its corner and the robots stay where they are."""
+
+    def change(grid: GridMap, o: Observation) -> tuple[GridMap, Observation]:
+        return replace(grid, cells=np.ascontiguousarray(np.flip(grid.cells, axis))), o
+
+    return change
+
+
+def _scaled(factor: float, frame: bool) -> Change:
+    """Cells of another size; with ``frame`` the map's corner and its robot's place are scaled, too."""
+
+    def change(grid: GridMap, o: Observation) -> tuple[GridMap, Observation]:
+        larger = replace(grid, resolution=grid.resolution * factor)
+        if not frame:
+            return larger, o
+        origin = Pose2(grid.origin.x * factor, grid.origin.y * factor, grid.origin.theta)
+        there = replace(o, observed_x=o.observed_x * factor, observed_y=o.observed_y * factor)
+        return replace(larger, origin=origin), there
+
+    return change
+
+
+def _causes(mov: GridMap) -> list[list[Cause]]:
+    """Simple changes. Those of one list differ little: the likeliest of them is told."""
+    over = "turn its image over in a picture editor, or save the map anew"
+    mirrored = [
+        Cause(
+            "mirrored, map 2 agrees",
+            "is its lidar mounted upside down, or was its image flipped? Put that right, and merge again",
+            _mirrored,
+        ),
+        Cause("with its image flipped left to right, map 2 agrees", over, _flipped(1)),
+        Cause("with its image flipped top to bottom, map 2 agrees", over, _flipped(0)),
+    ]
+    causes = [mirrored]
+    for factor in SCALES:
+        cell = f"{mov.resolution * factor:.3g}"
+        clause = f"with cells of {cell} m in place of {mov.resolution:.3g} m, map 2 agrees"
+        cure = f"set resolution: {cell} in its YAML file"
+        more = f"{cure}, and multiply its origin and where robot 2 stood by {factor:g}"
+        alone, all_of_it = _scaled(factor, frame=False), _scaled(factor, frame=True)
+        causes.append([Cause(clause, cure, alone), Cause(clause, more, all_of_it)])
+    return causes
+
+
+def find_cause(
+    ref: GridMap,
+    mov: GridMap,
+    observations: tuple[Observation, ...],
+    config: pipeline.PipelineConfig,
+) -> Iterator[TriedDetail | CauseDetail]:
+    """Yield what is being tried, and at the end the cause, if one was found.
+
+    config : of the default method
+    """
+    told = " ".join(remarks_on((ref, mov)))
+    causes = _causes(mov)
+    ref, mov = _coarse(ref), _coarse(mov)
+    total, number = sum(map(len, causes)), 0
+    for alike in causes:
+        agreeing: list[tuple[Verdict, Cause]] = []
+        for cause in alike:
+            yield TriedDetail(cause.clause, number, total)
+            number += 1
+            found = _try(ref, mov, observations, cause, config)
+            if found is not None and found.verdict.accepted:
+                agreeing.append((found.verdict, cause))
+        if agreeing:
+            verdict, cause = max(agreeing, key=lambda each: each[0].probability)
+            clause = cause.clause[:1].upper() + cause.clause[1:]
+            share, wall = 1 - verdict.contradiction, verdict.shared_wall
+            yield CauseDetail(f"{clause} on {share:.0%} of {wall:.0f} m of wall: {cause.cure}.")
+            return
+    yield CauseDetail(f"How the maps were read may be the cause. {told}" if told else "")
+
+
+def _coarse(grid: GridMap) -> GridMap:
+    """The map in no more cells than a few tries in a row can bear."""
+    factor = ceil(sqrt(grid.cells.size / MOST_CELLS))
+    return grid if factor < 2 else pooled(grid, factor)
+
+
+def _try(
+    ref: GridMap,
+    mov: GridMap,
+    observations: Sequence[Observation],
+    cause: Cause,
+    config: pipeline.PipelineConfig,
+) -> MergeResult | None:
+    """What the default method makes of the maps after a change; None where that cannot be."""
+    quick: Any = replace(config, swarm=NO_SWARM, proof=replace(config.proof, patience=PATIENCE))
+    try:
+        changed = [cause.change(mov, o) for o in observations]
+        grid, seen = changed[0][0], tuple(o for _, o in changed)
+        check_standing(seen, ref, grid)
+        *_, last = pipeline.run(ref, grid, seen, quick)
+    except MapMergeError:  # a robot off its map, or cells too fine: this was not the cause
+        return None
+    assert isinstance(last.detail, MergeResult)
+    return last.detail

@@ -1,0 +1,216 @@
+"""What the sightings leave of the shift: the paper's window, eqs. (6)–(10), and the coupled one; and
+the optimiser's box, eqs. (18)–(20).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import hypot, pi
+from typing import Annotated, Literal
+
+import numpy as np
+
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.maps.grid_map import BoolArray
+from algorithms.observations.observation import Encounter
+
+LEAST_MARGIN = 1e-3  # metres; a robot on top of the other was seen with no lateral error at all
+
+
+@dataclass(frozen=True)
+class WindowConfig:
+    """The window for the shift, eqs. (6)–(10), or the coupled window."""
+
+    kind: Literal["coupled", "encounter", "origin"] = "encounter"
+    """Coupled: for every turn only the disc in which the sighting leaves the seen robot. Encounter: the
+    paper's window with its shift taken at the seen robot, a square around that disc. Origin: the paper's
+    window as printed, for map 2's origin; it grows with the distance between that origin and the seen
+    robot, which says nothing about the world."""
+    margin: Annotated[float, Bounds(0, 10, 0.05, "m", "σ", "window margin")] = 0.1
+    """What the sighting's own deviations do not tell: how well each robot knew where it stood, and how
+    well its map fits there. The paper's window is wider by it on every side; in the coupled window it is
+    one more standard deviation."""
+    deviations: Annotated[float, Bounds(0, 10, 0.5, "σ", "k", "sighting deviations")] = 3.0
+    """How many standard deviations of range and bearing the window reaches."""
+
+    def __post_init__(self) -> None:
+        check_bounds(self)
+
+
+@dataclass(frozen=True)
+class BoxConfig:
+    """Half-widths of the optimiser's box around a candidate, eqs. (18)–(20).
+
+    The box never leaves the window, so wide margins cost nothing where the sighting is good; narrow
+    ones shut the truth out where the X and Y spectra pick the wrong end of the window.
+    """
+
+    sigma_x: Annotated[float, Bounds(0.05, 5, 0.05, "m", "σ_x", "margin in x")] = 1.0
+    """Half-width of the optimiser's box in x. Wider finds more and takes longer."""
+    sigma_y: Annotated[float, Bounds(0.05, 5, 0.05, "m", "σ_y", "margin in y")] = 1.0
+    """Half-width of the optimiser's box in y. Wider finds more and takes longer."""
+    sigma_theta: Annotated[float, Bounds(0.5, 45, 0.5, "°", "σ_θ", "margin in angle")] = 5.0
+    """Half-width of the optimiser's box in the turn."""
+
+    def __post_init__(self) -> None:
+        check_bounds(self)
+
+
+@dataclass(frozen=True, eq=False)
+class Window:
+    """Where T may put the pivot, whatever the turn.
+
+    low, high : (2,) x, y; metres, ref frame. With the pivot at the mov frame's origin these are the
+                bounds of (Δx, Δy)
+    pivot     : (2,) metres, mov frame
+    """
+
+    low: FloatArray
+    high: FloatArray
+    pivot: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """An axis-parallel box of transforms, written as where they put a pivot and how they turn.
+
+    A transform has the coordinates (x, y, theta): it puts the pivot of the mov frame at (x, y) of the
+    ref frame and turns by theta. With the pivot at the mov frame's origin these are the paper's
+    (Δx, Δy, Δθ). With the pivot at x̂2 a turn leaves the encounter in place, however far away the mov
+    frame has its origin: 1° at 30 m is half a metre of Δx.
+
+    low, high : (3,) x, y, theta; metres, metres, radians; theta is kept unwrapped inside the box
+    pivot     : (2,) metres, mov frame
+    """
+
+    low: FloatArray
+    high: FloatArray
+    pivot: FloatArray
+
+    @property
+    def centre(self) -> FloatArray:
+        """(3,) middle of the box; metres, metres, radians."""
+        return np.asarray((self.low + self.high) / 2, dtype=np.float64)
+
+    def transforms(self, poses: FloatArray) -> FloatArray:
+        """(P, 3) Δx, Δy, Δθ of T_ref_mov from (P, 3) coordinates in the box; theta stays unwrapped."""
+        c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+        x, y = self.pivot
+        return np.column_stack([poses[:, 0] - c * x + s * y, poses[:, 1] - s * x - c * y, poses[:, 2]])
+
+    def transform(self, pose: FloatArray) -> Pose2:
+        """T_ref_mov from (3,) coordinates in the box, its angle wrapped."""
+        return Pose2.from_array(self.transforms(pose[None])[0])
+
+
+@dataclass(frozen=True, eq=False)
+class CoupledWindow:
+    """All transforms that put every seen robot within k standard deviations of where it was seen.
+
+    x̂1 = C(Δθ) x̂2 + Δ ties the shift to the turn: for every Δθ a disc (an ellipse) of shifts remains,
+    of the size of the sighting's own error, however far away the origins of the maps lie.
+
+    x_ref, x_mov : (S, 2) where the S robots were seen, in the ref and the mov frame; metres
+    covariances  : (S, 2, 2) of x_ref − T x_mov; m²
+    k            : how many standard deviations are let pass
+    """
+
+    x_ref: FloatArray
+    x_mov: FloatArray
+    covariances: FloatArray
+    k: float
+
+    @property
+    def pivot(self) -> FloatArray:
+        """(2,) the first seen robot; metres, mov frame. The window is one for where T puts it."""
+        return np.asarray(self.x_mov[0], dtype=np.float64)
+
+    @property
+    def low(self) -> FloatArray:
+        """(2,) lower edges of the rectangle around the pivot's disc; metres, ref frame."""
+        return np.asarray(self.x_ref[0] - self._reach, dtype=np.float64)
+
+    @property
+    def high(self) -> FloatArray:
+        """(2,) upper edges of the rectangle around the pivot's disc; metres, ref frame."""
+        return np.asarray(self.x_ref[0] + self._reach, dtype=np.float64)
+
+    @property
+    def _reach(self) -> FloatArray:
+        return np.asarray(self.k * np.sqrt(np.diag(self.covariances[0])), dtype=np.float64)
+
+    @cached_property
+    def whitening(self) -> FloatArray:
+        """(S, 2, 2): takes metres off a sighting to standard deviations off it."""
+        return np.asarray(np.linalg.inv(np.linalg.cholesky(self.covariances)), dtype=np.float64)
+
+    def deviations(self, poses: FloatArray) -> FloatArray:
+        """(P, S) standard deviations from every sighting, of (P, 3) x, y, theta of T_ref_mov."""
+        c, s = np.cos(poses[:, 2, None]), np.sin(poses[:, 2, None])
+        x, y = self.x_mov.T
+        off = np.stack(
+            [
+                c * x - s * y + poses[:, 0, None] - self.x_ref[:, 0],
+                s * x + c * y + poses[:, 1, None] - self.x_ref[:, 1],
+            ],
+            axis=-1,
+        )
+        return np.asarray(
+            np.linalg.norm(np.einsum("sij,psj->psi", self.whitening, off), axis=-1), dtype=np.float64
+        )
+
+    def pulled_in(self, T_ref_mov: Pose2) -> Pose2:
+        """The transform, shifted straight towards the first sighting until it is in its disc."""
+        off = T_ref_mov.apply(self.pivot) - self.x_ref[0]
+        deviation = float(np.linalg.norm(self.whitening[0] @ off))
+        if deviation <= self.k:
+            return T_ref_mov
+        x, y = (off * (1 - 0.999 * self.k / deviation)).tolist()
+        return Pose2(T_ref_mov.x - x, T_ref_mov.y - y, T_ref_mov.theta)
+
+    def contains(self, poses: FloatArray) -> BoolArray:
+        """(P,) whether a transform is near enough to every sighting."""
+        return np.asarray((self.deviations(poses) <= self.k).all(axis=1))
+
+
+def paper_window(at: Encounter, config: WindowConfig) -> Window:
+    """Shift window of eqs. (6)–(10): around x̂1, half as wide as x̂2 lies from the pivot, plus σ.
+
+    ‖·‖ in (6) is the Euclidean norm: the turned vector's component can reach it, so the
+    component-wise absolute value the print may be read as would cut the truth off.
+    """
+    pivot = np.zeros(2) if config.kind == "origin" else at.x_mov
+    sigma = config.margin + config.deviations * np.sqrt(np.diag(at.covariance))
+    reach = hypot(*(at.x_mov - pivot).tolist()) + sigma  # eqs. (6), (9), (10)
+    return Window(at.x_ref - reach, at.x_ref + reach, pivot)  # eqs. (7), (8)
+
+
+def coupled_window(encounters: Sequence[Encounter], config: WindowConfig) -> CoupledWindow:
+    """The window of all sightings; each counts with its own covariance and the margin's."""
+    margin = np.eye(2) * max(config.margin, LEAST_MARGIN) ** 2
+    return CoupledWindow(
+        x_ref=np.array([at.x_ref for at in encounters]),
+        x_mov=np.array([at.x_mov for at in encounters]),
+        covariances=np.array([at.covariance + margin for at in encounters]),
+        k=config.deviations,
+    )
+
+
+def shift_window(encounters: Sequence[Encounter], config: WindowConfig) -> Window | CoupledWindow:
+    """The window that the settings ask for; the paper's knows the first sighting only."""
+    if config.kind == "coupled":
+        return coupled_window(encounters, config)
+    return paper_window(encounters[0], config)
+
+
+def box_around(T_ref_mov: Pose2, window: Window | CoupledWindow, config: BoxConfig) -> Box:
+    """The optimiser's box, eqs. (18)–(20): around a candidate, inside the window (Fig. 11)."""
+    half = np.array([config.sigma_x, config.sigma_y, config.sigma_theta * pi / 180])
+    centre = np.append(T_ref_mov.apply(window.pivot), T_ref_mov.theta)
+    low, high = centre - half, centre + half
+    low[:2] = np.minimum(np.maximum(low[:2], window.low), centre[:2])  # whatever is cut off, it holds the
+    high[:2] = np.maximum(np.minimum(high[:2], window.high), centre[:2])  # candidate
+    return Box(low, high, window.pivot)

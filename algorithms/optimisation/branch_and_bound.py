@@ -1,0 +1,313 @@
+"""The certificate: branch and bound over the whole circle, as in Hess et al. (ICRA 2016).
+
+Blocks of transforms whose bound is not above the best value found are never opened; when none is left,
+that value is proven to be the best of the lattice in the coupled window. A second pass looks for the best
+transform elsewhere: the rival.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import pi, sqrt
+from typing import Annotated
+
+import numpy as np
+
+from algorithms.common.pose import FloatArray, wrap_angles
+from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.maps.grid_map import BoolArray
+from algorithms.observations.search_window import CoupledWindow
+from algorithms.optimisation.objective import Objective
+from algorithms.optimisation.upper_bounds import Bounder, IntArray
+
+NODES = 100_000  # in one unit of patience
+BATCH = 256  # blocks opened between two looks at the best value, at least
+MOST_RIVALS = 5
+
+
+@dataclass(frozen=True)
+class ProofConfig:
+    """Settings of the certificate."""
+
+    whole_circle: bool = False
+    """Search the whole circle in the coupled window, with proof; the best of it is then the answer."""
+    angle: Annotated[float, Bounds(1, 90, 1, "°", "", "rival's turn")] = 10.0
+    """Two transforms are two answers where they turn by more than this apart, or"""
+    distance: Annotated[float, Bounds(0.1, 5, 0.1, "m", "", "rival's shift")] = 0.7
+    """put the seen robot at places farther apart than this."""
+    patience: Annotated[int, Bounds(1, 1000, 1, "10⁵ nodes", "", "patience")] = 30
+    """The search stops unproven after so many nodes, with the gap that is left."""
+
+    def __post_init__(self) -> None:
+        check_bounds(self)
+
+
+@dataclass(frozen=True, eq=False)
+class ProofState:
+    """How far the proof has come; its arrays are copies.
+
+    rival_sought     : False while the best is proven, True in the passes after it
+    nodes            : blocks bounded so far, single transforms among them
+    best, best_value : (3,) x, y, theta of T_ref_mov, and its value; None before the first
+    ceiling          : no transform of the lattice is better than this; once proven, none elsewhere
+    rivals, rival_values : (R, 3), (R,) the best transforms elsewhere, best first, each another answer
+                       than those before it; the last one may not be final before ``stopped``
+    floor            : neither bests nor rivals below this value are looked for
+    turns            : (A,) middles of the sectors of the circle; radians
+    ceilings, found  : (A,) bound of each sector, and the best value met in it (−inf: none looked at)
+    stopped          : why the search ended; None while it goes on
+    proven           : whether ``best`` is the best of the lattice
+    empty            : whether the window is known to hold no transform at all: the sightings contradict
+                       each other
+    """
+
+    rival_sought: bool
+    nodes: int
+    best: FloatArray | None
+    best_value: float
+    ceiling: float
+    rivals: FloatArray
+    rival_values: FloatArray
+    floor: float
+    turns: FloatArray
+    ceilings: FloatArray
+    found: FloatArray
+    stopped: str | None
+    proven: bool
+    empty: bool = False
+
+    @property
+    def rival(self) -> FloatArray | None:
+        """(3,) the best rival; None where there is none above ``floor``."""
+        return np.asarray(self.rivals[0], dtype=np.float64) if len(self.rivals) else None
+
+    @property
+    def rival_value(self) -> float:
+        """Its value; −inf without one."""
+        return float(self.rival_values[0]) if len(self.rivals) else -np.inf
+
+    @property
+    def gap(self) -> float:
+        """How much better than the best found something could still be; 0 once it is proven."""
+        return 0.0 if self.proven else max(0.0, self.ceiling - self.best_value)
+
+
+@dataclass
+class _Front:
+    """Blocks of one level that are not opened yet, with their bounds."""
+
+    bounds: FloatArray
+    nodes: IntArray
+
+    @staticmethod
+    def empty() -> _Front:
+        return _Front(np.zeros(0), np.zeros((0, 3), dtype=np.int64))
+
+    @property
+    def top(self) -> float:
+        return float(self.bounds.max(initial=-np.inf))
+
+    def add(self, bounds: FloatArray, nodes: IntArray) -> None:
+        self.bounds = np.concatenate([self.bounds, bounds])
+        self.nodes = np.concatenate([self.nodes, nodes])
+
+    def take(self, most: int) -> tuple[FloatArray, IntArray]:
+        """The blocks with the highest bounds, taken out."""
+        if len(self.bounds) > most:
+            order = np.argpartition(-self.bounds, most - 1)
+        else:
+            order = np.arange(len(self.bounds))
+        taken, left = order[:most], order[most:]
+        out = self.bounds[taken], self.nodes[taken]
+        self.bounds, self.nodes = self.bounds[left], self.nodes[left]
+        return out
+
+    def drop(self, value: float) -> tuple[FloatArray, IntArray]:
+        """Keep the blocks above a value; return the others."""
+        keep = self.bounds > value
+        out = self.bounds[~keep], self.nodes[~keep]
+        self.keep(keep)
+        return out
+
+    def keep(self, which: BoolArray) -> None:
+        self.bounds, self.nodes = self.bounds[which], self.nodes[which]
+
+    def best(self, above: float = -np.inf) -> tuple[float, IntArray | None]:
+        """The highest value and whose it is; None where none is above."""
+        if not len(self.bounds) or self.bounds.max() <= above:
+            return -np.inf, None
+        # of equal values the first block's, so that the answer does not hang on the order of opening
+        equal = np.flatnonzero(self.bounds == self.bounds.max())
+        first = equal[np.lexsort(self.nodes[equal].T[::-1])[0]]
+        return float(self.bounds[first]), self.nodes[first]
+
+
+class _Search:
+    """The open blocks and what has been found; one of them for both passes."""
+
+    def __init__(self, objective: Objective, window: CoupledWindow) -> None:
+        self.bounder = Bounder(objective, window)
+        self.lattice = self.bounder.lattice
+        self.levels = self.lattice.levels
+        self.open = [_Front.empty() for _ in range(self.levels + 1)]
+        self.shut = [_Front.empty() for _ in range(self.levels + 1)]  # no better than what was sought
+        self.single = _Front.empty()  # transforms looked at, with their values
+        self.sectors = self.lattice.turns >> self.levels
+        self.found = np.full(self.sectors, -np.inf)
+        self.known = np.full(self.sectors, -np.inf)  # bound of the blocks that were left out
+        self.nodes = 0
+        self._add(self.lattice.roots(), self.levels, np.inf)
+
+    @property
+    def top(self) -> float:
+        """Bound of what is open."""
+        return max(front.top for front in self.open)
+
+    @property
+    def empty(self) -> bool:
+        """Whether nothing has been found in the window, and nothing is left to look at."""
+        blocks = (*self.open, *self.shut, self.single)
+        return not any(len(front.bounds) for front in blocks)
+
+    def sector(self, nodes: IntArray, level: int) -> IntArray:
+        """(P,) which sector of the circle blocks lie in."""
+        return np.asarray(nodes[:, 0] >> (self.levels - level), dtype=np.int64)
+
+    def ceilings(self) -> FloatArray:
+        """(A,) bound of each sector, over all that is not taken apart."""
+        out = np.maximum(self.found, self.known)
+        for fronts in (self.open, self.shut):
+            for level, front in enumerate(fronts):
+                np.maximum.at(out, self.sector(front.nodes, level), front.bounds)
+        return out
+
+    def _add(self, nodes: IntArray, level: int, at_most: FloatArray | float) -> None:
+        """Bound blocks, and keep them open; at_most: the bounds of the blocks they are in."""
+        values = self.bounder(nodes, level)
+        possible = values > -np.inf
+        values, nodes = np.minimum(values, at_most)[possible], nodes[possible]
+        self.nodes += len(nodes)
+        if level:
+            self.open[level].add(values, nodes)
+        else:
+            np.maximum.at(self.found, self.sector(nodes, 0), values)
+            self.single.add(values, nodes)
+
+    def open_best(self, sought: float, wanted: Wanted | None = None) -> bool:
+        """Open the blocks with the highest bounds; False where no bound is above ``sought``.
+
+        wanted : which blocks to go into; the others are left out
+        """
+        level = int(np.argmax([front.top for front in self.open]))
+        front = self.open[level]
+        if front.top <= sought:
+            return False
+        self.shut[level].add(*front.drop(sought))
+        bounds, nodes = front.take(max(BATCH, len(front.bounds) // 8))
+        children, at_most = self.lattice.children(nodes), np.repeat(bounds, 8)
+        if wanted is not None:
+            keep = wanted(children, level - 1)
+            np.maximum.at(self.known, self.sector(children[~keep], level - 1), at_most[~keep])
+            children, at_most = children[keep], at_most[keep]
+        if level == 1:  # a value is no bound: rounding must not cut it
+            at_most = np.full(len(children), np.inf)
+        self._add(children, level - 1, at_most)
+        return True
+
+    def open_again(self) -> None:
+        """What was shut may hold a rival."""
+        for open_, shut in zip(self.open, self.shut, strict=True):
+            open_.add(shut.bounds, shut.nodes)
+        self.shut = [_Front.empty() for _ in range(self.levels + 1)]
+
+
+Wanted = Callable[[IntArray, int], BoolArray]
+
+
+def prove(
+    objective: Objective,
+    window: CoupledWindow,
+    config: ProofConfig,
+    floor: float = 0.0,
+    worth: float = -np.inf,
+) -> Iterator[ProofState]:
+    """Search the whole circle; yield the state every few hundred blocks, the last one ``stopped``.
+
+    The caller may leave at any time. Values are those of ``objective`` at look-up NEAREST.
+
+    floor : share of the best value below which a rival is of no interest
+    worth : value up to which the best is of no interest either; where none is above it, that is proven
+            and no ``best`` is told
+    """
+    search = _Search(objective, window)
+    lattice = search.lattice
+    patience = config.patience * NODES
+    answers: list[IntArray] = []  # the best, then its rivals
+    values: list[float] = []
+    leading: tuple[float, IntArray | None] = search.single.best(worth)
+    least = worth
+    proven = False
+
+    def state(stopped: str | None) -> ProofState:
+        nodes, sums = [*answers], [*values]
+        if leading[1] is not None:
+            nodes, sums = [*nodes, leading[1]], [*sums, leading[0]]
+        poses = lattice.poses(lattice.coordinates(np.array(nodes).reshape(-1, 3), 0))
+        ceilings = search.ceilings()
+        return ProofState(
+            rival_sought=proven,
+            nodes=search.nodes,
+            best=poses[0] if len(poses) else None,
+            best_value=sums[0] if sums else -np.inf,
+            ceiling=max(search.top, search.single.top, least),
+            rivals=poses[1:],
+            rival_values=np.array(sums[1:]),
+            floor=least,
+            turns=wrap_angles((np.arange(search.sectors) + 0.5) * 2**search.levels * lattice.step),
+            ceilings=np.minimum(ceilings, sums[0]) if proven else ceilings,
+            found=search.found.copy(),
+            stopped=stopped,
+            proven=proven,
+            empty=search.empty,
+        )
+
+    def elsewhere(nodes: IntArray, level: int) -> BoolArray:
+        """Whether a block holds a transform that is another answer than those found."""
+        out = np.ones(len(nodes), dtype=np.bool_)
+        at = lattice.coordinates(nodes, level)
+        for answer in lattice.coordinates(np.array(answers), 0):
+            off = at - answer
+            apart = np.hypot(off[:, 0], off[:, 1]) + lattice.half(level) * sqrt(2)
+            turned = np.abs(wrap_angles(off[:, 2])) + lattice.half_turn(level)
+            out &= (apart > config.distance) | (turned > config.angle * pi / 180)
+        return out
+
+    while len(answers) <= MOST_RIVALS:
+        while search.open_best(max(leading[0], least), elsewhere if answers else None):
+            leading = search.single.best(least)
+            if search.nodes > patience:
+                yield state(f"{'proven; rivals ' if proven else ''}not all searched: {search.nodes:,} blocks")
+                return
+            yield state(None)
+        if leading[1] is None:
+            break
+        answers.append(leading[1])
+        values.append(leading[0])
+        if not proven and leading[0] <= 0:
+            break
+        least = max(least, floor * leading[0])
+        search.single.keep(elsewhere(search.single.nodes, 0))
+        search.open_again()
+        proven, leading = True, search.single.best(least)
+    if not answers and search.empty:
+        yield state("the window holds no transform of the lattice")
+    elif not answers:
+        yield state(f"no transform has a value above {worth:g}")
+    elif not proven:
+        proven = True
+        leading = (-np.inf, None)
+        yield state("proven, but nothing speaks for it")
+    else:
+        leading = (-np.inf, None)
+        yield state(f"proven: {search.nodes:,} blocks bounded")

@@ -1,0 +1,50 @@
+"""How sharp the peak of Γ is: the covariance that goes with a transform."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from math import pi
+
+import numpy as np
+
+from algorithms.common.pose import FloatArray, Pose2, rotation
+from algorithms.observations.search_window import Box
+from algorithms.optimisation.objective import Objective
+
+
+def peak_covariance(objective: Objective, T_ref_mov: Pose2, box: Box, reach: float) -> FloatArray:
+    """Width of the peak of Γ: inverse of the curvature of −log Γ at the transform.
+
+    It takes Γ for a likelihood, which it is not: this is the width of the peak, about a wall's
+    thickness, and not a calibrated error. Where Γ has no peak in some direction, the box's own
+    variance stands for that direction.
+
+    box     : the optimiser's box; the curvature is taken in its coordinates, where turn and shift are
+              least entangled
+    reach   : distance over which a turn moves a cell by one cell; metres. The spread Σ_aug is fitting
+    returns : (3, 3) of Δx, Δy, Δθ; metres and radians; positive definite
+    """
+    cell = objective.cell
+    step = np.array([cell, cell, cell / reach])
+    centre = np.append(T_ref_mov.apply(box.pivot), T_ref_mov.theta)
+    unit = np.eye(3)
+    offsets = [np.zeros(3)]
+    offsets += [sign * unit[i] for i in range(3) for sign in (1, -1)]
+    pairs = list(combinations(range(3), 2))
+    offsets += [a * unit[i] + b * unit[j] for i, j in pairs for a in (1, -1) for b in (1, -1)]
+    values = objective(box.transforms(centre + np.array(offsets) * step))
+    widest = ((box.high - box.low) / step) ** 2 / 12  # variance of a pose anywhere in the box
+    if values.min() <= 0:
+        in_steps = np.diag(widest)
+    else:
+        bend = -np.log(values)
+        curvature = np.diag([bend[1 + 2 * i] + bend[2 + 2 * i] - 2 * bend[0] for i in range(3)])
+        for number, (i, j) in enumerate(pairs):
+            both, right, left, none = bend[7 + 4 * number : 11 + 4 * number]
+            curvature[i, j] = curvature[j, i] = (both - right - left + none) / 4
+        strengths, directions = np.linalg.eigh(curvature)
+        in_steps = (directions / np.maximum(strengths, 1 / widest.max())) @ directions.T
+    at_pivot = in_steps * np.outer(step, step)
+    to_shift = np.eye(3)  # d (Δx, Δy, Δθ) / d (box coordinates): Δ = where the pivot goes − C(Δθ) pivot
+    to_shift[:2, 2] = -rotation(T_ref_mov.theta + pi / 2) @ box.pivot
+    return np.asarray(to_shift @ at_pivot @ to_shift.T, dtype=np.float64)

@@ -1,0 +1,1 @@
+"""The buildings that are simulated: one kind a file."""

@@ -1,0 +1,62 @@
+"""Which walls of two maps coincide under a transform, and which the other map denies; cell by cell.
+
+For the eye. The verdict counts the same two with every patch slipped to where it fits best
+(``algorithms.verdict.wall_evidence``); here the maps lie as they are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.maps.grid_map import BoolArray, GridMap, where
+from algorithms.optimisation.likelihood_field import distance_to_walls
+from algorithms.optimisation.objective import Float32Array
+from algorithms.verdict.wall_map import SAME_WALL
+
+SILENT, AGREES, CONTRADICTS = 0, 1, 2
+Touch = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False)
+class Walls:
+    """A map ready to be held against another one at many transforms."""
+
+    grid: GridMap
+
+    @cached_property
+    def cells(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """(N,) rows and (N,) columns of the walls."""
+        rows, cols = where(self.grid.occupied)
+        return rows, cols
+
+    @cached_property
+    def points(self) -> FloatArray:
+        """(N, 2) their centres; metres, the map's frame."""
+        return self.grid.centres(*self.cells)
+
+    @cached_property
+    def _near(self) -> BoolArray:
+        """(H, W) where another map's wall counts as the same wall."""
+        distance: Float32Array = distance_to_walls(self.grid.occupied) * np.float32(self.grid.resolution)
+        return np.asarray(distance <= SAME_WALL)
+
+    @cached_property
+    def _table(self) -> Touch:
+        """(H, W) what a wall of another map is told at each cell."""
+        table = np.where(self.grid.free, CONTRADICTS, SILENT).astype(np.uint8)
+        table[self._near] = AGREES
+        return table
+
+    def told(self, other: Walls, T_other_self: Pose2) -> Touch:
+        """(N,) SILENT, AGREES or CONTRADICTS: what another map says of each wall cell of this one."""
+        at = np.floor(other.grid.grid_coordinates(T_other_self.apply(self.points))).astype(np.intp)
+        cols, rows = at.T
+        inside = (cols >= 0) & (rows >= 0) & (cols < other.grid.width) & (rows < other.grid.height)
+        told = np.full(len(at), SILENT, dtype=np.uint8)
+        told[inside] = other._table[rows[inside], cols[inside]]
+        return told

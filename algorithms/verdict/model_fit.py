@@ -1,0 +1,129 @@
+"""Fitting the model of the verdict: weights that make the right answers of many pairs likely."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize
+
+from algorithms.common.pose import FloatArray
+from algorithms.maps.grid_map import BoolArray
+from algorithms.verdict.probability_model import QUANTITIES, VerdictModel, probability
+
+RIDGE = 1e-3  # keeps weights finite where right and wrong can be told apart without error
+FOLDS = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Example:
+    """A pair of maps on which the method ran.
+
+    quantities : (A, Q) of every answer, in the order of QUANTITIES
+    right      : (A,) bool, which of the answers are right; several where they are near each other
+    buildings  : whose maps these are; two for a wrong pair
+    """
+
+    quantities: FloatArray
+    right: BoolArray
+    buildings: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Told:
+    """What a model says of examples: for each the probability of the answer that it names.
+
+    probabilities : (N,)
+    right         : (N,) bool, whether that answer is
+    """
+
+    probabilities: FloatArray
+    right: BoolArray
+
+
+def fit(
+    examples: Sequence[Example], accept_from: float = 0.5, made_of: Mapping[str, Any] | None = None
+) -> VerdictModel:
+    """The weights of greatest likelihood, none of them against the meaning of its quantity.
+
+    In each example one answer is right, or none is: a choice among them with a way out (McFadden's
+    conditional logit). Right answers beside the best of them are left out.
+    """
+    names, size = list(QUANTITIES), len(QUANTITIES)
+    rows: list[FloatArray] = []
+    owner: list[int] = []
+    chosen: list[int] = []
+    for number, example in enumerate(examples):
+        first = int(np.argmax(example.right)) if example.right.any() else -1
+        for answer, quantities in enumerate(example.quantities):
+            if answer == first:
+                chosen.append(len(rows))
+            if answer == first or not example.right[answer]:
+                rows.append(quantities)
+                owner.append(number)
+    table, whose, right = np.array(rows), np.array(owner), np.array(chosen, dtype=np.intp)
+    middle, spread = table.mean(axis=0), table.std(axis=0) + 1e-9
+    unit = np.column_stack([(table - middle) / spread, np.ones(len(table))])
+    ridge = np.append(np.full(size, RIDGE), 0.0)
+
+    def loss(weights: FloatArray) -> tuple[float, FloatArray]:
+        scores = unit @ weights
+        top = np.zeros(len(examples))
+        np.maximum.at(top, whose, scores)
+        likely = np.exp(scores - top[whose])
+        total = np.exp(-top)
+        np.add.at(total, whose, likely)
+        likelihood = scores[right].sum() - (top + np.log(total)).sum()
+        slope = unit[right].sum(axis=0) - unit.T @ (likely / total[whose])
+        n = len(examples)
+        return float(-likelihood / n + (ridge * weights**2).sum()), -slope / n + 2 * ridge * weights
+
+    signs = [(0.0, None) if QUANTITIES[name].rises else (None, 0.0) for name in names]
+    found = minimize(loss, np.zeros(size + 1), jac=True, bounds=[*signs, (None, None)], method="L-BFGS-B").x
+    weights = found[:size] / spread
+    typical = np.median(table[right], axis=0) if len(right) else middle
+    return VerdictModel(
+        weights=dict(zip(names, weights.tolist(), strict=True)),
+        bias=float(found[size] - weights @ middle),
+        typical=dict(zip(names, typical.tolist(), strict=True)),
+        accept_from=accept_from,
+        made_of={} if made_of is None else made_of,
+    )
+
+
+def told_by(model: VerdictModel, examples: Sequence[Example]) -> Told:
+    """What a model says of examples."""
+    weights = np.array([model.weights[name] for name in QUANTITIES])
+    probabilities, right = [], []
+    for example in examples:
+        scores = example.quantities @ weights + model.bias
+        best = int(scores.argmax())
+        same = example.right & example.right[best]  # one right answer, told twice
+        others = [score for k, score in enumerate(scores.tolist()) if k != best and not same[k]]
+        probabilities.append(probability(float(scores[best]), others))
+        right.append(bool(example.right[best]))
+    return Told(np.array(probabilities), np.array(right, dtype=np.bool_))
+
+
+def cross_validated(examples: Sequence[Example], folds: int = FOLDS) -> Told:
+    """What models say of examples from buildings that they have not seen, a fold of buildings at a time; of a
+    wrong pair neither building is known.
+    """
+    names = sorted({building for example in examples for building in example.buildings})
+    fold_of = {name: number % folds for number, name in enumerate(names)}
+    left_out = [frozenset(fold_of[building] for building in example.buildings) for example in examples]
+    probabilities = np.zeros(len(examples))
+    right = np.zeros(len(examples), dtype=np.bool_)
+    for out in sorted(set(left_out), key=sorted):
+        mine = [n for n, theirs in enumerate(left_out) if theirs == out]
+        rest = [example for example, theirs in zip(examples, left_out, strict=True) if not theirs & out]
+        told = told_by(fit(rest), [examples[n] for n in mine])
+        probabilities[mine], right[mine] = told.probabilities, told.right
+    return Told(probabilities, right)
+
+
+def most_likely_wrong(told: Told) -> float:
+    """The highest probability that was told of a wrong answer; 0 where there is none."""
+    return float(told.probabilities[~told.right].max(initial=0.0))

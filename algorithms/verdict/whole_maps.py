@@ -1,0 +1,193 @@
+"""Two whole maps on which a transform is weighed, and from which it is improved.
+
+The search looks at the walls around the encounter. What lies there looks like many other places, and bent
+maps fit there alone. So its best answers are held against everything that both robots saw before one of them
+is named: each climbs to the top nearby, on crisp walls first; where much still contradicts, on blurred ones
+and then on crisp ones again, by which bent maps come to lie in the middle of their bends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from math import ceil
+from typing import TypeVar
+
+import numpy as np
+
+from algorithms.common.parallel_kernels import spread
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import GridMap
+from algorithms.observations.observation import Encounter, Robots, robots_of
+from algorithms.observations.search_window import Box, CoupledWindow
+from algorithms.optimisation.likelihood_field import clear, wall_field
+from algorithms.optimisation.objective import Objective, Side
+from algorithms.verdict.wall_evidence import Evidence, evidence
+from algorithms.verdict.wall_map import WallMap, make_wall_map, pooled
+
+Made = TypeVar("Made")
+
+CRISP, BLURRED = 0.1, 0.4  # metres; standard deviation of the distance between two drawings of one wall
+MOST_CELLS = 1_000_000  # of a table; a larger map is taken in coarser cells
+BLURRED_CELL = 0.1  # metres; cells of the blurred tables
+MOST_POINTS = 1_500  # of each map's walls while climbing
+LEAST_STEP = 0.012  # metres; the climb ends below it
+HILL = 0.025  # metres; half as wide is what a hilltop is fitted to
+MOST_FITS = 6  # of hilltops, each one HILL from the last at most
+REACH = 5.0  # metres at which a turn moves a wall by a step
+MOST_LOOKS = 40  # at the 27 places around, per climb
+CONTRADICTED = 0.1  # share of the walls; from here on maps may be bent
+WORTH_MOVING = 2.0  # metres of wall: eight measurements, more than chance makes of where cells end
+
+FLAT = 1e-6  # metres of wall; a hill that curves less is a ridge, and its top as far as may be
+CLOSE = 0.02  # of HILL; a fit that moves it less is the last
+
+_AROUND = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
+_PAIRS = np.triu_indices(3)
+_PARABOLOID = np.linalg.pinv(
+    np.column_stack([np.ones(len(_AROUND)), _AROUND, _AROUND[:, _PAIRS[0]] * _AROUND[:, _PAIRS[1]]])
+)  # least squares: the value, the slope and the products' factors at the middle
+
+
+@dataclass(frozen=True, eq=False)
+class WholeMaps:
+    """Both maps made ready.
+
+    robots : around them there is no wall to weigh
+    window : the sightings; what a transform deviates from them is taken off its value
+    trust  : what half a squared standard deviation off a sighting costs; metres of wall
+    """
+
+    ref: WallMap
+    mov: WallMap
+    robots: Robots
+    window: CoupledWindow
+    trust: float
+
+    def weigh(self, T_ref_mov: Pose2) -> Evidence:
+        """What the walls say of a transform, or of the hilltop within a few centimetres: where cells end is
+        chance, and would count otherwise.
+        """
+        return evidence(self.ref, self.mov, self._hilltop(T_ref_mov), self.robots)
+
+    @cached_property
+    def crisp(self) -> Objective:
+        """Metres of wall that agree less metres that contradict, over the whole maps."""
+        return self._objective(CRISP, 0.0)
+
+    @cached_property
+    def _blurred(self) -> Objective:
+        return self._objective(BLURRED, BLURRED_CELL)
+
+    def value(self, T_ref_mov: Pose2) -> float:
+        """The crisp objective at a transform."""
+        return float(self.crisp(T_ref_mov.array()[None])[0])
+
+    def climb(self, T_ref_mov: Pose2) -> Pose2:
+        """The best transform near one; that itself where none is better by much."""
+        best = self._climb(self.crisp, T_ref_mov, CRISP / 2)
+        if self.weigh_rigidly(best) > CONTRADICTED:
+            rough = self._climb(self._blurred, T_ref_mov, BLURRED / 2)
+            other = self._climb(self.crisp, rough, CRISP / 2)
+            best = max(best, other, key=self.value)
+        return best if self.value(best) > self.value(T_ref_mov) + WORTH_MOVING else T_ref_mov
+
+    def weigh_rigidly(self, T_ref_mov: Pose2) -> float:
+        """Share of the walls that contradict with the maps as they are."""
+        return evidence(self.ref, self.mov, T_ref_mov, self.robots, slip=False).rigid_contradiction
+
+    def _hilltop(self, T_ref_mov: Pose2) -> Pose2:
+        """The top of the paraboloid that fits the crisp objective at the 27 places around, again and again.
+
+        It is fitted about the middle of all robots, so that swapping the maps or turning a frame, by which
+        other places are looked at, leaves it where it is to a millimetre or so.
+        """
+        pivot = T_ref_mov.inverse().apply(self.robots.places(T_ref_mov).mean(axis=0))
+        at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
+        box = Box(at, at, pivot)
+        for _ in range(MOST_FITS):
+            fitted = _PARABOLOID @ self.crisp(box.transforms(at + _AROUND * (HILL, HILL, HILL / REACH)))
+            curvature = np.zeros((3, 3))
+            curvature[_PAIRS] += fitted[4:]
+            curvature.T[_PAIRS] += fitted[4:]
+            bent, axes = np.linalg.eigh(curvature)
+            move = -axes @ (axes.T @ fitted[1:4] / np.minimum(bent, -FLAT))
+            move = np.clip(move, -1, 1)
+            at = at + move * (HILL, HILL, HILL / REACH)
+            if abs(move).max() < CLOSE:
+                break
+        return box.transform(at)
+
+    def _climb(self, objective: Objective, T_ref_mov: Pose2, step: float) -> Pose2:
+        """From place to place to the best of the 27 around; half the steps where that is the middle."""
+        pivot = self.window.pivot
+        at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
+        box = Box(at, at, pivot)
+        for _ in range(MOST_LOOKS):
+            around = at + _AROUND * (step, step, step / REACH)
+            best = int(objective(box.transforms(around)).argmax())
+            at = around[best]
+            if best == len(around) // 2:
+                step /= 2
+                if step < LEAST_STEP:
+                    break
+        return box.transform(at)
+
+    def _objective(self, blur: float, least_cell: float) -> Objective:
+        pairs = (self.ref, self.mov, False), (self.mov, self.ref, True)
+        first, second = _each(2, lambda n: self._side(*pairs[n], blur, least_cell))
+        return Objective((first, second), window=self.window, trust=self.trust)
+
+    def _side(self, target: WallMap, source: WallMap, backward: bool, blur: float, least_cell: float) -> Side:
+        grid = _at_least(target.grid, least_cell)
+        anchor = self.window.x_ref[0] if backward else self.window.x_mov[0]
+        stride = max(1, ceil(len(source.points) / MOST_POINTS))
+        points = source.grid.origin.apply(source.points[::stride])
+        table = wall_field(grid.occupied, grid.free, grid.resolution, blur)
+        stood = self.robots.in_mov if backward else self.robots.in_ref  # in the target's own frame
+        clear(table, grid, np.zeros(2), stood, self.robots.size)
+        return Side(
+            grid=grid,
+            table=table,
+            corner=np.zeros(2),
+            anchor=anchor,
+            points=points - anchor,
+            weights=np.full(len(points), source.metres * stride),
+            backward=backward,
+        )
+
+
+def make_whole_maps(
+    ref: GridMap,
+    mov: GridMap,
+    encounters: Sequence[Encounter],
+    window: CoupledWindow,
+    trust: float,
+    robot_size: float,
+) -> WholeMaps:
+    """Make both maps ready, each on a core.
+
+    robot_size : radius around the places of robots within which there is no wall; metres
+    """
+    first, second = _each(2, lambda n: make_wall_map((ref, mov)[n]))
+    return WholeMaps(first, second, robots_of(encounters, robot_size), window, trust)
+
+
+def _each(count: int, make: Callable[[int], Made]) -> list[Made]:
+    """``make`` of 0, 1, …, each on a core."""
+    made: dict[int, Made] = {}
+
+    def work(start: int, stop: int) -> None:
+        for n in range(start, stop):
+            made[n] = make(n)
+
+    spread(work, count)
+    return [made[n] for n in range(count)]
+
+
+def _at_least(grid: GridMap, cell: float) -> GridMap:
+    """The map in cells of that size or more, and of ``MOST_CELLS`` at most."""
+    factor = max(1, int(cell / grid.resolution + 1e-9), ceil((grid.cells.size / MOST_CELLS) ** 0.5))
+    return grid if factor == 1 else pooled(grid, factor)
