@@ -72,7 +72,7 @@ replays: $(VENV)/ready
 	  $(BIN)/mapmeld replay $$name --out static/replays/$$name.html || exit; done
 
 verdict: $(VENV)/ready
-	@$(BIN)/python -m app.verdict_training $(ARGS)
+	@$(BIN)/python -m app.cli.verdict_training $(ARGS)
 
 results: $(VENV)/ready
 	@$(PIP) install -e '.[surf]'

@@ -1,6 +1,6 @@
 """``python -m app``: the same as ``mapmeld``."""
 
-from app.cli import entry
+from app.cli.main import entry
 
 if __name__ == "__main__":
     entry()

@@ -29,9 +29,9 @@ from algorithms.files.map_file import map_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.methods.registry import merge
 from algorithms.methods.steps import MergeResult
-from app.access import Access
-from app.guard import guarded_server
-from app.inputs import Inputs
+from app.model.merge_inputs import Inputs
+from app.web.security.access_control import Access
+from app.web.viser_server import guarded_server
 
 # A machine that is busy with other things must not fail a test; where CI runs, the same examples every time.
 settings.register_profile(

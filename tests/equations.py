@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT)]
 
 from algorithms.files.atomic_write import write_files  # noqa: E402
-from app.lesson.equations import Equation, folder, read_equation  # noqa: E402
+from app.page.lesson.equations import Equation, folder, read_equation  # noqa: E402
 
 SIZE = 15.0  # px per em while typesetting
 

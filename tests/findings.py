@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from math import degrees
 from typing import Literal
 
-from app.contest import Score, Tally, tally
-from app.sweep import Plan, Point, Spread, in_order
-from app.trial import Trial
+from app.evaluation.method_comparison import Score, Tally, tally
+from app.evaluation.method_run import Trial
+from app.evaluation.parameter_sweep import Plan, Point, Spread, in_order
 
 NEXT_TO_NOTHING = 0.005  # of eq. (23): half a hundredth of the overlap
 FLAT = 0.01  # within so much of the best, a curve has come to its end

@@ -14,9 +14,7 @@ from tempfile import TemporaryDirectory
 
 import atheris
 
-with atheris.instrument_imports(
-    include=["algorithms.files.map_file", "algorithms.files.case_folder", "app.lesson.texts", "yaml"]
-):
+with atheris.instrument_imports(include=["algorithms.files", "app.page.lesson.lesson_texts", "yaml"]):
     from readers import MOST_MEMORY, READERS, SHAPES, TooSlowError, reads
 
 MOST_BYTES = 1_000_000

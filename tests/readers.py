@@ -21,9 +21,9 @@ from PIL import Image
 from algorithms.common.errors import MapMergeError
 from algorithms.files.case_folder import observations_from_bytes, read_truth
 from algorithms.files.map_file import grey_image, map_from_bytes, parse_meta
-from app.lesson.numbers import NUMBERS
-from app.lesson.texts import read_exhibit, read_step
-from app.pictures.book import PICTURES
+from app.page.lesson.figures.figure_registry import PICTURES
+from app.page.lesson.lesson_texts import read_exhibit, read_step
+from app.page.lesson.placeholders import NUMBERS
 
 MOST_MEMORY = 2_000  # MB that a process may take to read any file of at most 1 MB
 MOST_SECONDS = 1.0  # of processor time

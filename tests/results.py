@@ -21,18 +21,18 @@ from algorithms.files.atomic_write import write_files  # noqa: E402
 from algorithms.files.case_folder import Case, read_case  # noqa: E402
 from algorithms.methods.registry import METHODS  # noqa: E402
 from algorithms.verdict.probability_model import shipped_model  # noqa: E402
-from app import axes  # noqa: E402
-from app.contest import Score, contest, defaults_of, pairs_in, tally  # noqa: E402
-from app.contest_files import case_files, contest_files, remarks, table_rows  # noqa: E402
-from app.controls import with_value  # noqa: E402
-from app.executor import Executor, executor_for  # noqa: E402
-from app.figures.sweep import sweep_figure  # noqa: E402
-from app.journal import Journal  # noqa: E402
-from app.machine import machine  # noqa: E402
-from app.progress import bar  # noqa: E402
-from app.sweep import Plan, in_order, point_keys, sweep  # noqa: E402
-from app.sweep_files import points_csv, runs_csv, times_csv  # noqa: E402
-from app.tables import markdown  # noqa: E402
+from app.cli.progress_bar import bar  # noqa: E402
+from app.evaluation import sweep_axes as axes  # noqa: E402
+from app.evaluation.checkpoint import Journal  # noqa: E402
+from app.evaluation.comparison_files import case_files, contest_files, remarks, table_rows  # noqa: E402
+from app.evaluation.csv_tables import markdown  # noqa: E402
+from app.evaluation.method_comparison import Score, contest, defaults_of, pairs_in, tally  # noqa: E402
+from app.evaluation.parameter_sweep import Plan, in_order, point_keys, sweep  # noqa: E402
+from app.evaluation.sweep_figure import sweep_figure  # noqa: E402
+from app.evaluation.sweep_files import points_csv, runs_csv, times_csv  # noqa: E402
+from app.jobs.executor import Executor, executor_for  # noqa: E402
+from app.model.settings import with_value  # noqa: E402
+from app.system.hardware import machine  # noqa: E402
 
 SAMPLES = ROOT / "sample_maps"
 FIGURES = ROOT / "static" / "results"

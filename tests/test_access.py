@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from algorithms.common.errors import InputFileError, MapMergeError, SettingError
-from app.access import LEAST_TOKEN, Access, Asked, access_for, is_local, same
-from app.commands.serve import address, reach
-from app.gate import Gate
+from app.cli.commands.serve import address, reach
+from app.web.security.access_control import LEAST_TOKEN, Access, Asked, access_for, is_local, same
+from app.web.security.message_filter import Gate
 
 TOKEN = "a-token-that-nobody-guesses"
 
@@ -81,7 +81,7 @@ def test_nothing_but_a_comparison_in_constant_time_decides_who_has_the_token(mon
         compared.append((given.decode(), wanted.decode()))
         return given not in (b"", wanted)
 
-    monkeypatch.setattr("app.access.hmac", SimpleNamespace(compare_digest=lie))
+    monkeypatch.setattr("app.web.security.access_control.hmac", SimpleNamespace(compare_digest=lie))
     for word, by_address, by_cookie in ((TOKEN, 401, 401), (wrong, 200, None)):
         assert ask(access, f"/?token={word}", host="x") == by_address
         assert ask(access, host="x", cookie=f"a=b; {access.cookie}={word}") == by_cookie

@@ -9,14 +9,10 @@ from hypothesis.extra.numpy import arrays
 
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.maps.wall_distance import distance_to_walls, surface
 from algorithms.observations.observation import Encounter, encounter
 from algorithms.observations.search_window import WindowConfig, coupled_window
-from algorithms.optimisation.likelihood_field import (
-    AgreementConfig,
-    distance_to_walls,
-    make_agreement,
-    surface,
-)
+from algorithms.optimisation.likelihood_field import AgreementConfig, make_agreement
 from algorithms.optimisation.objective import Lookup
 from algorithms.spectra.augmented_map import AugmentConfig
 

@@ -13,11 +13,11 @@ from wire import WireFile, WireTab, until
 
 from algorithms.files.case_folder import Case
 from algorithms.files.map_file import map_to_bytes
-from app.access import Access
-from app.arrivals import LEAST, MAX_UPLOAD, MAX_UPLOADS, MOST, Recipient
-from app.guard import guarded_server
-from app.panels.files import FilesPanel
-from app.server import make_server
+from app.page.application import make_server
+from app.page.panels.files_panel import FilesPanel
+from app.web.security.access_control import Access
+from app.web.upload import LEAST, MAX_UPLOAD, MAX_UPLOADS, MOST, Recipient
+from app.web.viser_server import guarded_server
 
 IMAGE = "Map 1: image"
 LONG = b"P5\n# \n" + bytes(3 * MOST)
@@ -41,7 +41,7 @@ def tab(server) -> Iterator[WireTab]:
 @pytest.fixture
 def at_once(monkeypatch) -> None:
     """Every file takes long."""
-    monkeypatch.setattr("app.arrivals.SHORT", 0.0)
+    monkeypatch.setattr("app.web.upload.SHORT", 0.0)
 
 
 def kept(server: viser.ViserServer) -> list[int]:
@@ -243,7 +243,7 @@ def test_a_button_that_there_is_not_takes_no_file(server, tab):
 
 
 def test_who_announces_a_file_and_sends_nothing_is_given_up(server, tab, monkeypatch):
-    monkeypatch.setattr("app.arrivals.SILENCE", 0.2)
+    monkeypatch.setattr("app.web.upload.SILENCE", 0.2)
     file = WireFile(tab, IMAGE, "long.pgm", LONG)
     assert file.over() == ""
     assert server.gate.dropped["upload silent"]

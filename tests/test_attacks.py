@@ -19,10 +19,10 @@ from strangers import PATIENCE, Stand, Visitor
 from websockets.frames import Frame, Opcode
 from wire import CAMERA, WireFile, until
 
-from app.arrivals import MAX_UPLOAD, MAX_UPLOADS_OF_ALL, Recipient
-from app.arrivals import MOST as MAX_FRAME
-from app.frames import EARNS, MOST, Allowance
-from app.heard import MAX_PARTS, MAX_WORDS, fault
+from app.web.security.frame_limit import EARNS, MOST, Allowance
+from app.web.security.message_schema import MAX_PARTS, MAX_WORDS, fault
+from app.web.upload import MAX_UPLOAD, MAX_UPLOADS_OF_ALL, Recipient
+from app.web.upload import MOST as MAX_FRAME
 
 
 def told(stand: Stand, do: Callable[[Visitor], None]) -> tuple[list[tuple[str, Any]], Visitor]:

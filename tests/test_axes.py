@@ -10,9 +10,9 @@ from algorithms.common.errors import SettingError
 from algorithms.maps.map_fusion import Conflict
 from algorithms.methods.registry import METHODS
 from algorithms.observations.search_window import WindowConfig
-from app import axes
-from app.axes import axis_from, setting_named, spaced
-from app.controls import settings_of, with_value
+from app.evaluation import sweep_axes as axes
+from app.evaluation.sweep_axes import axis_from, setting_named, spaced
+from app.model.settings import settings_of, with_value
 
 CONFIG = METHODS["spectra-swarm"].defaults
 NUMBERS = [setting for setting in settings_of(CONFIG) if setting.bounds is not None]

@@ -12,9 +12,9 @@ from wire import WireTab, until
 
 from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import Case
-from app.inputs import Inputs
-from app.layout import Layout, lay_out
-from app.server import make_server
+from app.drawing.scene_layout import Layout, lay_out
+from app.model.merge_inputs import Inputs
+from app.page.application import make_server
 
 X, Y, TURN = "T: Δx (m)", "T: Δy (m)", "T: Δθ (°)"
 

@@ -20,7 +20,7 @@ from viser import _gui_handles, _messages
 from viser._gui_api import GuiApi, _FileUploadState
 from wire import until
 
-from app.heard import HEARD
+from app.web.security.message_schema import HEARD
 
 ROOT = Path(__file__).parent.parent
 GUI = Path(inspect.getfile(GuiApi)).read_text(encoding="utf-8")  # as it is there: ours may stand in its place
@@ -45,7 +45,7 @@ def asked_of_websockets() -> set[str]:
 
 def asked_of_the_viewer() -> set[str]:
     """What our scripts ask of the object that viser's page shows to tests: viewer(), or m for short."""
-    scripts = [path.read_text(encoding="utf-8") for path in (ROOT / "app").glob("*.js")]
+    scripts = [path.read_text(encoding="utf-8") for path in (ROOT / "app" / "frontend").glob("*.js")]
     asking = [script for script in scripts if "viewer()" in script]
     return {name for script in asking for name in re.findall(r"(?:\bviewer\(\)\??|\bm)\.(\w+)", script)}
 
@@ -220,7 +220,7 @@ LIVING: dict[str, Callable[[Visitor], bool]] = {
     "all work of all tabs is given to one executor": lambda v: (
         v.room.client.gui._thread_executor is v.stand.server._thread_executor
         and v.stand.server.gui._thread_executor is v.stand.server._thread_executor
-        and v.stand.server._thread_executor.submit.__module__ == "app.mishap"
+        and v.stand.server._thread_executor.submit.__module__ == "app.web.callback_errors"
     ),
     "who hears a control's value is settled as a tab begins: ours was there before": lambda v: (
         hears_by(v.room.client._websock_connection) == ["safe_update"]

@@ -12,8 +12,8 @@ import viser
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.channel import LONGEST, MOST_WAITING, Channel, Numbers, checked
-from app.gate import acceptable, usable
+from app.web.browser_events import LONGEST, MOST_WAITING, Channel, Numbers, checked
+from app.web.security.message_filter import acceptable, usable
 
 PATIENCE = 20
 

@@ -12,8 +12,8 @@ from proofs import proof_state
 
 from algorithms.common.pose import FloatArray, wrap_angles
 from algorithms.optimisation.branch_and_bound import ProofState
-from app import charts
-from app.measure import AGREEMENT
+from app.model import chart_data as charts
+from app.model.objective_label import AGREEMENT
 
 values = st.one_of(st.just(-inf), st.floats(-50, 120))
 

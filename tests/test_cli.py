@@ -10,8 +10,8 @@ from commandline import ROOT, in_a_process, inputs, usage_error
 from algorithms.common.setting_bounds import Bounds
 from algorithms.methods import registry as methods
 from algorithms.methods.registry import METHODS
-from app.cli import COMMANDS, main
-from app.controls import settings_of
+from app.cli.main import COMMANDS, main
+from app.model.settings import settings_of
 
 # ---- help and version
 
@@ -34,7 +34,7 @@ def test_every_command_has_worked_examples_in_its_help(command, capsys):
 
 def test_help_and_version_load_nothing_heavy():
     code = (
-        "import sys; from app.cli import main\n"
+        "import sys; from app.cli.main import main\n"
         "for words in (['--help'], ['--version'], ['serve', '--help']):\n"
         "    try: main(words)\n"
         "    except SystemExit: pass\n"
@@ -118,7 +118,7 @@ def test_an_interrupt_ends_with_130_one_line_and_no_files(case_folder, tmp_path,
 
 ENDED_WHILE_WRITING = """
 import os, signal, sys
-from app.cli import entry
+from app.cli.main import entry
 sync, calls = os.fsync, []
 def ended(*what):
     calls.append(what)

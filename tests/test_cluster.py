@@ -12,11 +12,11 @@ from test_executor import fail, until
 from test_sweep import plan, untimed
 
 from algorithms.common.errors import SettingError
-from app import cluster
-from app.cli import main
-from app.cluster import Cluster
-from app.executor import Here, Lost, Shared, Task, executor_for
-from app.sweep import in_order, sweep
+from app.cli.main import main
+from app.evaluation.parameter_sweep import in_order, sweep
+from app.jobs import dask_executor as cluster
+from app.jobs.dask_executor import Cluster
+from app.jobs.executor import Here, Lost, Shared, Task, executor_for
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import Case
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.maps.map_fusion import fuse
-from algorithms.observations.observation import NOWHERE
+from algorithms.maps.robots import NOWHERE
 from algorithms.verdict.contradictions import LEAST, find_conflicts
 from algorithms.verdict.wall_evidence import evidence
 from algorithms.verdict.wall_map import make_wall_map

@@ -11,9 +11,9 @@ from test_sweep import trials
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import Pose2
 from algorithms.methods.registry import METHODS
-from app.contest import Score, Unread, contest, defaults_of, pairs_in, tally
-from app.executor import Executor, Here, Lost
-from app.trial import attempt, true_fusion
+from app.evaluation.method_comparison import Score, Unread, contest, defaults_of, pairs_in, tally
+from app.evaluation.method_run import attempt, true_fusion
+from app.jobs.executor import Executor, Here, Lost
 
 QUICK = "spectra-swarm"
 

@@ -12,8 +12,8 @@ from algorithms.common.errors import SettingError
 from algorithms.common.setting_bounds import Bounds, check_bounds
 from algorithms.methods.registry import METHODS
 from algorithms.methods.spectra_method import PipelineConfig
-from app.controls import field_docs, in_cells, settings_of, value_at, with_value, word_for
-from app.panels.tuning import idle
+from app.model.settings import field_docs, in_cells, settings_of, value_at, with_value, word_for
+from app.page.panels.settings_panel import idle
 
 
 class Rule(str, Enum):

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import observations_from_bytes, observations_to_bytes
 from algorithms.observations.observation import Observation, encounter
-from app.draft import Draft
+from app.model.observation_draft import Draft
 
 metres, angles = st.floats(-50, 50), st.floats(-3.1, 3.1)
 poses = st.builds(Pose2, metres, metres, angles)

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 import viser
 
-from app.entrance import _CHANGES, served, with_words
-from app.server import make_server
+from app.page.application import make_server
+from app.web.index_page import _CHANGES, served, with_words
 
 VISERS = (Path(viser.__file__).parent / "client" / "build" / "index.html").read_text(encoding="utf-8")
 

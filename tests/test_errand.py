@@ -13,11 +13,11 @@ from PIL import Image
 
 from algorithms.common.errors import InputFileError
 from algorithms.files.map_file import map_from_bytes
-from app.errand import Errand, Left, Watched
-from app.panels.files import FilesPanel, Upload
-from app.panels.replay import ReplayButton
-from app.stage import Stage
-from app.takeaway import TAKEAWAY
+from app.drawing.browser_messages import Stage
+from app.page.cancellable_task import Errand, Left, Watched
+from app.page.panels.files_panel import FilesPanel, Upload
+from app.page.panels.replay import ReplayButton
+from app.web.download import TAKEAWAY
 
 YAML = b"image: a\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
 BEFORE = {"state": "Ready. Press Merge.", "mood": "idle", "progress": None}
@@ -167,7 +167,7 @@ def test_stop_has_nothing_to_stop_before_and_after(person):
 
 
 def test_words_aside_are_taken_back_and_tell_how_far_it_is(person, monkeypatch):
-    monkeypatch.setattr("app.errand.perf_counter", iter(range(100)).__next__)
+    monkeypatch.setattr("app.page.cancellable_task.perf_counter", iter(range(100)).__next__)
     with person.errand("Making the files.", aside=True) as check:
         check(0.5)
         assert person.said == {"state": "Making the files.", "mood": "running", "progress": 0.5}

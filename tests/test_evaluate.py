@@ -12,11 +12,11 @@ from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import Truth
 from algorithms.methods import registry as methods
-from app import evaluate
-from app.cli import main
-from app.evaluate import Order, judge_case, run_case, totals_of
-from app.executor import Here
-from app.processes import Processes
+from app.cli.main import main
+from app.evaluation import dataset_evaluation as evaluate
+from app.evaluation.dataset_evaluation import Order, judge_case, run_case, totals_of
+from app.jobs.executor import Here
+from app.jobs.process_executor import Processes
 
 METHOD = "spectra-swarm"
 DEFAULTS = methods.METHODS[METHOD].defaults

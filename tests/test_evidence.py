@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from algorithms.common import parallel_kernels as kernels
 from algorithms.common.pose import Pose2, rotation
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.observations.observation import NOWHERE, Robots
+from algorithms.maps.robots import NOWHERE, Robots
 from algorithms.verdict.wall_evidence import PATCH, SLIP, Evidence, evidence
 from algorithms.verdict.wall_map import make_wall_map
 

@@ -18,14 +18,14 @@ from algorithms.maps.map_fusion import fuse
 from algorithms.spectra.augmented_map import augment
 from algorithms.verdict.cell_agreement import Walls
 from algorithms.verdict.contradictions import find_conflicts
-from app import render
-from app.layout import Layout
-from app.palette import LIGHT
-from app.replay.pictures import PictureScene
-from app.stage import Stage
-from app.views.excerpts import MOST_EXCERPT, Excerpt, View, looked_at
-from app.views.ground import Ground
-from app.views.images import Size
+from app.drawing import grid_pixels as render
+from app.drawing.browser_messages import Stage
+from app.drawing.palette import LIGHT
+from app.drawing.scene.grid_image import Size
+from app.drawing.scene.map_layers import Ground
+from app.drawing.scene.zoom_crop import MOST_EXCERPT, Excerpt, View, looked_at
+from app.drawing.scene_layout import Layout
+from app.report.replay.image_recorder import PictureScene
 
 SIDES = st.integers(1, 20_000)
 PLACES = st.floats(-3000, 23_000)

@@ -16,8 +16,8 @@ from commandline import as_in_a_terminal
 
 from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import InputFileError, NoAnswerError, OutputError, SettingError
-from app.executor import Here, Lost, Shared, Task, executor_for, unpacked
-from app.processes import Processes
+from app.jobs.executor import Here, Lost, Shared, Task, executor_for, unpacked
+from app.jobs.process_executor import Processes
 
 ROOT = Path(__file__).parent.parent
 
@@ -136,7 +136,8 @@ def test_processes_share_the_cores_among_them(monkeypatch):
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGKILL])
 def test_no_process_outlives_the_one_that_asked(end, tmp_path):
     script = (
-        "import sys, pathlib; from app.executor import *; from app.processes import Processes\n"
+        "import sys, pathlib; from app.jobs.executor import *\n"
+        "from app.jobs.process_executor import Processes\n"
         "sys.path.insert(0, 'tests'); import test_executor\n"
         "shared = Shared.of(pathlib.Path(sys.argv[1]))\n"
         "list(Processes(1).run(test_executor.linger, [Task(0, shared)]))"

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from algorithms.methods.registry import METHODS
-from app.axes import axis_from
-from app.contest import Score
-from app.figures.contest import bars_figure, maps_figure
-from app.figures.sweep import sweep_figure
-from app.sweep import Plan, Point
-from app.trial import Trial
+from app.evaluation.comparison_figure import bars_figure, maps_figure
+from app.evaluation.method_comparison import Score
+from app.evaluation.method_run import Trial
+from app.evaluation.parameter_sweep import Plan, Point
+from app.evaluation.sweep_axes import axis_from
+from app.evaluation.sweep_figure import sweep_figure
 
 ROOT = Path(__file__).parent.parent
 CONFIG = METHODS["spectra-swarm"].defaults
@@ -107,9 +107,12 @@ def test_no_figure_names_the_day_or_the_program_that_made_it(scores):
 
 def test_matplotlib_is_loaded_where_a_figure_is_drawn_and_nowhere_else():
     code = (
-        "import sys, app.sweep, app.contest, app.sweep_files, app.contest_files, app.axes\n"
+        "import sys\n"
+        "from app.evaluation import comparison_files, method_comparison, parameter_sweep\n"
+        "from app.evaluation import sweep_axes, sweep_files\n"
         "print('matplotlib' in sys.modules)\n"
-        "import app.figures.sweep\nprint('matplotlib' in sys.modules, 'matplotlib.pyplot' in sys.modules)"
+        "import app.evaluation.sweep_figure\n"
+        "print('matplotlib' in sys.modules, 'matplotlib.pyplot' in sys.modules)"
     )
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)
     assert told.stdout.split() == ["False", "True", "False"]

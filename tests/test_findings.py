@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from algorithms.methods.registry import METHODS
-from app import axes
-from app.contest import Score, tally
-from app.sweep import Axis, Plan, Point
-from app.trial import Trial
+from app.evaluation import sweep_axes as axes
+from app.evaluation.method_comparison import Score, tally
+from app.evaluation.method_run import Trial
+from app.evaluation.parameter_sweep import Axis, Plan, Point
 
 ROOT = Path(__file__).parents[1]
 CONFIG = METHODS["spectra-swarm"].defaults

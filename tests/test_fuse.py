@@ -9,7 +9,7 @@ from algorithms.common.errors import TooLargeError
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.maps.map_fusion import Conflict, fuse
-from algorithms.observations.observation import Robots
+from algorithms.maps.robots import Robots
 
 classes = st.sampled_from([UNKNOWN, FREE, OCCUPIED])
 near = st.builds(Pose2, st.floats(-2, 2), st.floats(-2, 2), st.floats(-np.pi, np.pi))

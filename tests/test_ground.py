@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from algorithms.files.case_folder import Case
-from app.inputs import Inputs
-from app.layout import lay_out
-from app.palette import DARK, LIGHT
-from app.replay.pictures import PictureScene
-from app.views.ground import Ground
+from app.drawing.palette import DARK, LIGHT
+from app.drawing.scene.map_layers import Ground
+from app.drawing.scene_layout import lay_out
+from app.model.merge_inputs import Inputs
+from app.report.replay.image_recorder import PictureScene
 
 
 @pytest.fixture

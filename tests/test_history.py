@@ -19,13 +19,13 @@ from algorithms.maps.map_fusion import fuse
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from algorithms.methods.steps import Step
 from algorithms.observations.observation import Observation
-from app.controls import with_value
-from app.desk import Desk, change
-from app.history import MOST, PAUSE, Entry, History
-from app.inputs import Files, Inputs, Upload
-from app.keep import Keep, Kept
-from app.panels.history import history_html, steps_html
-from app.story import Story
+from app.model.merge_inputs import Files, Inputs, Upload
+from app.model.run_state import Story
+from app.model.settings import with_value
+from app.page.page_snapshot import Desk, change
+from app.page.panels.history_panel import history_html, steps_html
+from app.page.undo_history import MOST, PAUSE, Entry, History
+from app.web.session_store import Keep, Kept
 
 ROOM = GridMap(np.full((40, 40), FREE, dtype=np.int8), 0.1)
 SEEN = Observation(Pose2(), 0.1, 0.1, 0.1, 0.0)

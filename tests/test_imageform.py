@@ -14,9 +14,9 @@ from algorithms.common.pose import Pose2
 from algorithms.files.map_file import MapMeta, Shading, image_map_from_bytes, meta_to_bytes, parse_meta
 from algorithms.files.thresholds import MODES
 from algorithms.maps.grid_map import COARSEST, FINEST, FREE, MOST_TURN, OCCUPIED, UNKNOWN
-from app.inputs import Files
-from app.panels.files import FilesPanel
-from app.panels.imageform import doubt_about, shares
+from app.model.merge_inputs import Files
+from app.page.panels.files_panel import FilesPanel
+from app.page.panels.image_form import doubt_about, shares
 
 # 3 x 2 pixels: white, grey, black above; black, white, white below
 IMAGE = b"P5\n3 2\n255\n" + bytes([254, 205, 0, 0, 254, 254])

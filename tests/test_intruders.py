@@ -10,8 +10,8 @@ import viser
 from strangers import PATIENCE, TOKEN, Visitor, get, join
 from websockets.exceptions import InvalidStatus
 
-from app.access import Access
-from app.server import PortError, make_server
+from app.page.application import PortError, make_server
+from app.web.security.access_control import Access
 
 FOREIGN = {
     "another site's page": {"origin": "http://evil.example"},
@@ -100,7 +100,7 @@ def test_no_client_has_a_public_tunnel_opened(stock, ours):
 
 
 def test_a_server_listens_at_this_machine_alone_unless_it_is_told_otherwise(caplog, monkeypatch):
-    monkeypatch.setattr("app.server.warm_up", lambda: None)  # nothing is merged here
+    monkeypatch.setattr("app.page.application.warm_up", lambda: None)  # nothing is merged here
     caplog.set_level(logging.INFO, "websockets.server")
     for start, listens in (
         (lambda: viser.ViserServer(port=0, verbose=False), "0.0.0.0"),  # for a moment, with nothing on it

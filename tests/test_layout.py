@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, UNKNOWN, GridMap
 from algorithms.observations.observation import Observation, encounter
-from app.layout import Layout, known_corners, lay_out, rect_of
+from app.drawing.scene_layout import Layout, known_corners, lay_out, rect_of
 
 
 def grid(rows: int, cols: int, origin: Pose2 = Pose2()) -> GridMap:  # noqa: B008 - frozen

@@ -9,9 +9,9 @@ from xml.etree import ElementTree
 import pytest
 
 from algorithms.common.errors import InputFileError
-from app.lesson import equations
-from app.lesson.numbers import NUMBERS
-from app.lesson.texts import files, filled, lesson_folder, read_step
+from app.page.lesson import equations
+from app.page.lesson.lesson_texts import files, filled, lesson_folder, read_step
+from app.page.lesson.placeholders import NUMBERS
 
 GOOD = """\
 ---

@@ -21,16 +21,16 @@ import pytest
 import viser
 from wire import PATIENCE, WireTab, until
 
-import app.server
+import app.page.application
 from algorithms.common.errors import TooLargeError
 from algorithms.files.case_folder import Case, read_case
 from algorithms.methods.registry import merge
-from app.budget import Budget
-from app.job import Job
-from app.page import Page
-from app.server import make_server
-from app.takeaway import Takeaway
-from app.turns import Turns
+from app.jobs.fair_semaphore import Turns
+from app.model.merge_job import Job
+from app.page.application import make_server
+from app.page.page import Page
+from app.web.cell_quota import Budget
+from app.web.download import Takeaway
 
 ROOT = Path(__file__).parent.parent
 
@@ -83,7 +83,7 @@ def test_merge_pressed_between_two_loads_gives_no_pair_the_answer_of_another(ser
         sleep(0.5)  # in which others get their turn where they can
         return job
 
-    monkeypatch.setattr("app.panels.files.read_case", slowly)
+    monkeypatch.setattr("app.page.panels.files_panel.read_case", slowly)
     monkeypatch.setattr(Page, "_job", late)
     tab = WireTab(server.get_port())
     tab.choose("Instant")
@@ -107,7 +107,7 @@ def test_merge_pressed_between_two_loads_gives_no_pair_the_answer_of_another(ser
 
 
 def test_a_tab_that_stops_reading_is_given_up_and_hinders_no_other(server, monkeypatch):
-    monkeypatch.setattr("app.gate.PATIENCE", 1.0)
+    monkeypatch.setattr("app.web.security.message_filter.PATIENCE", 1.0)
     stuck, tab = WireTab(server.get_port()), WireTab(server.get_port())
     (client,) = [client for number, client in server.get_clients().items() if number == 0]
     stuck.stop_reading()
@@ -176,7 +176,7 @@ def test_what_was_stopped_is_not_begun_again_by_a_reload(server):
 
 
 def test_a_tab_too_many_is_told_so_and_has_no_session(small_case, monkeypatch):
-    monkeypatch.setattr(app.server, "MOST_TABS", 1)
+    monkeypatch.setattr(app.page.application, "MOST_TABS", 1)
     server = make_server(port=0, initial=small_case)
     try:
         first = WireTab(server.get_port())
@@ -242,7 +242,7 @@ def test_turns_are_taken_in_their_order_and_so_many_at_a_time():
 
 
 def test_who_wants_no_turn_any_more_leaves_the_queue_and_is_told_how_long_it_was(monkeypatch):
-    monkeypatch.setattr("app.turns.PATIENCE", 0.0)
+    monkeypatch.setattr("app.jobs.fair_semaphore.PATIENCE", 0.0)
     turns, before, wanted = Turns(1), [], [True]
 
     def give_up(number: int) -> None:

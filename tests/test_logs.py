@@ -9,8 +9,8 @@ import socket
 import pytest
 from strangers import PATIENCE, TOKEN, Stand, get
 
-from app import logs
-from app.access import Access
+from app.system import logging_setup as logs
+from app.web.security.access_control import Access
 
 ACCESS = Access(None, TOKEN)
 
@@ -54,7 +54,7 @@ def test_a_request_that_is_none_leaves_nothing_in_the_log(locked, request_, capl
 
 
 def test_who_looks_for_it_is_told_the_kind_of_a_handshake_that_failed(locked, caplog):
-    with caplog.at_level(logging.DEBUG, "app.logs"):
+    with caplog.at_level(logging.DEBUG, "app.system.logging_setup"):
         sent(locked, STUMBLES["an old protocol"])
         assert get(locked.port)[0] == 401
     assert "opening handshake failed: InvalidMessage" in caplog.text

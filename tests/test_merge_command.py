@@ -19,7 +19,7 @@ from algorithms.files.map_file import read_map
 from algorithms.maps.grid_map import FREE, OCCUPIED
 from algorithms.methods import registry as methods
 from algorithms.methods.registry import METHODS
-from app.cli import main
+from app.cli.main import main
 
 OF_A_REFUSAL = {"overlay.png", "report.html", "report.json"}
 ALL_FILES = {"merged.yaml", "merged.pgm", "transform.yaml"} | OF_A_REFUSAL

@@ -16,16 +16,16 @@ from wire import WireTab, until
 
 from algorithms.methods.spectra_method import PipelineConfig
 from algorithms.spectra.candidates import CandidateConfig
-from app import words as words_of_the_page
-from app import workers
-from app.export import Harvest
-from app.logs import Lines, facts
-from app.mishap import OUT_OF_MEMORY, words
-from app.page import Page
-from app.panels.files import read_case as real_read_case
-from app.server import make_server
-from app.story import Story
-from app.views.maps import MapView
+from app.drawing.scene.map_view import MapView
+from app.jobs import worker_pool as workers
+from app.model import status_text as words_of_the_page
+from app.model.run_state import Story
+from app.page.application import make_server
+from app.page.page import Page
+from app.page.panels.files_panel import read_case as real_read_case
+from app.report.export import Harvest
+from app.system.logging_setup import Lines, facts
+from app.web.callback_errors import OUT_OF_MEMORY, words
 
 
 @pytest.fixture(scope="module")
@@ -103,7 +103,7 @@ def test_a_merge_whose_process_is_killed_is_told_and_the_next_merge_works(tab, c
 
 
 def test_a_recording_whose_process_hangs_can_be_stopped_and_the_next_merge_works(tab, monkeypatch):
-    monkeypatch.setattr("app.workers.HANGS", 1.0)
+    monkeypatch.setattr("app.jobs.worker_pool.HANGS", 1.0)
     assert merge(tab) == "accepted"
     said, progress = tab.state, words_of_the_page.progress
 
@@ -177,7 +177,7 @@ def test_files_that_cannot_be_made_are_told_of_and_can_be_asked_for_again(tab, m
 
 
 def test_a_sample_that_has_gone_meanwhile_is_named_and_what_was_there_stays(tab, monkeypatch, tmp_path):
-    monkeypatch.setattr("app.panels.files.read_case", lambda _: real_read_case(tmp_path / "gone"))
+    monkeypatch.setattr("app.page.panels.files_panel.read_case", lambda _: real_read_case(tmp_path / "gone"))
     before = tab.words["case"]
     tab.write("Sample", "office_r2_r1", "Dropdown")
     until(lambda: tab.mood == "failed", "a word of it")
@@ -196,7 +196,7 @@ def test_what_went_wrong_is_said_without_a_trace():
 
 
 def test_a_line_of_the_log_is_one_line_that_programs_read():
-    record = logging.LogRecord("app.server", logging.INFO, __file__, 1, "a tab\ncame", (), None)
+    record = logging.LogRecord("app.page.application", logging.INFO, __file__, 1, "a tab\ncame", (), None)
     record.__dict__.update(facts(tab=3))
     line = Lines().format(record)
     assert "\n" not in line

@@ -10,8 +10,15 @@ from algorithms.common.errors import InputFileError
 from algorithms.common.pose import pose_error
 from algorithms.methods.registry import METHODS, merge
 from algorithms.methods.steps import MergeResult
-from app.lesson.museum import changes, rows
-from app.lesson.texts import Exhibit, exhibit_case, files, museum_folder, read_exhibit, with_settings
+from app.page.lesson.lesson_texts import (
+    Exhibit,
+    exhibit_case,
+    files,
+    museum_folder,
+    read_exhibit,
+    with_settings,
+)
+from app.page.lesson.museum_controller import changes, rows
 
 GOOD = """\
 ---

@@ -5,7 +5,7 @@ from __future__ import annotations
 from queue import Queue
 from threading import Event
 
-from app.newest import Newest
+from app.jobs.latest_request import Newest
 
 PATIENCE = 20
 

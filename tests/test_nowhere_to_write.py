@@ -24,10 +24,10 @@ from commandline import ROOT, in_a_process, inputs
 from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import OutputError
 from algorithms.files import atomic_write as atomic
-from app.cli import main
-from app.executor import Shared, Task
-from app.journal import Journal
-from app.processes import Processes
+from app.cli.main import main
+from app.evaluation.checkpoint import Journal
+from app.jobs.executor import Shared, Task
+from app.jobs.process_executor import Processes
 
 QUICK = ["--swarm.iterations", "5", "--refine.candidates", "1", "--seeds", "1"]
 
@@ -60,9 +60,9 @@ COMMANDS = {
 }
 WORK = (
     "algorithms.methods.registry.run",
-    "app.contest.contest",
-    "app.sweep.sweep",
-    "app.evaluate.evaluate",
+    "app.evaluation.method_comparison.contest",
+    "app.evaluation.parameter_sweep.sweep",
+    "app.evaluation.dataset_evaluation.evaluate",
     "algorithms.simulator.samples.generate_cases",
     "algorithms.simulator.samples.regenerate",
 )

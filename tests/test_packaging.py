@@ -51,7 +51,7 @@ def run(installed, tmp_path, *words):
 
 def test_the_wheel_holds_both_packages_and_what_they_show(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
-    assert {"app/cli.py", "algorithms/methods/registry.py"} <= names
+    assert {"app/cli/main.py", "algorithms/methods/registry.py"} <= names
     kinds = ("*.js", "*.css", "*.html")
     shown = {path.relative_to(ROOT).as_posix() for kind in kinds for path in (ROOT / "app").rglob(kind)}
     assert shown
@@ -76,7 +76,7 @@ def test_the_installed_command_explains_itself(installed, tmp_path):
 
 def test_the_installed_package_finds_its_samples_and_static_files(installed, tmp_path):
     code = (
-        "import app, app.paths as p\n"
+        "import app, app.system.data_paths as p\n"
         "print(app.__file__)\n"
         "print(p.static(), p.static().is_dir())\n"
         "print(*sorted(p.samples()))"
@@ -91,7 +91,7 @@ def test_the_installed_package_finds_its_samples_and_static_files(installed, tmp
 
 def test_the_installed_command_merges_a_sample_that_came_with_it(installed, tmp_path):
     code = (
-        "import sys, app.paths as p; from app.cli import main\n"
+        "import sys, app.system.data_paths as p; from app.cli.main import main\n"
         "case = next(iter(p.samples().values()))\n"
         "sys.exit(main(['evaluate', str(case)]))"
     )

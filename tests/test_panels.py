@@ -15,14 +15,14 @@ from algorithms.files.case_folder import Truth, observations_to_bytes
 from algorithms.files.map_file import map_to_bytes
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge, run
 from algorithms.methods.steps import CandidatesDetail, HoughDetail
-from app import charts
-from app.inputs import Inputs
-from app.panels.files import Upload, inputs_from
-from app.panels.observation import observations_html
-from app.panels.result import numbers, result_html, times
-from app.panels.tables import box, table
-from app.story import Story
-from app.words import progress, sentence, typeset
+from app.model import chart_data as charts
+from app.model.merge_inputs import Inputs
+from app.model.run_state import Story
+from app.model.status_text import progress, sentence, typeset
+from app.page.editing.observation_panel import observations_html
+from app.page.panels.files_panel import Upload, inputs_from
+from app.page.panels.html_widgets import box, table
+from app.page.panels.result_panel import numbers, result_html, times
 
 DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 

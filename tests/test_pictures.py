@@ -17,18 +17,18 @@ from algorithms.methods.registry import METHODS, run
 from algorithms.methods.steps import HoughDetail, MergeResult, RefineDetail, ShiftDetail, Step
 from algorithms.spectra.augmented_map import augment
 from algorithms.spectra.hough_spectra import hough_transform
-from app.inputs import Inputs
-from app.layout import lay_out
-from app.lesson import equations
-from app.lesson.numbers import NUMBERS, numbers_of
-from app.lesson.study import FEW, Study, keep
-from app.lesson.texts import PLACEHOLDER, files, filled, lesson_folder, read_step
-from app.palette import DARK, LIGHT, css
-from app.pictures.book import PICTURES, Dial, place_of, shown
-from app.pictures.judgement import FULL, bars, values
-from app.pictures.raster import View, around, walls
-from app.pictures.sheet import WIDE, Plot, Sheet, ticks
-from app.pictures.spectra import strongest
+from app.drawing.palette import DARK, LIGHT, css
+from app.drawing.scene_layout import lay_out
+from app.drawing.svg.map_raster import View, around, walls
+from app.drawing.svg.svg_canvas import WIDE, Plot, Sheet, ticks
+from app.model.merge_inputs import Inputs
+from app.page.lesson import equations
+from app.page.lesson.figures.figure_registry import PICTURES, Dial, place_of, shown
+from app.page.lesson.figures.spectra_figures import strongest
+from app.page.lesson.figures.verdict_figure import FULL, bars, values
+from app.page.lesson.lesson_run import FEW, Study, keep
+from app.page.lesson.lesson_texts import PLACEHOLDER, files, filled, lesson_folder, read_step
+from app.page.lesson.placeholders import NUMBERS, numbers_of
 
 CONFIG = METHODS["spectra-proven"].defaults
 SVG = "{http://www.w3.org/2000/svg}"

@@ -19,9 +19,9 @@ from strangers import PATIENCE, SPEAKS
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
-from app.access import access_for
-from app.arrivals import PATH
-from app.guard import guarded_server
+from app.web.security.access_control import access_for
+from app.web.upload import PATH
+from app.web.viser_server import guarded_server
 
 NAME, TOKEN = "robots.example", "a-token-that-nobody-guesses"
 

@@ -20,17 +20,17 @@ from algorithms.files.case_folder import Case
 from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
 from algorithms.methods.registry import METHODS, run
 from algorithms.observations.observation import Observation
-from app import words
-from app.cli import main
-from app.inputs import Inputs
-from app.panels.replay import file_name
-from app.png import data_uri
-from app.render import upright
-from app.replay import About, record, replay_html
-from app.replay.curves import thinned
-from app.replay.page import as_script
-from app.replay.record import PICTURE
-from app.story import Story
+from app.cli.main import main
+from app.drawing.grid_pixels import upright
+from app.drawing.png import data_uri
+from app.model import status_text as words
+from app.model.merge_inputs import Inputs
+from app.model.run_state import Story
+from app.page.panels.replay import file_name
+from app.report.replay.chart_recorder import thinned
+from app.report.replay.html_page import as_script, replay_html
+from app.report.replay.metadata import About
+from app.report.replay.recorder import PICTURE, record
 
 
 def recorded(case: Case, method: str = "spectra-proven"):

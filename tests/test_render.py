@@ -9,8 +9,8 @@ from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.maps.map_fusion import fuse
 from algorithms.spectra.augmented_map import augment
-from app import render
-from app.palette import DARK, LIGHT, VIRIDIS
+from app.drawing import grid_pixels as render
+from app.drawing.palette import DARK, LIGHT, VIRIDIS
 
 
 def l_shaped(rows: int = 12, cols: int = 20) -> GridMap:

@@ -14,9 +14,9 @@ from PIL import Image
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN
 from algorithms.methods.registry import METHODS, merge
-from app import report
-from app.inputs import Inputs
-from app.palette import LIGHT
+from app.drawing.palette import LIGHT
+from app.model.merge_inputs import Inputs
+from app.report import result_files as report
 
 
 def test_the_report_has_the_keys_that_other_programs_read(result):

@@ -18,12 +18,12 @@ from algorithms.files.map_file import read_map
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
 from algorithms.methods.steps import MergeResult
 from algorithms.verdict.decision import Outcome
-from app.export import ACTED_UPON, ALONE, Harvest
-from app.inputs import Inputs
-from app.panels.tables import box
-from app.publish import publish_command
-from app.report import report_of
-from app.report_page import report_page
+from app.model.merge_inputs import Inputs
+from app.page.panels.html_widgets import box
+from app.report.export import ACTED_UPON, ALONE, Harvest
+from app.report.html_report import report_page
+from app.report.result_files import report_of
+from app.report.ros_transform import publish_command
 
 DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 VOID = {"meta"}

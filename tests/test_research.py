@@ -16,21 +16,22 @@ from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
 from algorithms.common.setting_bounds import Bounds
 from algorithms.methods.registry import METHODS
-from app.controls import settings_of, with_value
-from app.executor import Task
-from app.palette import DARK, LIGHT
-from app.panels.compare import Card, card_html
-from app.pictures.heat import heat_svg
-from app.pictures.thumbnail import thumbnail
-from app.research import background, curves
-from app.research.archive import contest_archive
-from app.research.asked import MOST_POINTS, Wanted, labelled, planned, suggestion
-from app.research.background import Background, beside_the_page
-from app.research.guest import Guest
-from app.research.outcome import outcome_of
-from app.story import Story
-from app.sweep import Axis, Plan, Point
-from app.trial import Trial
+from app.drawing.palette import DARK, LIGHT
+from app.drawing.svg.thumbnail import thumbnail
+from app.evaluation.evaluation_archive import contest_archive
+from app.evaluation.method_run import Trial
+from app.evaluation.parameter_sweep import Axis, Plan, Point
+from app.jobs import background_job as background
+from app.jobs.background_job import Background, beside_the_page
+from app.jobs.executor import Task
+from app.model.run_state import Story
+from app.model.settings import settings_of, with_value
+from app.page.research import sweep_curves as curves
+from app.page.research.comparison_panel import Card, card_html
+from app.page.research.heatmap import heat_svg
+from app.page.research.other_result import Guest
+from app.page.research.run_summary import outcome_of
+from app.page.research.sweep_request import MOST_POINTS, Wanted, labelled, planned, suggestion
 
 METHOD = "spectra-swarm"
 DEFAULTS = METHODS[METHOD].defaults
@@ -207,7 +208,7 @@ def test_a_thumbnail_is_mostly_agreement_where_the_maps_fit_and_not_where_they_d
 
 
 def test_what_is_taken_away_is_what_the_command_leaves(small_case):
-    from app.contest import Score
+    from app.evaluation.method_comparison import Score
 
     packed = contest_archive(small_case, [Score("flat_1", METHOD, FOUND)], {METHOD: DEFAULTS}, 0)
     for name in (b"methods.csv", b"scores.csv", b"compare.json", b"maps_flat_1.png"):

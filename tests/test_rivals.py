@@ -40,7 +40,8 @@ from algorithms.methods.baselines.overlap_error import Overlap
 from algorithms.methods.baselines.phase_correlation import DIRECTIONS, turn_correlation
 from algorithms.methods.registry import METHODS, merge, run
 from algorithms.methods.steps import MatchesDetail, ObservationDetail, TurnsDetail
-from app import charts, words
+from app.model import chart_data as charts
+from app.model import status_text as words
 
 # Both robots have seen the whole flat.
 REF, MOV = drawn_map(T_REF_WORLD, name="ref"), drawn_map(T_MOV_WORLD, name="mov")

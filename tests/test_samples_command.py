@@ -2,7 +2,7 @@ import pytest
 
 from algorithms.files.case_folder import case_folders, read_case
 from algorithms.observations.observation import encounter
-from app.cli import main
+from app.cli.main import main
 
 
 def refused(capsys, *words):

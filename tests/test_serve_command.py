@@ -12,8 +12,8 @@ from commandline import ROOT, as_in_a_terminal
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from app.cli import main
-from app.opening import browser
+from app.cli.main import main
+from app.cli.open_browser import browser
 
 
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
@@ -66,7 +66,7 @@ def test_a_tab_of_another_version_is_told_to_reload_and_stops_nobody_where_no_on
 
 
 def test_a_browser_is_opened_only_where_there_is_a_screen(monkeypatch):
-    from app.commands.serve import _has_display
+    from app.cli.commands.serve import _has_display
 
     monkeypatch.setattr(sys, "platform", "linux")
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):

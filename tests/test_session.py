@@ -17,10 +17,10 @@ from algorithms.methods.steps import AnswersDetail, ObservationDetail, ProofDeta
 from algorithms.observations.observation import Encounter, Observation
 from algorithms.observations.search_window import Box, WindowConfig, coupled_window
 from algorithms.optimisation.optimiser import SearchState
-from app.bench import Bench
-from app.job import Job
-from app.player import DWELL, FRAME, Waiting, dwell
-from app.session import Session
+from app.jobs.job_thread import Session
+from app.jobs.runner import Bench
+from app.model.merge_job import Job
+from app.model.playback import DWELL, FRAME, Waiting, dwell
 
 PATIENCE = 10.0  # seconds until a test gives up
 ROOM = GridMap(np.full((4, 4), FREE, dtype=np.int8), 0.1)

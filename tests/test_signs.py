@@ -13,9 +13,9 @@ from algorithms.common.pose import Pose2, rotation
 from algorithms.methods.steps import WindowDetail
 from algorithms.observations.observation import encounter
 from algorithms.observations.search_window import WindowConfig, coupled_window, paper_window
-from app.layout import known_hull, lay_out
-from app.palette import LIGHT
-from app.views.signs import discs, further, proof, rival, windows
+from app.drawing.palette import LIGHT
+from app.drawing.scene.search_symbols import discs, further, proof, rival, windows
+from app.drawing.scene_layout import known_hull, lay_out
 
 REF, MOV, SEEN, _ = flat_pair()
 in_flat = st.builds(Pose2, st.floats(0, 9), st.floats(0, 7), st.floats(-np.pi, np.pi))

@@ -15,10 +15,10 @@ from algorithms.methods.steps import ProvenDetail, RefineDetail, Step
 from algorithms.observations.search_window import Box
 from algorithms.optimisation.optimiser import SearchState
 from algorithms.optimisation.subcell_peak import Peak
-from app.palette import DARK, LIGHT
-from app.stage import Stage
-from app.story import Story
-from app.views.swarm_space import SwarmSpaceView, in_box, proven_optimum
+from app.drawing.browser_messages import Stage
+from app.drawing.palette import DARK, LIGHT
+from app.drawing.scene.swarm_view import SwarmSpaceView, in_box, proven_optimum
+from app.model.run_state import Story
 
 BOX = Box(np.array([2.0, 3.0, 1.0]), np.array([4.0, 5.0, 1.2]), np.array([30.0, -7.0]))
 inner = st.tuples(st.floats(2.0, 4.0), st.floats(3.0, 5.0), st.floats(1.0, 1.2))

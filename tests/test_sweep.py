@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from algorithms.common.errors import OutputError, SettingError
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import METHODS
-from app import sweep as sweeping
-from app import version
-from app.executor import Executor, Here
-from app.journal import Journal
-from app.sweep import Axis, Plan, Spread, in_order, point_keys, sweep
-from app.trial import Trial, attempt, true_fusion
+from app.evaluation import parameter_sweep as sweeping
+from app.evaluation.checkpoint import Journal
+from app.evaluation.method_run import Trial, attempt, true_fusion
+from app.evaluation.parameter_sweep import Axis, Plan, Spread, in_order, point_keys, sweep
+from app.jobs.executor import Executor, Here
+from app.system import version
 
 METHOD = "spectra-swarm"
 SMALL = replace(

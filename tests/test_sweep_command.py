@@ -11,7 +11,7 @@ import pytest
 from commandline import ROOT, usage_error
 from test_executor import until
 
-from app.cli import main
+from app.cli.main import main
 
 SMALL = ["--swarm.iterations", "5", "--refine.candidates", "1", "--seeds", "2"]
 
@@ -48,7 +48,7 @@ def test_a_sweep_that_is_killed_and_started_again_ends_with_the_same_files(case_
 
 
 def test_an_interrupted_sweep_says_how_far_it_came(case_folder, tmp_path, monkeypatch, capsys):
-    from app import sweep as sweeping
+    from app.evaluation import parameter_sweep as sweeping
 
     calls = []
 
@@ -67,9 +67,9 @@ def test_an_interrupted_sweep_says_how_far_it_came(case_folder, tmp_path, monkey
 
 
 def test_without_a_range_both_sweeps_of_the_paper_are_made(case_folder, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("app.axes.SQUARED_CELLS", (105, 900))
-    monkeypatch.setattr("app.axes.INTENSITIES", (1.0, 1000.0))
-    monkeypatch.setattr("app.axes.PARTICLE_COUNTS", (10, 20))
+    monkeypatch.setattr("app.evaluation.sweep_axes.SQUARED_CELLS", (105, 900))
+    monkeypatch.setattr("app.evaluation.sweep_axes.INTENSITIES", (1.0, 1000.0))
+    monkeypatch.setattr("app.evaluation.sweep_axes.PARTICLE_COUNTS", (10, 20))
     monkeypatch.chdir(tmp_path)
     assert main(["sweep", str(case_folder), *SMALL, "--jobs", "1"]) == 0
     out = tmp_path / "sweep_flat_1"

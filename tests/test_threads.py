@@ -14,10 +14,10 @@ import pytest
 import viser
 
 from algorithms.methods.registry import METHODS
-from app.inputs import Inputs
-from app.panels.files import FilesPanel
-from app.panels.tuning import TuningPanel
-from app.stage import TabStage
+from app.drawing.browser_messages import TabStage
+from app.model.merge_inputs import Inputs
+from app.page.panels.files_panel import FilesPanel
+from app.page.panels.settings_panel import TuningPanel
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.optimisation.likelihood_field import distance_to_walls, surface
+from algorithms.maps.wall_distance import distance_to_walls, surface
 from algorithms.verdict.wall_map import (
     ANOTHER_WALL,
     ANY_SIDE,

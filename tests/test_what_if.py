@@ -13,7 +13,7 @@ from strangers import standing
 from algorithms.methods.registry import merge
 from algorithms.verdict.decision import Outcome, VerdictConfig
 from algorithms.verdict.probability_model import OTHERS
-from app.panels.what_if import DEVIATION, DIALS, OTHER, WhatIfPanel, numbers_of, supposed
+from app.page.panels.what_if_panel import DEVIATION, DIALS, OTHER, WhatIfPanel, numbers_of, supposed
 
 RULES = VerdictConfig()
 AGAINST = ("rigid_contradicting", "contradicting", DEVIATION, OTHER)

@@ -14,9 +14,9 @@ from algorithms.methods.registry import METHODS, run
 from algorithms.methods.steps import MergeResult, ProofDetail, ProvenDetail, Step
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.verdict.decision import Outcome
-from app import words
-from app.measure import AGREEMENT, GAMMA, measure_of
-from app.story import Story
+from app.model import status_text as words
+from app.model.objective_label import AGREEMENT, GAMMA, measure_of
+from app.model.run_state import Story
 
 PROVEN = METHODS["spectra-proven"].defaults
 

@@ -25,11 +25,11 @@ from algorithms.maps.grid_map import FREE, GridMap
 from algorithms.methods.manual_merge import Scales, refine
 from algorithms.methods.registry import METHODS
 from algorithms.methods.steps import MergeResult, ObservationDetail, Step
-from app.bench import Asker
-from app.job import Job
-from app.memory import whole
-from app.parcels import Parcels
-from app.workers import WorkerDiedError, Workers
+from app.jobs.incremental_pickle import Parcels
+from app.jobs.runner import Asker
+from app.jobs.worker_pool import WorkerDiedError, Workers
+from app.model.merge_job import Job
+from app.system.memory import whole
 
 
 @pytest.fixture(scope="module")
@@ -259,7 +259,7 @@ def test_one_that_is_killed_in_the_middle_of_a_step_is_told_of_at_once(workers, 
 
 
 def test_one_that_hangs_is_ended_once_nobody_wants_what_it_is_at(workers, bench, job, monkeypatch):
-    monkeypatch.setattr("app.workers.HANGS", 0.0)
+    monkeypatch.setattr("app.jobs.worker_pool.HANGS", 0.0)
     wanted = Event()
     wanted.set()
     steps = bench.steps(job, Asker(wanted.is_set))
@@ -279,7 +279,7 @@ def test_one_that_hears_nothing_any_more_is_ended_too(workers, bench, job, monke
     (pid,) = workers.pids
     os.kill(pid, signal.SIGSTOP)
     with monkeypatch.context() as patch:
-        patch.setattr("app.workers.HANGS_BESIDE", 0.5)
+        patch.setattr("app.jobs.worker_pool.HANGS_BESIDE", 0.5)
         with pytest.raises(WorkerDiedError):
             told(bench, job)
     assert end(told(bench, job)).method == job.method
@@ -390,7 +390,7 @@ def test_closed_workers_die_in_silence(job, caplog):
 HALF_STARTED = """
 import threading, time
 from multiprocessing import resource_tracker, util
-from app import workers
+from app.jobs import worker_pool as workers
 
 resource_tracker.ensure_running()
 spawn, half = util.spawnv_passfds, threading.Event()

@@ -14,6 +14,7 @@ from algorithms.common.pose import FloatArray, Pose2, wrap_angle
 
 BoolArray = NDArray[np.bool_]
 CellArray = NDArray[np.int8]
+Float32Array = NDArray[np.float32]
 
 UNKNOWN = -1
 FREE = 0

@@ -20,7 +20,7 @@ from algorithms.maps.grid_map import (
     GridMap,
     check_size,
 )
-from algorithms.observations.observation import NOWHERE, Robots
+from algorithms.maps.robots import NOWHERE, Robots
 
 SAME_PLACE = 0.12  # metres; a wall that both maps show so near to each other is one, and no robot
 

@@ -1,15 +1,35 @@
-"""What lies near a wall, without asking every cell of a large map how far it has to the nearest one."""
+"""Walls that were seen, and how far from a wall a place is."""
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.common.parallel_kernels import kernel
-from algorithms.maps.grid_map import BoolArray, where
-from algorithms.optimisation.objective import Float32Array
+from algorithms.maps.grid_map import BoolArray, Float32Array, where
 
 KindArray = NDArray[np.uint8]
+
+
+def surface(walls: BoolArray, free: BoolArray) -> BoolArray:
+    """(H, W) the walls that were seen: those with a free cell beside them. A thick wall has two sides,
+    not an inside.
+    """
+    beside = cv2.dilate(free.astype(np.uint8), np.ones((3, 3), dtype=np.uint8))
+    return np.asarray(walls & (beside > 0))
+
+
+def distance_to_walls(walls: BoolArray) -> Float32Array:
+    """(H, W) distance of every cell's centre from the nearest wall's, in cells; large without walls."""
+    if not walls.any():
+        return np.full(walls.shape, 1e6, dtype=np.float32)
+    distance = np.asarray(
+        cv2.distanceTransform((~walls).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE), dtype=np.float32
+    )
+    # its square is a whole number, but OpenCV's last digit depends on how many threads it has
+    squared = np.multiply(distance, distance, out=distance)
+    return np.sqrt(np.rint(squared, out=squared), out=squared)
 
 
 def distances(reach: int) -> Float32Array:

@@ -125,7 +125,7 @@ def run(
     chain = Chain({} if memo is None else memo)
     seen: ObservationDetail = yield from chain.stage(
         "observe",
-        (ref, mov, observations),
+        (observations, ref.resolution, mov.resolution),
         lambda: [ObservationDetail(encounters_of(observations, ref, mov))],
     )
     augmented: AugmentDetail = yield from chain.stage(

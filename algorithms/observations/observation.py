@@ -11,6 +11,7 @@ import numpy as np
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import FloatArray, Pose2, rotation, wrap_angle
 from algorithms.maps.grid_map import GridMap
+from algorithms.maps.robots import Robots
 
 SIGMA_RANGE = 0.05  # metres; a laser range taken from the mean of a few salient points
 SIGMA_BEARING = 0.034907  # radians, 2°
@@ -119,27 +120,6 @@ class Encounter:
     x_mov: FloatArray
     covariance: FloatArray
     observer: FloatArray | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Robots:
-    """Where robots are known to have stood. What a map shows there is the robot itself, and no wall.
-
-    in_ref : (N, 2) the observers; metres, ref frame. Map 1's maker: what its own map shows there is so
-    in_mov : (M, 2) the observed; metres, mov frame. Likewise map 2's
-    size   : radius around them; metres
-    """
-
-    in_ref: FloatArray
-    in_mov: FloatArray
-    size: float
-
-    def places(self, T_ref_mov: Pose2) -> FloatArray:
-        """(N + M, 2) all of them in the ref frame."""
-        return np.concatenate([self.in_ref, T_ref_mov.apply(self.in_mov)])
-
-
-NOWHERE = Robots(np.zeros((0, 2)), np.zeros((0, 2)), 0.0)
 
 
 def robots_of(encounters: Sequence[Encounter], size: float) -> Robots:

@@ -14,15 +14,24 @@ from dataclasses import dataclass
 from math import ceil, floor, log, sqrt
 from typing import Annotated
 
-import cv2
 import numpy as np
 
 from algorithms.common.pose import FloatArray
 from algorithms.common.setting_bounds import Bounds, check_bounds
-from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, BoolArray, CellArray, GridMap, where
+from algorithms.maps.grid_map import (
+    FREE,
+    FREE_UP_TO,
+    OCCUPIED_FROM,
+    BoolArray,
+    CellArray,
+    Float32Array,
+    GridMap,
+    where,
+)
+from algorithms.maps.wall_distance import distance_to_walls, surface
 from algorithms.observations.observation import Encounter, robots_of
 from algorithms.observations.search_window import CoupledWindow
-from algorithms.optimisation.objective import PAD, Float32Array, Lookup, Objective, Side
+from algorithms.optimisation.objective import PAD, Lookup, Objective, Side
 from algorithms.spectra.augmented_map import AugmentConfig
 
 # Walls that count less than this share of one at the encounter are left out: the cost of a look-up
@@ -111,22 +120,6 @@ def make_agreement(
         )
         sides.append(side)
     return Objective(tuple(sides), lookup, window, config.evidence)
-
-
-def surface(walls: BoolArray, free: BoolArray) -> BoolArray:
-    """(H, W) the walls that were seen: those with a free cell beside them. A thick wall has two sides,
-    not an inside.
-    """
-    beside = cv2.dilate(free.astype(np.uint8), np.ones((3, 3), dtype=np.uint8))
-    return np.asarray(walls & (beside > 0))
-
-
-def distance_to_walls(walls: BoolArray) -> Float32Array:
-    """(H, W) distance of every cell's centre from the nearest wall's, in cells; large without walls."""
-    if not walls.any():
-        return np.full(walls.shape, 1e6, dtype=np.float32)
-    distance = cv2.distanceTransform((~walls).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    return np.asarray(distance, dtype=np.float32)
 
 
 def _surroundings(grid: GridMap, centres: FloatArray, radius: float) -> _Surroundings:

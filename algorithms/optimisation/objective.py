@@ -10,15 +10,12 @@ from enum import Enum
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from algorithms.common.parallel_kernels import fast_kernel, spread
 from algorithms.common.pose import FloatArray
-from algorithms.maps.grid_map import GridMap
+from algorithms.maps.grid_map import Float32Array, GridMap
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.spectra.augmented_map import AugmentedMap
-
-Float32Array = NDArray[np.float32]
 
 # Rows and columns of zeros around the looked-up table. A coordinate outside is clamped into them,
 # so the inner loop needs no bounds test and runs in vector registers.

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from algorithms.common.errors import TooLargeError
 from algorithms.common.parallel_kernels import fast_kernel, spread
 from algorithms.common.pose import FloatArray, rotation, wrap_angles
+from algorithms.maps.grid_map import Float32Array
 from algorithms.observations.search_window import CoupledWindow
-from algorithms.optimisation.objective import PAD, Float32Array, Lookup, Objective, Side
+from algorithms.optimisation.objective import PAD, Lookup, Objective, Side
 
 IntArray = NDArray[np.int64]
 

@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.common.pose import FloatArray, Pose2
-from algorithms.maps.grid_map import BoolArray, GridMap, where
-from algorithms.optimisation.likelihood_field import distance_to_walls
-from algorithms.optimisation.objective import Float32Array
+from algorithms.maps.grid_map import BoolArray, Float32Array, GridMap, where
+from algorithms.maps.wall_distance import distance_to_walls
 from algorithms.verdict.wall_map import SAME_WALL
 
 SILENT, AGREES, CONTRADICTS = 0, 1, 2

@@ -19,7 +19,7 @@ import numpy as np
 from algorithms.common.parallel_kernels import kernel, spread
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import BoolArray
-from algorithms.observations.observation import NOWHERE, Robots
+from algorithms.maps.robots import NOWHERE, Robots
 from algorithms.verdict.wall_map import (
     ANY_SIDE,
     NEAR,

@@ -20,7 +20,8 @@ import numpy as np
 from algorithms.common.parallel_kernels import spread
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
-from algorithms.observations.observation import Encounter, Robots, robots_of
+from algorithms.maps.robots import Robots
+from algorithms.observations.observation import Encounter, robots_of
 from algorithms.observations.search_window import Box, CoupledWindow
 from algorithms.optimisation.likelihood_field import clear, wall_field
 from algorithms.optimisation.objective import Objective, Side
@@ -113,8 +114,9 @@ class WholeMaps:
             curvature[_PAIRS] += fitted[4:]
             curvature.T[_PAIRS] += fitted[4:]
             bent, axes = np.linalg.eigh(curvature)
-            move = -axes @ (axes.T @ fitted[1:4] / np.minimum(bent, -FLAT))
-            move = np.clip(move, -1, 1)
+            # along each axis of the paraboloid one HILL at most: where it hardly curves, or upwards, its top
+            # is nowhere, and a rounding error of the slope would decide how far to go
+            move = -axes @ np.clip(axes.T @ fitted[1:4] / np.minimum(bent, -FLAT), -1, 1)
             at = at + move * (HILL, HILL, HILL / REACH)
             if abs(move).max() < CLOSE:
                 break

@@ -11,8 +11,8 @@ from driver import ARGUMENTS, Tab
 from playwright.sync_api import Browser, sync_playwright
 
 from algorithms.files.case_folder import Case, read_case
-from app.paths import samples
-from app.server import make_server
+from app.page.application import make_server
+from app.system.data_paths import samples
 
 SAMPLE = "office_r2_r1"
 SIZE = (1000, 700)

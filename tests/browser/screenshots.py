@@ -26,8 +26,8 @@ from algorithms.files.case_folder import Case, read_case  # noqa: E402
 from algorithms.files.map_file import map_to_bytes  # noqa: E402
 from algorithms.observations.observation import Observation  # noqa: E402
 from algorithms.simulator.training_pairs import training_pairs  # noqa: E402
-from app.paths import samples  # noqa: E402
-from app.server import make_server  # noqa: E402
+from app.page.application import make_server  # noqa: E402
+from app.system.data_paths import samples  # noqa: E402
 
 SIZE = (1280, 800)
 SAMPLE = "office_r2_r1"

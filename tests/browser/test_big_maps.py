@@ -15,8 +15,8 @@ from algorithms.files.case_folder import observations_to_bytes
 from algorithms.files.map_file import map_from_bytes, map_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.observations.observation import Observation
-from app.palette import LIGHT
-from app.panels import files
+from app.drawing.palette import LIGHT
+from app.page.panels import files_panel as files
 
 pytestmark = pytest.mark.browser
 

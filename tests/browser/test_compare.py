@@ -14,8 +14,8 @@ from algorithms.files.map_file import read_map
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.methods.registry import merge
 from algorithms.observations.observation import Observation
-from app.palette import LIGHT
-from app.server import make_server
+from app.drawing.palette import LIGHT
+from app.page.application import make_server
 
 pytestmark = pytest.mark.browser
 

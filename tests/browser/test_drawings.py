@@ -12,8 +12,8 @@ from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS
 from algorithms.observations.observation import Observation
-from app.palette import LIGHT
-from app.server import make_server
+from app.drawing.palette import LIGHT
+from app.page.application import make_server
 
 pytestmark = pytest.mark.browser
 

@@ -15,10 +15,10 @@ from driver import PATIENCE, READY
 from playwright.sync_api import Browser, Page
 from wire import until
 
-from app import opening
-from app.access import access_for
-from app.commands.serve import address
-from app.server import make_server
+from app.cli import open_browser as opening
+from app.cli.commands.serve import address
+from app.page.application import make_server
+from app.web.security.access_control import access_for
 
 pytestmark = pytest.mark.browser
 

@@ -11,12 +11,12 @@ from driver import READY, SCALE, field, metres, settle
 
 from algorithms.files.case_folder import Case, read_observations
 from algorithms.observations.observation import encounter
-from app.access import Access
-from app.channel import Channel, Numbers
-from app.guard import guarded_server
-from app.layout import lay_out
-from app.server import make_server
-from app.stage import TabStage
+from app.drawing.browser_messages import TabStage
+from app.drawing.scene_layout import lay_out
+from app.page.application import make_server
+from app.web.browser_events import Channel, Numbers
+from app.web.security.access_control import Access
+from app.web.viser_server import guarded_server
 
 pytestmark = pytest.mark.browser
 

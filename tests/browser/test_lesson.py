@@ -10,9 +10,9 @@ from driver import Tab, settle
 from rooms import write_case
 
 from algorithms.files.case_folder import Case
-from app.lesson.texts import files, lesson_folder
-from app.pictures.book import PICTURES
-from app.server import make_server
+from app.page.application import make_server
+from app.page.lesson.figures.figure_registry import PICTURES
+from app.page.lesson.lesson_texts import files, lesson_folder
 
 pytestmark = pytest.mark.browser
 

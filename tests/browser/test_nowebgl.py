@@ -8,7 +8,7 @@ import pytest
 from chromium import find_chromium
 from driver import PATIENCE, READY, settle
 
-from app.server import make_server
+from app.page.application import make_server
 
 pytestmark = pytest.mark.browser
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from driver import settle
 
 from algorithms.files.case_folder import Case, read_case
-from app.server import make_server
+from app.page.application import make_server
 
 
 def merged(tab) -> str:

@@ -14,7 +14,7 @@ from algorithms.files.case_folder import Case, observations_to_bytes
 from algorithms.files.map_file import read_map
 from algorithms.methods.registry import merge
 from algorithms.observations.observation import Observation
-from app.server import make_server
+from app.page.application import make_server
 
 pytestmark = pytest.mark.browser
 

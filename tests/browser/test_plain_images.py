@@ -12,7 +12,7 @@ from PIL import Image
 
 from algorithms.files.map_file import read_map
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN
-from app.palette import LIGHT
+from app.drawing.palette import LIGHT
 
 pytestmark = pytest.mark.browser
 

@@ -12,9 +12,11 @@ from playwright.sync_api import Browser, Page
 
 from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS, run
-from app.inputs import Inputs
-from app.palette import DARK, LIGHT
-from app.replay import About, record, replay_html
+from app.drawing.palette import DARK, LIGHT
+from app.model.merge_inputs import Inputs
+from app.report.replay.html_page import replay_html
+from app.report.replay.metadata import About
+from app.report.replay.recorder import record
 
 pytestmark = pytest.mark.browser
 

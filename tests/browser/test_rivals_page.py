@@ -10,8 +10,8 @@ from driver import settle
 from algorithms.methods.baselines.feature_detectors import OrbConfig
 from algorithms.methods.baselines.feature_matching import FeatureConfig, MatchConfig
 from algorithms.methods.registry import METHODS
-from app.page import Page
-from app.palette import LIGHT, css
+from app.drawing.palette import LIGHT, css
+from app.page.page import Page
 
 pytestmark = pytest.mark.browser
 

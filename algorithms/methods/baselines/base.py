@@ -54,7 +54,7 @@ def run_direct(
     chain = Chain({} if memo is None else memo)
     seen: ObservationDetail = yield from chain.stage(
         "observe",
-        (ref, mov, observations),
+        (observations, ref.resolution, mov.resolution),
         lambda: [ObservationDetail(encounters_of(observations, ref, mov))],
     )
     found, covariance = yield from search(chain)

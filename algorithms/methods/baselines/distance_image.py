@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from algorithms.common.pose import FloatArray, Pose2, rotation
 from algorithms.common.setting_bounds import Bounds, check_bounds
 from algorithms.maps.grid_map import UNKNOWN, BoolArray, GridMap
+from algorithms.maps.wall_distance import distance_to_walls
 
 MARGIN = 64  # pixels around what is known, where its rim is to be described as well as the rest
 
@@ -95,10 +96,7 @@ def picture(grid: GridMap, cell: float, reach: float, margin: int = 0) -> Pictur
     rows, cols = known_cells(grid)
     walls = drawn(grid.occupied[rows, cols], grid.resolution, cell, margin)
     known = drawn(grid.cells[rows, cols] != UNKNOWN, grid.resolution, cell, margin)
-    far = np.ones(walls.shape, dtype=np.float32)
-    if walls.any():
-        metres = cell * cv2.distanceTransform((~walls).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        far = np.minimum(metres / reach, 1).astype(np.float32)
+    far = np.minimum(cell * distance_to_walls(walls) / reach, 1).astype(np.float32)
     low = np.array([cols.start, rows.start]) * grid.resolution - margin * cell
     return Picture(far, known, cell, low, grid)
 

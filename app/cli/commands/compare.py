@@ -1,0 +1,110 @@
+"""``mapmeld compare``: what several methods make of the same maps."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from app.cli.argument_parser import Parser, did_you_mean
+
+USAGE = "DIR|CASE|SAMPLE [--methods A,B,…] [--rough] [--out DIR] [--jobs N | --scheduler ADDRESS]"
+DESCRIPTION = """\
+Run several methods on the same cases, at their defaults, and hold every transform against the truth.
+
+Examples:
+  mapmeld compare office_r2_r1       every method on one sample
+  mapmeld compare cases --out compared
+                                     on every case of a folder; tables and pictures go to compared/
+  mapmeld compare cases --methods spectra-proven,paper-argmax --rough
+
+The table, a row per method:
+  n               cases that it could be run on
+  right           its transform is within the case's tolerance (0.5 m and 3° where it names none), at
+                  the seen robot
+  fine            within 0.15 m and 1°
+  wrong           it gave a transform that is not right; of maps that share no place, any
+  none            it found no transform
+  refused         mapmeld's verdict on its transforms; none included
+  wrong accepted  wrong transforms that the verdict let pass
+  eq. (23)        mean over the cases with a known truth; 0 where there is no transform
+  median s        time of a merge, files read and code loaded before
+mapmeld's verdict is laid on the transforms of all methods alike. It is no part of the rivals: by
+themselves they would hand out every wrong one, so it is the column "wrong" that tells how safe they are.
+
+Left in --out: methods.csv (that table), scores.csv (a row per case and method), compare.json (both, with
+settings and machine), bars and, per case, maps: the merged maps side by side, .png and .svg.
+
+Exit status: 0 done, 1 no method could be run on some case, 2 bad input, 130 interrupted."""
+
+
+def add_arguments(parser: Parser, words: Sequence[str]) -> None:
+    """Tell the parser what the command takes."""
+    from algorithms.methods.registry import METHODS
+    from app.cli.setting_flags import add_seed, add_workers
+
+    parser.add_argument(
+        "cases", metavar="DIR|CASE|SAMPLE", help="folder of cases, one case, or a sample's name"
+    )
+    parser.add_argument(
+        "--methods",
+        type=_methods,
+        default=tuple(METHODS),
+        metavar="A,B,…",
+        help=f"which of them (default: all: {', '.join(METHODS)})",
+    )
+    parser.add_argument("--rough", action="store_true", help="take observation_rough.yaml of each case")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="leave tables and pictures there")
+    add_seed(parser)
+    add_workers(parser, None)
+
+
+def run(args: argparse.Namespace, parser: Parser) -> int:
+    """Run all, print the table, leave the files; 1 where no method could be run on a case."""
+    from algorithms.files.atomic_write import check_folder
+    from app.cli.progress_bar import bar
+    from app.cli.setting_flags import case_folder
+    from app.evaluation.comparison_files import NOTES, remarks, table_rows
+    from app.evaluation.csv_tables import aligned
+    from app.evaluation.method_comparison import contest, defaults_of, pairs_in
+    from app.jobs.executor import executor_for
+
+    if args.out is not None:
+        check_folder(args.out)
+    root, configs = case_folder(args.cases, parser), defaults_of(args.methods)
+    executor = executor_for(args.jobs, args.scheduler)
+    n, pairs = pairs_in(root, args.rough)
+    told = contest(pairs, configs, executor, args.seed)
+    scores = list(bar(iterable=told, total=n * len(configs), unit="merge"))
+    for line in (*aligned(table_rows(scores)), "", *NOTES, *remarks(scores)):
+        print(line)
+    if args.out is not None:
+        _leave(args, root, scores)
+    lost = {score.case for score in scores} - {score.case for score in scores if not score.trial.failed}
+    return 1 if lost else 0
+
+
+def _leave(args: argparse.Namespace, root: Path, scores: Sequence) -> None:  # type: ignore[type-arg]
+    from algorithms.files.atomic_write import write_files
+    from app.cli.progress_bar import bar
+    from app.evaluation.comparison_files import case_files, contest_files
+    from app.evaluation.method_comparison import Unread, defaults_of, pairs_in
+
+    files = contest_files(scores, defaults_of(args.methods), args.seed)
+    n, pairs = pairs_in(root, args.rough)
+    for name, case in bar(iterable=pairs, total=n, unit="picture"):
+        if not isinstance(case, Unread):
+            files |= case_files(name, case, scores)
+    write_files({args.out / name: data for name, data in files.items()})
+    print(f"written to {args.out}: {', '.join(files)}")
+
+
+def _methods(text: str) -> tuple[str, ...]:
+    from algorithms.methods.registry import METHODS
+
+    names = tuple(dict.fromkeys(name.strip() for name in text.split(",")))
+    for name in names:
+        if name not in METHODS:
+            near = did_you_mean(name, METHODS) or f"; known are {', '.join(METHODS)}"
+            raise argparse.ArgumentTypeError(f"there is no method {name or 'without a name'}{near}")
+    return names

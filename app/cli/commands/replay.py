@@ -1,0 +1,106 @@
+"""``mapmeld replay``: a merge as one HTML page that plays offline."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.argument_parser import Parser, did_you_mean
+
+if TYPE_CHECKING:
+    from app.model.merge_inputs import Inputs
+
+USAGE = "{CASE | MAP1 MAP2 --observation FILE} --out FILE.html [options]"
+DESCRIPTION = """\
+Merge two maps and save the run as one HTML page: maps, candidates, swarm, proof and verdict play
+again in any browser, without a network and without mapmeld. For a talk, a lesson, a report.
+
+Examples:
+  mapmeld replay office_r2_r1 --out merge.html
+                                     a sample that ships with mapmeld, or the folder of a case
+  mapmeld replay map1.yaml map2.yaml --observation observation.yaml --out merge.html
+  mapmeld replay office_r2_r1 --out paper.html --method paper-argmax --seed 7
+
+The same maps, settings and seed give the same file. In the page: space plays and pauses,
+the arrow keys go from step to step.
+
+Exit status: 0 written, whether the maps were merged or refused; 1 refused without any transform to
+show, and nothing written; 2 bad input; 130 interrupted."""
+
+HTML_SUFFIXES = (".html", ".htm")
+
+
+def add_arguments(parser: Parser, words: Sequence[str]) -> None:
+    """Tell the parser what the command takes; flags of the settings depend on the method in ``words``."""
+    from app.cli.commands.merge import add_reading
+    from app.cli.setting_flags import add_method
+
+    parser.add_argument("first", metavar="CASE|MAP1", help="a sample's name or a case folder; or a map")
+    parser.add_argument("map2", type=Path, metavar="MAP2", nargs="?", help="map of robot 2, the observed")
+    parser.add_argument(
+        "--observation", type=Path, metavar="FILE", help="what robot 1 saw (default: that of the case)"
+    )
+    parser.add_argument("--out", type=Path, required=True, metavar="FILE.html", help="the page to write")
+    add_reading(parser)
+    add_method(parser, words)
+
+
+def run(args: argparse.Namespace, parser: Parser) -> int:
+    """Merge, record, write; the exit status."""
+    from algorithms.files.atomic_write import check_file, write_file
+    from algorithms.methods import registry as methods
+    from app.cli.progress_bar import with_bar
+    from app.cli.setting_flags import config_from
+    from app.report.replay.html_page import replay_html
+    from app.report.replay.metadata import About
+    from app.report.replay.recorder import record
+
+    if args.out.suffix.lower() not in HTML_SUFFIXES:
+        parser.error(f"--out is {args.out}; let its name end in .html, or no browser will open it")
+    if args.map2 is not None and args.observation is None:
+        parser.error("two maps need their --observation FILE")
+    if args.map2 is None and (args.resolution is not None or args.unknown_grey is not None):
+        parser.error("--resolution and --unknown-grey say how MAP1 and MAP2 are read: give both maps")
+    config, inputs = config_from(args), _inputs(args, parser)
+    for warning in inputs.readings():
+        print(f"warning: {warning}", file=sys.stderr)
+    check_file(args.out)
+    assert inputs.ref is not None
+    assert inputs.mov is not None
+    steps = methods.run(args.method, inputs.ref, inputs.mov, inputs.observations, config, args.seed)
+    recording = record(with_bar(steps), inputs, config)
+    page = replay_html(recording, About(inputs, args.method, config, args.seed))
+    write_file(args.out, page)
+    print(recording["verdict"])
+    print(f"written to {args.out}: {len(page) / 1000:,.0f} kB, {recording['length']:.0f} s")
+    return 0
+
+
+def _inputs(args: argparse.Namespace, parser: Parser) -> Inputs:
+    """What the command line names: two maps, a sample by its name, or the folder of a case."""
+    from dataclasses import replace
+
+    from algorithms.files.case_folder import read_case, read_observations
+    from app.cli.commands.merge import read_inputs
+    from app.model.merge_inputs import Inputs
+    from app.system.data_paths import samples
+
+    if args.map2 is not None:
+        args.map1 = Path(args.first)
+        ref, mov, observations = read_inputs(args)
+        return Inputs(ref, mov, observations, f"{args.map1.stem} + {args.map2.stem}")
+    known, folder = samples(), Path(args.first)
+    if not folder.is_dir():
+        if args.first not in known:
+            parser.error(
+                f"{args.first} is neither a folder nor a sample{did_you_mean(args.first, known)}; "
+                "for two maps give MAP1, MAP2 and --observation FILE"
+            )
+        folder = known[args.first]
+    inputs = Inputs.of(read_case(folder))
+    if args.observation is None:
+        return inputs
+    return replace(inputs, observations=read_observations(args.observation))

@@ -1,0 +1,166 @@
+"""``mapmeld serve``: the page, on this machine alone unless asked otherwise."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import socket
+import sys
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.argument_parser import Parser
+from app.web.security.access_control import TOKEN_VARIABLE, Access, access_for, is_local, numeric
+
+if TYPE_CHECKING:
+    from algorithms.files.case_folder import Case
+
+LOCAL = "127.0.0.1"
+PORT = 8080
+FIRST_SAMPLE = "office_r2_r1"
+
+USAGE = "[MAP1 MAP2 --observation FILE] [--host HOST] [--port PORT] [--token-file FILE] [--certfile FILE] ..."
+DESCRIPTION = f"""\
+Open the page: two maps, the sighting, every step of the merge.
+
+Examples:
+  mapmeld serve                      a sample that ships with mapmeld
+  mapmeld serve map1.yaml map2.yaml --observation observation.yaml
+  mapmeld serve --port 9000 --no-browser
+  mapmeld serve --lesson my_lesson   the lesson with texts of your own, a Markdown file a step
+
+  mapmeld serve --host 0.0.0.0 --certfile cert.pem --keyfile key.pem
+
+The page is for this machine alone ({LOCAL}). At any other --host it is for those who have the
+token, which is part of the address that is printed: a new one at each start, or the one in
+--token-file or ${TOKEN_VARIABLE}, which holds on this machine, too. With --behind it is for those
+who have the token and come through the proxy of that name. Without --certfile what is sent can be
+read on the network, the token with it. SECURITY.md tells more. Ctrl-C ends it."""
+
+
+def add_arguments(parser: Parser, words: Sequence[str]) -> None:
+    """Tell the parser what the command takes."""
+    from app.cli.commands.merge import add_reading
+
+    parser.add_argument("map1", type=Path, metavar="MAP1", nargs="?", help="map of robot 1, the observer")
+    parser.add_argument("map2", type=Path, metavar="MAP2", nargs="?", help="map of robot 2, the observed")
+    parser.add_argument("--observation", type=Path, metavar="FILE", help="what robot 1 saw")
+    add_reading(parser)
+    parser.add_argument("--host", default=LOCAL, help=f"address to listen at (default: {LOCAL})")
+    parser.add_argument("--port", type=_port, default=PORT, help=f"0 for any free one (default: {PORT})")
+    parser.add_argument("--token-file", type=Path, metavar="FILE", help="holds the token to enter with")
+    parser.add_argument("--certfile", type=Path, metavar="FILE", help="PEM certificate: the page is https")
+    parser.add_argument("--keyfile", type=Path, metavar="FILE", help="its PEM key, if not in the same file")
+    parser.add_argument(
+        "--behind", action="append", default=[], metavar="NAME", help="host name of a proxy in front of it"
+    )
+    parser.add_argument("--verbose", action="store_true", help="log who comes and what is run, too")
+    parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
+    parser.add_argument(
+        "--lesson",
+        type=Path,
+        metavar="DIR",
+        help="folder of the lesson's texts, yours in place of those in static/lesson/en",
+    )
+
+
+def run(args: argparse.Namespace, parser: Parser) -> int:
+    """Serve until Ctrl-C."""
+    from app.cli.open_browser import browser
+    from app.page.application import make_server
+    from app.system import logging_setup as logs
+    from app.web.download import TAKEAWAY
+
+    if (args.map1 is None) != (args.map2 is None) or (args.map1 is None) != (args.observation is None):
+        parser.error("give MAP1, MAP2 and --observation FILE together, or none of them for a sample")
+    logs.start(args.verbose)
+    if args.lesson is not None:
+        _check_lesson(args.lesson)
+    access = access_for(args.host, args.token_file, tuple(args.behind), args.certfile, args.keyfile)
+    logs.hide(access.token)
+    server = make_server(args.host, args.port, _case(args), args.lesson, access)
+    port = server.get_port()
+    url = address(args.host, port, access)
+    try:
+        print(f"mapmeld is at {url}   ({reach(args.host, access, args.behind)}; Ctrl-C ends it)", flush=True)
+        if everywhere(args.host):
+            print(f"from other machines: {address(socket.gethostname(), port, access)}", flush=True)
+        wanted = not args.no_browser and _has_display()
+        with browser(url, secret=bool(access.token)) if wanted else contextlib.nullcontext():
+            threading.Event().wait()
+    except KeyboardInterrupt:
+        TAKEAWAY.finish()
+        server.stop()
+        print()
+    return 0
+
+
+def address(host: str, port: int, access: Access) -> str:
+    """Where a browser on this machine finds the page, with the token that lets it in."""
+    named = numeric(host) or host
+    shown = {"0.0.0.0": LOCAL, "": LOCAL, "::": "::1"}.get(named, named)  # of all addresses this machine's
+    at = f"{'https' if access.tls else 'http'}://{f'[{shown}]' if ':' in shown else shown}:{port}/"
+    return f"{at}?token={access.token}" if access.token else at
+
+
+def everywhere(host: str) -> bool:
+    """Whether a host stands for all addresses of this machine."""
+    return (numeric(host) or host) in ("", "0.0.0.0", "::")
+
+
+def reach(host: str, access: Access, behind: Sequence[str] = ()) -> str:
+    """Who may open the page, in words.
+
+    behind : names of proxies in front of it
+    """
+    if not access.token:
+        return "for this machine alone"
+    if not is_local(host):
+        return f"for everyone on the network with the token{'' if access.tls else ', unencrypted'}"
+    whom = f", and whom the proxy at {' or '.join(behind)} lets through," if behind else ""
+    return f"for this machine{whom} with the token"
+
+
+def _check_lesson(folder: Path) -> None:
+    """Raise InputFileError for the first text that cannot be read: here its author sees it at once."""
+    from app.page.lesson.figures.figure_registry import PICTURES
+    from app.page.lesson.lesson_texts import files, read_step
+    from app.page.lesson.placeholders import NUMBERS
+
+    for path in files(folder):
+        read_step(path, PICTURES, NUMBERS)
+
+
+def _case(args: argparse.Namespace) -> Case | None:
+    """What the page opens with: the maps that were named, else a sample; None if none is installed."""
+    from algorithms.files.case_folder import Case, read_case
+    from app.cli.commands.merge import read_inputs
+    from app.system.data_paths import samples
+
+    if args.map1 is not None:
+        ref, mov, observations = read_inputs(args)
+        return Case(f"{ref.name} + {mov.name}", ref, mov, observations, args.observation.name, None)
+    known = samples()
+    if not known:
+        return None
+    return read_case(known.get(FIRST_SAMPLE) or next(iter(known.values())))
+
+
+def _has_display() -> bool:
+    """Whether a browser window could open: a text browser in this terminal is not meant."""
+    if sys.platform in ("darwin", "win32"):
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def _port(text: str) -> int:
+    try:
+        port = int(text)
+    except ValueError:
+        port = -1
+    if not 0 <= port <= 65535:
+        raise argparse.ArgumentTypeError(f"{text} is no port; give a number in [0, 65535]")
+    return port

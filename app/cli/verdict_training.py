@@ -1,0 +1,275 @@
+"""The model of the verdict, fitted anew: ``make verdict``.
+
+The default method merges pairs of simulated buildings, right and wrong ones; the weights are fitted to what
+the whole maps say of its answers, and tried on buildings that were left out. Cases with a known truth can be
+added with --cases: they are not fitted to, but tell how the model does on other buildings, and a model fitted
+to them alone tells the reverse.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import radians
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from algorithms.common.errors import MapMergeError
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.files.atomic_write import write_files
+from algorithms.files.case_folder import ROUGH_OBSERVATION_FILE, Case, Truth, case_folders, read_case
+from algorithms.methods import registry as methods
+from algorithms.methods.refusal_causes import NO_SWARM
+from algorithms.methods.steps import MergeResult
+from algorithms.simulator.training_pairs import training_pairs
+from algorithms.verdict.calibration import brier_score, calibration_error
+from algorithms.verdict.model_fit import Example, Told, cross_validated, fit, most_likely_wrong, told_by
+from algorithms.verdict.probability_model import MODEL_FILE, VerdictModel
+from app.cli.progress_bar import bar
+from app.evaluation.csv_tables import aligned, markdown
+from app.evaluation.dataset_evaluation import (
+    Crossing,
+    building_of,
+    crossed_case,
+    crossings,
+    group_of,
+    name_in,
+)
+from app.evaluation.reliability_figure import reliability_figure
+from app.jobs.executor import Executor, Lost, Task, executor_for
+from app.system import data_paths
+
+FIRST = 8000  # seed; the tests and the samples use lower ones
+BUILDINGS = 300
+LEAST_BUILDINGS = 20  # with fewer, leaving a fold out leaves next to nothing
+LEAST_KNOWN = 3  # buildings of the cases: two are left out at a time, and something must be left
+PATIENCE = 4  # of the proof, in 10⁵ nodes: wrong pairs would take it all
+NEVER_BELOW = 0.6  # what is right six times in ten is no merge to build on
+STEP = 0.01  # of the probability from which on merges are accepted
+FIGURES = data_paths.static() / "results"
+
+
+@dataclass(frozen=True, eq=False)
+class Labelled:
+    """An example and what it is: "right", or a kind of wrong pair; "fine" and "rough" of the cases."""
+
+    example: Example
+    kind: str
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Make the pairs, fit, try, write; the exit status."""
+    args = _arguments(words)
+    try:
+        return _train(args)
+    except MapMergeError as error:
+        sys.stderr.write(f"make verdict: {error}\n")
+        return 2
+
+
+def _train(args: argparse.Namespace) -> int:
+    executor = executor_for(args.jobs)
+    real = [] if args.cases is None else list(_cases(args.cases, args.wrong_pairs, executor))
+    seeds = range(args.first, args.first + args.buildings)
+    made = list(_all(executor, _simulated, [Task(seed) for seed in seeds], "building"))
+    examples = [each.example for each in made]
+    told = cross_validated(examples)
+    accept_from = _accept_from(_of_kind(told, made, "other building"))
+    kinds = list(dict.fromkeys(each.kind for each in made))
+    made_of = {
+        "command": f"make verdict ARGS='--buildings {args.buildings} --first {args.first}'",
+        "buildings": args.buildings,
+        "pairs": {kind: sum(each.kind == kind for each in made) for kind in kinds},
+        "wrong_accepted_when_left_out": {
+            kind: int(_wrongly(_of_kind(told, made, kind), accept_from)) for kind in kinds
+        },
+    }
+    model = fit(examples, accept_from, made_of)
+    rows = [
+        ["fitted to", "tried on", "merges", "right", "right and accepted", "wrong accepted", "ECE", "Brier"],
+        _row("simulated buildings", "the others of them", told, accept_from),
+    ]
+    rows += [
+        _row("simulated buildings", f"the others of them, {kind}", _of_kind(told, made, kind), accept_from)
+        for kind in kinds
+    ]
+    pictures = {"simulated buildings, left out in turn": told}
+    if args.cases is not None:
+        tried = told_by(model, [each.example for each in real])
+        rows += [_row("simulated buildings", "the cases", tried, accept_from)]
+        rows += [
+            _row("simulated buildings", f"the cases, {kind}", _of_kind(tried, real, kind), accept_from)
+            for kind in ("fine", "rough", "wrong pair")
+        ]
+        own = [each.example for each in real]
+        if len({building for each in own for building in each.buildings}) >= LEAST_KNOWN:
+            rows += [
+                _row("the cases", "the others of them", cross_validated(own), accept_from),
+                _row("the cases", "simulated buildings", told_by(fit(own), examples), accept_from),
+            ]
+        pictures["cases, fitted to simulated buildings"] = tried
+    for line in aligned(rows):
+        print(line)
+    print(f"accepted from {accept_from:g}, none of the pairs of other buildings being accepted from there")
+    _write(args, model, rows, pictures)
+    return 0
+
+
+def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="make verdict", description=__doc__)
+    parser.add_argument("--buildings", type=int, default=BUILDINGS, help="how many are simulated")
+    parser.add_argument("--first", type=int, default=FIRST, help="seed of the first")
+    parser.add_argument("--cases", type=Path, help="folder of cases with a known truth, to try it on")
+    parser.add_argument("--wrong-pairs", type=int, default=700, help="crossed pairs of these cases")
+    parser.add_argument("--out", type=Path, default=MODEL_FILE, help="the model's file")
+    parser.add_argument("--figures", type=Path, default=FIGURES, help="folder of the diagram and the table")
+    parser.add_argument("--jobs", type=int, default=None, help="processes; one per core")
+    args = parser.parse_args(words)
+    if args.buildings < LEAST_BUILDINGS:
+        parser.error(f"--buildings {args.buildings} is too few; give {LEAST_BUILDINGS} at least")
+    return args
+
+
+def _accept_from(told: Told) -> float:
+    """The lowest round probability from which on none of these wrong pairs was accepted, each of them left
+    out of the fit.
+    """
+    safe = np.ceil(most_likely_wrong(told) / STEP + 1e-9) * STEP
+    return round(float(min(max(safe, NEVER_BELOW), 0.99)), 2)
+
+
+def _row(fitted: str, tried: str, told: Told, accept_from: float) -> list[str]:
+    accepted = told.probabilities >= accept_from
+    right = int(told.right.sum())
+    return [
+        fitted,
+        tried,
+        f"{len(told.right):,}",
+        f"{right:,}",
+        f"{int((accepted & told.right).sum()) / right:.1%}" if right else "–",
+        str(_wrongly(told, accept_from)),
+        f"{calibration_error(told.probabilities, told.right):.3f}",
+        f"{brier_score(told.probabilities, told.right):.3f}",
+    ]
+
+
+def _wrongly(told: Told, accept_from: float) -> int:
+    return int(np.count_nonzero(~told.right & (told.probabilities >= accept_from)))
+
+
+def _of_kind(told: Told, of: Sequence[Labelled], kind: str) -> Told:
+    mine = np.array([each.kind == kind for each in of])
+    return Told(told.probabilities[mine], told.right[mine])
+
+
+def _write(
+    args: argparse.Namespace, model: VerdictModel, rows: Sequence[Sequence[str]], pictures: dict[str, Told]
+) -> None:
+    plain = {
+        "weights": {name: round(weight, 4) for name, weight in model.weights.items()},
+        "bias": round(model.bias, 4),
+        "typical": {name: round(value, 4) for name, value in model.typical.items()},
+        "accept_from": model.accept_from,
+        "made_of": model.made_of,
+    }
+    text = json.dumps(plain, indent=2, ensure_ascii=False) + "\n"
+    files = {args.out: text.encode()}
+    files[args.figures / "verdict.md"] = (markdown(rows) + "\n").encode()
+    for suffix, data in reliability_figure(pictures).items():
+        files[args.figures / f"verdict{suffix}"] = data
+    write_files(files)
+    print(f"written: {', '.join(str(path) for path in files)}")
+
+
+# ---- merges ------------------------------------------------------------------------------------------
+
+
+def _all(executor: Executor, work: Any, tasks: Iterable[Task], unit: str) -> Iterator[Labelled]:
+    """What came of all tasks, in their order: who did them, and when, must not matter to the fit."""
+    listed = list(tasks)
+    answers: dict[int, list[Labelled]] = {}
+    for number, answer in bar(iterable=executor.run(work, listed), total=len(listed), unit=unit):
+        if isinstance(answer, Lost):
+            sys.stderr.write(f"left out: {unit} {number}: {answer.reason}\n")
+        else:
+            answers[number] = answer
+    for number in sorted(answers):
+        yield from answers[number]
+
+
+def _simulated(_: None, seed: int) -> list[Labelled]:
+    """The merges of all pairs of one building."""
+    out = []
+    for pair in training_pairs(seed):
+        case = pair.case
+        truth = None
+        if pair.kind == "right":
+            bent = case.truth_rms > 0.1
+            truth = Truth(case.T_ref_mov, max(0.5, 2 * case.truth_rms), radians(6 if bent else 3))
+        example = _example(case.ref, case.mov, pair.observations, truth, pair.buildings)
+        out += [] if example is None else [Labelled(example, pair.kind)]
+    return out
+
+
+def _cases(root: Path, wrong_pairs: int, executor: Executor) -> Iterator[Labelled]:
+    """The cases of a folder with either observation, and wrong pairs of them."""
+    tasks = [Task((root, folder, rough)) for folder in case_folders(root) for rough in (False, True)]
+    tasks += [
+        Task((root, crossing, bool(number % 2)))
+        for number, crossing in enumerate(crossings(root, wrong_pairs) if wrong_pairs else [])
+    ]
+    yield from _all(executor, _real, tasks, "case")
+
+
+def _real(_: None, given: tuple[Path, Path | Crossing, bool]) -> list[Labelled]:
+    root, what, rough = given
+    if isinstance(what, Crossing):
+        a, b = read_case(what.observer, rough), read_case(what.observed, rough)
+        case = crossed_case(a, b)
+        buildings = (_building(root, what.observer, a), _building(root, what.observed, b))
+        kind = "wrong pair"
+    else:
+        if rough and not (what / ROUGH_OBSERVATION_FILE).exists():
+            return []
+        case = read_case(what, rough)
+        if case.truth is None:
+            return []
+        buildings = (_building(root, what, case),)
+        kind = "wrong pair" if case.truth.expected == "refuse" else "rough" if rough else "fine"
+    truth = case.truth if case.truth is not None and case.truth.expected == "merge" else None
+    example = _example(case.ref, case.mov, case.observations, truth, buildings)
+    return [] if example is None else [Labelled(example, kind)]
+
+
+def _building(root: Path, folder: Path, case: Case) -> str:
+    return building_of(group_of(name_in(root, folder)), case.truth)
+
+
+def _example(
+    ref: Any, mov: Any, observations: Any, truth: Truth | None, buildings: tuple[str, ...]
+) -> Example | None:
+    """What the default method's answers are worth, and which are right; None where it cannot be run."""
+    config = methods.METHODS[methods.DEFAULT_METHOD].defaults
+    quick = replace(config, swarm=NO_SWARM, proof=replace(config.proof, patience=PATIENCE))
+    try:
+        result = methods.merge(ref, mov, observations, config=quick)
+    except MapMergeError:
+        return None
+    rows = [list(each.quantities.values()) for each in result.weighed]
+    right = [_is_right(each.T_ref_mov, truth, result) for each in result.weighed]
+    return Example(np.array(rows), np.array(right, dtype=np.bool_), buildings)
+
+
+def _is_right(T: Pose2, truth: Truth | None, result: MergeResult) -> bool:
+    if truth is None or truth.T_ref_mov is None:
+        return False
+    return truth.allows(*pose_error(T, truth.T_ref_mov, result.encounter.x_mov))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Colours and pixels: grids in, pictures out."""

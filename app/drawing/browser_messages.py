@@ -1,0 +1,204 @@
+"""What the page draws by itself, told by the server: camera, ink over the map, words above it.
+
+One message per ``flush``: everything that belongs together is seen together.
+"""
+
+from __future__ import annotations
+
+import json
+from abc import ABC, abstractmethod
+from threading import RLock
+from typing import Any
+
+import numpy as np
+import viser
+from viser._messages import RunJavascriptMessage
+
+from algorithms.common.pose import FloatArray, Pose2
+from app.drawing.palette import Palette, Rgb, css
+from app.drawing.scene_layout import Rect
+from app.system.data_paths import asset
+
+# map_drawing.js first: map_viewer.js draws with it, and so does a saved replay; the others add to the page
+SCRIPTS = (
+    *("map_drawing.js", "map_viewer.js", "map_editing.js", "zoom_detail.js", "map_comparison.js"),
+    *("measure_tool.js", "lesson.js", "research.js", "upload.js", "keyboard_shortcuts.js"),
+)
+_SCRIPT = "\n".join(asset(name) for name in SCRIPTS)
+
+Item = dict[str, Any]
+
+
+class Stage(ABC):
+    """What is to be drawn, gathered until it is flushed; see map_drawing.js for what each item may hold.
+
+    Where it goes is up to the subclass: to a tab (TabStage), or into a recording.
+    """
+
+    def __init__(self) -> None:
+        self._pending: dict[str, Any] = {}
+        self._hud: dict[str, Any] = {}
+        self.placed = 0  # how often map 2 was put anywhere
+        self._lock = RLock()  # widgets call from many threads; what gathers while one sends is not lost
+
+    @abstractmethod
+    def send(self, message: dict[str, Any]) -> None:
+        """Take over what has gathered."""
+
+    def layer(self, name: str, items: list[Item] | None) -> None:
+        """Replace a layer of ink; None removes it."""
+        with self._lock:
+            self._pending.setdefault("layers", {})[name] = items or None
+
+    def hud(self, **words: Any) -> None:
+        """Change words above the map: case, state, mood, progress, legend, frames."""
+        with self._lock:
+            changed = {key: value for key, value in words.items() if self._hud.get(key, self) != value}
+            self._hud.update(changed)
+            if changed:
+                self._pending.setdefault("hud", {}).update(changed)
+
+    def said(self, *names: str) -> dict[str, Any]:
+        """What these words above the map are; None for those that were never said."""
+        with self._lock:
+            return {name: self._hud.get(name) for name in names}
+
+    @property
+    def mood(self) -> str:
+        """What the words above the map are coloured by."""
+        return str(self._hud.get("mood", "idle"))
+
+    def place_mov(self, at: Pose2, milliseconds: float = 0) -> None:
+        """Turn and slide map 2's anchor to a pose of the scene, in this time."""
+        with self._lock:
+            self.placed += 1
+            self._pending["mov"] = {
+                "x": at.x,
+                "y": at.y,
+                "theta": at.theta,
+                "ms": milliseconds,
+                "number": self.placed,
+            }
+
+    def look_down(self, rect: Rect, follow: bool = False, need: bool = False) -> None:
+        """Show a rectangle of the map from above, north up.
+
+        follow : also where the person has moved the camera since the last time
+        need   : only where a part of it cannot be seen
+        """
+        with self._lock:
+            self._pending["look"] = {"view": "map", "box": list(rect), **({"need": True} if need else {})}
+            self._pending["follow"] = follow or self._pending.get("follow", False)
+
+    def look_at(self, view: str, centre: FloatArray, radius: float, polar: float, azimuth: float) -> None:
+        """Show a ball of the scene in 3-D; radians, polar from straight above."""
+        look = {
+            "view": view,
+            "centre": centre.tolist(),
+            "radius": radius,
+            "polar": polar,
+            "azimuth": azimuth,
+        }
+        with self._lock:
+            self._pending.update(look=look, follow=True)
+
+    def theme(self, palette: Palette) -> None:
+        """Light or dark ink, and the colour of what no map knows."""
+        with self._lock:
+            self._pending.update(dark=palette.dark, background=css(palette.unknown))
+
+    def compare(self, **told: Any) -> None:
+        """How the two maps are compared where they lie: modes, mode, places, colours (map_comparison.js)."""
+        with self._lock:
+            self._pending.setdefault("compare", {}).update(told)
+
+    def closer(self, name: str, excerpt: dict[str, Any] | None) -> None:
+        """Lay a sharp excerpt over a picture of the scene; None: lay it bare. See zoom_detail.js."""
+        with self._lock:
+            self._pending.setdefault("closer", {})[name] = excerpt
+
+    def listen(self, uuid: str) -> None:
+        """Have the page tell its events to this field; see app/web/browser_events.py."""
+        with self._lock:
+            self._pending["channel"] = uuid
+
+    def hand(self, what: dict[str, Any] | None) -> None:
+        """What can be taken hold of on the map; None for nothing. See map_editing.js for what it may hold."""
+        with self._lock:
+            self._pending["hand"] = what or {}
+
+    def remember(self, key: str) -> None:
+        """Have the tab keep the key to what it leaves behind; see app/web/session_store.py."""
+        with self._lock:
+            self._pending["key"] = key
+
+    def flush(self) -> None:
+        """Send what has gathered."""
+        with self._lock:
+            if not self._pending:
+                return
+            message, self._pending = self._pending, {}
+            # sent under the lock, too: an older word must not arrive after a newer one
+            self.send(message)
+
+
+class TabStage(Stage):
+    """The browser's side of one tab."""
+
+    def __init__(self, client: viser.ClientHandle) -> None:
+        super().__init__()
+        self._client = client
+        self._run(_SCRIPT)
+
+    def send(self, message: dict[str, Any]) -> None:
+        """Have the tab draw it."""
+        self._run(f"window.mapmeld && window.mapmeld.apply({json.dumps(message, default=plain)})")
+
+    def _run(self, source: str) -> None:
+        # viser's own way to run a script in one tab; it keeps order with the scene's messages
+        self._client._websock_connection.queue_message(RunJavascriptMessage(source=source))
+
+
+def plain(value: Any) -> Any:
+    """Arrays and their numbers as JSON can hold them."""
+    if isinstance(value, np.ndarray):
+        return np.round(value.astype(float), 4).tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"{type(value).__name__} cannot be sent to the page")
+
+
+def path(
+    points: FloatArray, colour: Rgb | None, frame: str = "scene", alpha: float = 1.0, **more: Any
+) -> Item:
+    """A line through (N, 2) or (N, 3) points; d dashes, w width, fill, close, t text, halo."""
+    return {"k": "path", "f": frame, "p": points, "c": css(colour, alpha) if colour else None, **more}
+
+
+def mark(
+    shape: str, point: FloatArray, colour: Rgb, frame: str = "scene", alpha: float = 1.0, **more: Any
+) -> Item:
+    """A sign of constant size: robot, cross, ring, dot, diamond or star; a angle, r size, t text.
+
+    alpha : opacity of the sign; its text is never faint
+    """
+    ink = {"c": css(colour, alpha), "tc": css(colour)}
+    return {"k": "mark", "s": shape, "f": frame, "p": point, **ink, **more}
+
+
+def cloud(points: FloatArray, colour: Rgb, **more: Any) -> Item:
+    """Particles: (N, 3) x, y, heading, or with n3=True x, y, z. They glide to their next place."""
+    flat = np.round(points, 3).ravel()
+    return {"k": "cloud", "f": "scene", "n": points.shape[1], "p": flat, "c": css(colour), **more}
+
+
+def rectangle(low: FloatArray, high: FloatArray) -> FloatArray:
+    """(4, 2) corners of an upright rectangle."""
+    return np.array([low, [high[0], low[1]], high, [low[0], high[1]]])
+
+
+def ellipse(centre: FloatArray, covariance: FloatArray, deviations: float) -> FloatArray:
+    """(64, 2) points at so many standard deviations of a (2, 2) covariance."""
+    turn = np.linspace(0, 2 * np.pi, 64, endpoint=False)
+    ring = np.stack([np.cos(turn), np.sin(turn)], axis=1) * deviations
+    return np.asarray(centre + ring @ np.linalg.cholesky(covariance).T, dtype=np.float64)

@@ -1,0 +1,1 @@
+"""What is drawn into viser's scene: one file each."""

@@ -1,0 +1,71 @@
+"""How two maps are compared where one lies over the other: overlay, blink, curtain, difference."""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+from algorithms.common.pose import FloatArray
+from algorithms.verdict.contradictions import Conflicts, Place
+from app.drawing.browser_messages import Stage
+from app.drawing.palette import Palette, css
+from app.drawing.scene.map_layers import Mode
+from app.drawing.scene.map_view import MapView
+from app.page.panels.places import MOST_PLACES
+
+MODES: tuple[Mode, ...] = get_args(Mode)
+
+
+def rings(places: tuple[Place, ...], anchor: FloatArray) -> list[dict[str, Any]]:
+    """The places that are ringed on the map, as map_comparison.js draws them; metres of the scene."""
+    return [
+        {"n": n, "at": [place.x - float(anchor[0]), place.y - float(anchor[1])], "r": place.radius}
+        for n, place in enumerate(places[:MOST_PLACES], 1)
+    ]
+
+
+class Comparison:
+    """The mode a person has chosen, and what there is to compare."""
+
+    def __init__(self, stage: Stage, maps: MapView) -> None:
+        self._stage, self._maps = stage, maps
+        self._conflicts: Conflicts | None = None
+        self._modes: tuple[Mode, ...] = ()
+        self.mode: Mode = "overlay"
+
+    def offer(self, conflicts: Conflicts | None, palette: Palette) -> None:
+        """Map 2 lies over map 1: there is something to compare.
+
+        conflicts : of the merged map; None where the cells are not merged
+        """
+        self._conflicts = conflicts
+        self._modes = MODES if conflicts is not None else ("overlay", "blink", "curtain")
+        if self.mode not in self._modes:
+            self.mode = "overlay"
+        found = rings(conflicts.places, self._maps.layout.anchor_ref) if conflicts is not None else []
+        self._maps.compare(self.mode, conflicts)
+        self._stage.compare(modes=list(self._modes), mode=self.mode, places=found)
+        self.recolour(palette)
+
+    def recolour(self, palette: Palette) -> None:
+        """Draw in the colours of this palette."""
+        told = {"ref": palette.ref, "mov": palette.mov, "conflict": palette.conflict}
+        self._stage.compare(colours={name: css(colour) for name, colour in told.items()})
+
+    def outdate(self) -> None:
+        """What was found where is out of date; the maps still lie there."""
+        self._stage.compare(places=[])
+
+    def clear(self) -> None:
+        """There is nothing to compare."""
+        self._conflicts, self._modes, self.mode = None, (), "overlay"
+        self._maps.compare("overlay", None)
+        self._stage.compare(modes=[], mode="overlay", places=[])
+
+    def choose(self, mode: Mode) -> bool:
+        """Compare in this way from now on; whether there is anything to compare in it."""
+        if mode not in self._modes:
+            return False
+        self.mode = mode
+        self._maps.compare(mode, self._conflicts)
+        self._stage.compare(mode=mode)
+        return True

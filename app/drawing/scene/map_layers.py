@@ -1,0 +1,212 @@
+"""The flat pictures that the map view stands on: both maps, their levels, the merged map."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from math import cos, sin
+from typing import Any, Literal
+
+import viser
+
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import GridMap
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import AugmentDetail
+from algorithms.verdict.cell_agreement import Touch, Walls
+from algorithms.verdict.contradictions import Conflicts
+from app.drawing import grid_pixels as render
+from app.drawing.browser_messages import Stage
+from app.drawing.palette import Palette
+from app.drawing.scene.grid_image import Closer, GridImage, Size
+from app.drawing.scene.zoom_crop import View
+from app.drawing.scene_layout import Layout
+
+Which = Literal["sources", "levels", "merged", "touching"]
+Mode = Literal["overlay", "blink", "curtain", "difference"]  # how two maps are compared where they lie
+
+# Heights in the order they lie on each other; all floors are below all walls, so that a map that
+# slides over the other hides none of its walls.
+FREE_1, FREE_2, WALLS_1, WALLS_2, MERGED_FREE, MERGED_WALLS, GHOST = 0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6
+# of a large map only what is looked at closely is sent in cells of its own: see app/page/zoom_controller.py
+LAID_OVER = Size(whole=render.MOST_PIXELS, pooled=1024)
+GHOSTLY = 60  # of 255; twice as much on the page, which makes thin walls darker
+
+
+class Ground:
+    """Map 1 lies still; map 2 hangs on the frame /world/mov, which the page turns and slides."""
+
+    def __init__(self, scene: viser.SceneApi, size: Size = LAID_OVER, stage: Stage | None = None) -> None:
+        """stage : where excerpts of the pictures are seen."""
+        self.changed: Callable[[], Any] = lambda: None  # is told of every change of what is shown
+
+        def image(name: str, height: float) -> GridImage:
+            return GridImage(scene, f"/world/{name}", height, size, stage)
+
+        # viser turns a y-up scene half round its y axis; undone here, scene and page agree
+        scene.add_frame("/world", show_axes=False, wxyz=(0.0, 0.0, 1.0, 0.0))
+        scene.add_frame("/world/ref", show_axes=False)
+        scene.add_frame("/world/mov", show_axes=False)
+        self._free = (
+            image("ref/free", FREE_1),
+            image("mov/free", FREE_2),
+        )
+        self._walls = (
+            image("ref/walls", WALLS_1),
+            image("mov/walls", WALLS_2),
+        )
+        self._levels = (
+            image("ref/levels", WALLS_1),
+            image("mov/levels", WALLS_2),
+        )
+        self._merged = (
+            image("ref/merged_free", MERGED_FREE),
+            image("ref/merged_walls", MERGED_WALLS),
+        )
+        self._denied = image("ref/denied", MERGED_WALLS)
+        self._touches = (
+            image("ref/touches", MERGED_FREE),
+            image("mov/touches", MERGED_WALLS),
+        )
+        self._ghost_frame = scene.add_frame("/world/ghost", show_axes=False)
+        self._ghost = image("ghost/walls", GHOST)
+        self._haunted: GridMap | None = None  # whose walls the ghost is made of
+        self._ghost_at: Pose2 | None = None
+        pairs = (*self._free, *self._walls, *self._levels, *self._merged, *self._touches)
+        self._all = (*pairs, self._denied, self._ghost)
+        self._shown: tuple[GridMap | None, GridMap | None] = (None, None)
+        self._layout: Layout | None = None
+        self._palette: Palette | None = None
+        self._mov: GridMap | None = None
+        self._lifted: AugmentDetail | None = None
+        self._fused: Fusion | None = None
+        self._conflicts: Conflicts | None = None
+        self._contrasted: Conflicts | None = None  # those that are drawn
+        self._mode: Mode = "overlay"
+        self.which: Which = "sources"
+        self._hidden = False
+
+    def load(self, ref: GridMap | None, mov: GridMap | None, layout: Layout, palette: Palette) -> None:
+        """Draw two maps; what was there before is gone. A map that was there already is only moved."""
+        grids = (ref, mov)
+        old = self._shown if palette is self._palette else (None, None)
+        same = [grid is not None and grid is old[k] for k, grid in enumerate(grids)]
+        stay = [image for k in (0, 1) if same[k] for image in (self._free[k], self._walls[k])]
+        for image in self._all:
+            if image not in stay:
+                image.remove()
+        self._shown = grids
+        self._layout, self._palette, self._lifted, self._fused = layout, palette, None, None
+        self._haunted = self._contrasted = None
+        self._mov = mov
+        colours, anchors = (palette.ref, palette.mov), (layout.anchor_ref, layout.anchor_mov)
+        for k, grid in enumerate(grids):
+            if same[k]:
+                self._free[k].move(anchors[k])
+                self._walls[k].move(anchors[k])
+            elif grid is not None:
+                self._free[k].show(partial(render.floor, grid.cells, palette), grid, anchors[k])
+                self._walls[k].show(partial(render.walls, grid.cells, colours[k]), grid, anchors[k])
+        self.show("sources")
+
+    def lift(self, detail: AugmentDetail | None) -> None:
+        """Have the pictures of these levels at hand."""
+        if detail is None or detail is self._lifted or self._layout is None or self._palette is None:
+            return
+        self._lifted = detail
+        anchors = (self._layout.anchor_ref, self._layout.anchor_mov)
+        for image, augmented, anchor in zip(self._levels, (detail.ref, detail.mov), anchors, strict=True):
+            image.show(partial(render.levels, augmented, self._palette), augmented.grid, anchor)
+        self.show(self.which)
+
+    def merge(self, fusion: Fusion) -> None:
+        """Show this merged map."""
+        if fusion is not self._fused and self._layout is not None and self._palette is not None:
+            if self._fused is not None:
+                self._conflicts = None  # they were of the other one
+            self._fused = fusion
+            floor, walls = self._merged
+            for image, draw in ((floor, render.merged_floor), (walls, render.merged_walls)):
+                image.show(partial(draw, fusion, self._palette), fusion.merged, self._layout.anchor_ref)
+        self.show("merged")
+
+    def compare(self, mode: Mode, conflicts: Conflicts | None) -> None:
+        """Show both maps in this way, where one lies over the other.
+
+        conflicts : of the merged map; None where there is none, and then no difference to show
+        """
+        self._mode, self._conflicts = mode, conflicts
+        if not self._hidden:
+            self.show(self.which)
+
+    def _contrast(self) -> bool:
+        """Have the picture of what contradicts at hand; whether there is one."""
+        found, fusion = self._conflicts, self._fused
+        if found is None or fusion is None or self._palette is None or self._layout is None:
+            return False
+        if found is not self._contrasted:
+            self._contrasted = found
+            draw = partial(render.denied_walls, fusion, found, self._palette)
+            self._denied.show(draw, fusion.merged, self._layout.anchor_ref)
+        return True
+
+    def touch(self, walls: tuple[Walls, Walls], told: tuple[Touch, Touch]) -> None:
+        """Show which walls of both maps coincide, and which the other one denies."""
+        if self._layout is None or self._palette is None:
+            return
+        anchors = (self._layout.anchor_ref, self._layout.anchor_mov)
+        for image, one, touch, anchor in zip(self._touches, walls, told, anchors, strict=True):
+            image.repaint(partial(render.touches, one, touch, self._palette), one.grid, anchor)
+        if self.which != "touching":
+            self.show("touching")
+        self.changed()
+
+    def ghost(self, at: Pose2 | None) -> None:
+        """Show map 2's walls faintly with its anchor at another place of the scene; None: nowhere."""
+        if at is not None and self._mov is not None and self._layout is not None and self._palette:
+            if self._haunted is not self._mov:
+                self._haunted = self._mov
+                faint = partial(render.walls, self._mov.cells, self._palette.rival, GHOSTLY)
+                self._ghost.show(faint, self._mov, self._layout.anchor_mov)
+            self._ghost_frame.position = (at.x, at.y, 0.0)
+            self._ghost_frame.wxyz = (cos(at.theta / 2), 0.0, 0.0, sin(at.theta / 2))
+        self._ghost_at = at
+        self._show_ghost()
+
+    def show(self, which: Which) -> None:
+        """Show one set of pictures and hide the others."""
+        self.which, self._hidden = which, False
+        floor, walls = self._merged
+        seen: str = which
+        if which != "levels" and self._mode in ("blink", "curtain"):
+            seen = "sources"
+        elif which == "merged" and self._mode == "difference" and self._contrast():
+            seen = "difference"
+        for images, among in (
+            (self._free, ("sources", "levels", "touching")),
+            (self._walls, ("sources", "touching")),
+            (self._touches, ("touching",)),
+            (self._levels, ("levels",)),
+            ((floor,), ("merged", "difference")),
+            ((walls,), ("merged",)),
+            ((self._denied,), ("difference",)),
+        ):
+            for image in images:
+                image.visible(seen in among)
+        self._show_ghost()
+
+    def _show_ghost(self) -> None:
+        self._ghost.visible(self._ghost_at is not None and self._mode == "overlay")
+        self.changed()
+
+    def closer(self, view: View) -> list[Closer]:
+        """The excerpts that this view lacks, or has no use for any more."""
+        at = {"ref": Pose2(), "mov": view.mov, "ghost": self._ghost_at or Pose2()}
+        found = (image.closer(view, at[image.name.split("/")[2]]) for image in self._all)
+        return [closer for closer in found if closer is not None]
+
+    def hide(self) -> None:
+        """Hide everything; ``show(self.which)`` brings it back."""
+        self._hidden = True
+        for image in self._all:
+            image.visible(False)

@@ -1,0 +1,318 @@
+"""What is drawn over the map, as data: robots, sight, rings, windows, boxes. Nothing here sends."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos
+from typing import Any
+
+import numpy as np
+
+from algorithms.common.pose import FloatArray, Pose2, rotation
+from algorithms.methods.steps import MatchesDetail, WindowDetail
+from algorithms.observations.observation import Encounter, Observation
+from algorithms.observations.search_window import Box, CoupledWindow, Window
+from algorithms.optimisation.branch_and_bound import ProofState
+from app.drawing.browser_messages import Item, ellipse, mark, path, rectangle
+from app.drawing.palette import Palette, css
+from app.drawing.scene_layout import Layout, Rect
+from app.model.observation_draft import Draft
+
+ZERO = np.zeros(2)  # the meeting place of the first sighting, in both frames
+TURN_ARM = 90  # px from robot 2 to the knob that turns map 2; map_editing.js knows it as the knob's arm
+KNOB_ARM = 34  # px from a robot to the knob that turns it; map_editing.js knows it as ARM
+MOST_MATCHES = 160  # drawn; more would be a blot
+QUIET = 0.55  # opacity of what is told beside the first sighting
+DASHED = {"close": True, "d": [6, 4], "halo": True}
+
+
+def robots(
+    o: Observation, layout: Layout, colours: Palette, mov: bool, together: bool, seen: bool
+) -> list[Item]:
+    """Both robots with their names.
+
+    mov      : whether map 2 is there
+    together : map 2 lies on map 1; the meeting place is then marked by robot 2 itself
+    seen     : whether robot 2 is drawn
+    """
+    near, far = _sides(o, 14)
+    first = o.observer.xy - layout.anchor_ref
+    items = [mark("robot", first, colours.ref, a=o.observer.theta, r=9, t="robot 1", **near)]
+    if mov and seen:
+        known = o.observed_heading is not None
+        shape, how = ("robot", {"a": o.observed_heading, "r": 9}) if known else ("dot", {"r": 6})
+        items.append(mark(shape, ZERO, colours.mov, "mov", t="robot 2", **how, **far))
+    if not together:
+        items.append(mark("ring", ZERO, colours.conflict, r=7, t="x̂₁ seen here", size=11, **far))
+        if mov:
+            items.append(mark("ring", ZERO, colours.conflict, "mov", r=13))
+    return items
+
+
+def sight(
+    o: Observation, at: Encounter, layout: Layout, colours: Palette, mov: bool, together: bool, close: bool
+) -> list[Item]:
+    """The line of sight, the doubt of its far end, and which two places of the maps are one.
+
+    close : seen from so near that the doubt is more than a dot
+    """
+    first = o.observer.xy - layout.anchor_ref
+    items = [path(np.array([first, ZERO]), colours.text, w=1.6, d=[5, 4], halo=True)]
+    if close:
+        doubt = ellipse(ZERO, at.covariance + 1e-9 * np.eye(2), 3)
+        lowest = doubt[int(doubt[:, 1].argmin())]
+        name = {"t": "3 σ of the sighting", "tp": lowest, "dy": 11, "align": "center"}
+        items.append(path(doubt, colours.text, w=1, close=True, halo=True, **name))
+    if mov and not together:
+        items.append(path(np.array([ZERO, layout.apart.xy]), colours.margin, w=1, d=[1, 5]))
+    return items
+
+
+def further(
+    seen: Sequence[Observation],
+    places: Sequence[Encounter],
+    layout: Layout,
+    colours: Palette,
+    mov: bool,
+    together: bool,
+) -> list[Item]:
+    """Every sighting beyond the first, quieter and with its number: robots, line of sight and its end.
+
+    together : map 2 lies on map 1; robot 2 then stands at the end of the line as far as T fits
+    """
+    items = []
+    for number, (o, at) in enumerate(zip(seen, places, strict=True), 1):
+        if number == 1:
+            continue
+        first, end = o.observer.xy - layout.anchor_ref, at.x_ref - layout.anchor_ref
+        _, far = _sides(o, 9)
+        name = {"t": str(number), "size": 11, **far}
+        items.append(path(np.array([first, end]), colours.text, alpha=QUIET, w=1, d=[2, 5]))
+        items.append(mark("robot", first, colours.ref, alpha=QUIET, a=o.observer.theta, r=6))
+        # once the maps lie together, the number stands beside robot 2 alone
+        items.append(mark("ring", end, colours.conflict, alpha=QUIET, r=4, **({} if together else name)))
+        if mov:
+            known = o.observed_heading is not None
+            shape, how = ("robot", {"a": o.observed_heading, "r": 6}) if known else ("dot", {"r": 4})
+            there = at.x_mov - layout.anchor_mov
+            items.append(mark(shape, there, colours.mov, "mov", alpha=QUIET, **how, **name))
+    return items
+
+
+def _sides(o: Observation, dx: float) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Where names stand at the near and the far end of a line of sight: beyond it."""
+    left, right = {"dx": -dx, "align": "right"}, {"dx": dx, "align": "left"}
+    return (left, right) if cos(o.observer.theta + o.bearing) >= 0 else (right, left)
+
+
+def drafts(draft: Draft, others: Sequence[Draft], layout: Layout, colours: Palette) -> list[Item]:
+    """Robots as they are being placed, with knobs on the chosen draft's; the other drafts are quiet."""
+    items = []
+    for one in others:
+        items += _draft(one, layout, colours, QUIET)
+    items += _draft(draft, layout, colours, 1.0)
+    return items
+
+
+def _draft(draft: Draft, layout: Layout, colours: Palette, alpha: float) -> list[Item]:
+    items: list[Item] = []
+    chosen = alpha == 1.0
+    first = draft.observer.xy - layout.anchor_ref if draft.observer else None
+    if first is not None and draft.seen is not None:
+        end = np.array(draft.seen) - layout.anchor_ref
+        items.append(path(np.array([first, end]), colours.text, alpha=alpha, w=1.6, d=[5, 4], halo=chosen))
+        name = {"t": "robot 2, seen here", "size": 11, "dx": 14} if chosen else {}
+        items.append(mark("ring", end, colours.conflict, alpha=alpha, r=7, **name))
+    if first is not None and draft.observer is not None:
+        a = draft.observer.theta
+        if chosen:
+            items.append(mark("dot", first, colours.ref, a=a, r=5, arm=KNOB_ARM))
+        name = {"t": "robot 1", **_beside(a)} if chosen else {}
+        items.append(mark("robot", first, colours.ref, alpha=alpha, a=a, r=9, **name))
+    if draft.observed is not None:
+        there = np.array(draft.observed) - layout.anchor_mov
+        name = {"t": "robot 2", **_beside(draft.heading or 0.0)} if chosen else {}
+        if draft.heading is None:
+            if chosen:  # nobody knows which way it looked: the knob can tell
+                knob = mark("ring", there, colours.mov, "mov", alpha=QUIET, a=0.0, r=5, arm=KNOB_ARM)
+                items.append(knob)
+            items.append(mark("dot", there, colours.mov, "mov", alpha=alpha, r=7, **name))
+        else:
+            if chosen:
+                items.append(mark("dot", there, colours.mov, "mov", a=draft.heading, r=5, arm=KNOB_ARM))
+            shape = mark("robot", there, colours.mov, "mov", alpha=alpha, a=draft.heading, r=9, **name)
+            items.append(shape)
+    return items
+
+
+def _beside(heading: float) -> dict[str, Any]:
+    """Where a robot's name stands clear of its knob."""
+    return {"dx": -14, "align": "right"} if cos(heading) >= 0 else {"dx": 14, "align": "left"}
+
+
+def rings(covariance: FloatArray, colours: Palette, both: bool) -> list[Item]:
+    """Σ_aug around the meeting place: one and two standard deviations, in one map or in both."""
+    items = []
+    for k, name in ((1, "σ_aug"), (2, "2 σ_aug")):
+        points = ellipse(ZERO, covariance, k)
+        label = {"t": name, "tp": points[16], "dy": -8, "align": "center"}
+        how = {"close": True, "w": 1.2, "d": [3, 4], "halo": True}
+        items.append(path(points, colours.margin, **how, **label))
+        if both:
+            items.append(path(points, colours.margin, "mov", **how))
+    return items
+
+
+def windows(detail: WindowDetail, turn: float, layout: Layout, colours: Palette, view: Rect) -> list[Item]:
+    """Both windows as the places where T may put robot 2: the one in use strong, the other faint.
+
+    turn : of map 2 at hand, radians: as printed the window bounds where map 2's origin goes, and robot 2
+           stands off that by the turned x̂2
+    view : what the camera shows; a window beyond it is told by its size
+    """
+    coupled = isinstance(detail.window, CoupledWindow)
+    printed = detail.paper if coupled else detail.window
+    assert isinstance(printed, Window)
+    items = _paper_window(printed, turn, layout, colours, view, strong=not coupled)
+    return items + discs(detail.coupled, layout, colours, strong=coupled)
+
+
+def _paper_window(
+    w: Window, turn: float, layout: Layout, colours: Palette, view: Rect, strong: bool
+) -> list[Item]:
+    off = rotation(turn) @ (layout.anchor_mov - w.pivot) - layout.anchor_ref
+    low, high = w.low + off, w.high + off
+    corners = rectangle(low, high)
+    width, height = (high - low).tolist()
+    size = f"{width:.0f} m × {height:.0f} m" if min(width, height) >= 5 else f"{width:.1f} m × {height:.1f} m"
+    words = f"paper's window, eqs. (6)–(10): {size}"
+    x0, y0, x1, y1 = view
+    middle = float(np.clip((x0 + x1) / 2, low[0], high[0]))
+    # the words stand on an edge that is seen, away from the meeting place, where much is written
+    edges = [(edge, dy) for edge, dy in ((low[1], 11), (high[1], -11)) if y0 < edge < y1]
+    clear = [(edge, dy) for edge, dy in edges if abs(edge) > 0.2 * (y1 - y0)]
+    edge, dy = max(clear, key=lambda found: abs(found[0]), default=(y0, 14))
+    if width < (x1 - x0) / 4:  # small: above the words of the disc in it
+        edge, dy = high[1], -25
+    at = (middle, edge)
+    if not edges:
+        words += ", beyond this view"
+    label = {"t": words, "tp": np.array(at), "dy": dy, "align": "center", "tc": css(colours.margin)}
+    how = {"close": True, "d": [6, 4], "w": 1.8 if strong else 1.0, "halo": strong}
+    return [path(corners, colours.margin, alpha=1.0 if strong else QUIET, **how, **label)]
+
+
+def discs(
+    w: CoupledWindow, layout: Layout, colours: Palette, strong: bool = True, below: bool = False
+) -> list[Item]:
+    """The coupled window: for every sighting the disc in which T may put the seen robot.
+
+    below : its name stands at its foot; something else is written above it
+    """
+    items = []
+    for number, (x_ref, covariance) in enumerate(zip(w.x_ref, w.covariances, strict=True), 1):
+        ring = ellipse(x_ref - layout.anchor_ref, covariance, w.k)
+        how: dict[str, Any] = {"close": True, "w": 1.8 if strong else 1.0, "halo": strong}
+        if not strong:
+            how["d"] = [2, 3]
+        if number == 1:
+            edge = ring[int(ring[:, 1].argmin() if below else ring[:, 1].argmax())]
+            name = {"t": f"coupled window, {w.k:g} σ", "tc": css(colours.margin)}
+            how |= name | {"tp": edge, "dy": 13 if below else -11, "align": "center"}
+        alpha = 1.0 if strong and number == 1 else QUIET
+        items.append(path(ring, colours.margin, alpha=alpha, **how))
+    return items
+
+
+def proof(state: ProofState, layout: Layout, colours: Palette) -> list[Item]:
+    """The best so far and its rivals, as map 2's robot would stand there."""
+    items = [
+        mark("dot", layout.placed(Pose2.from_array(pose)).xy, colours.rival, r=4.5) for pose in state.rivals
+    ]
+    if state.best is not None:
+        at = layout.placed(Pose2.from_array(state.best)).xy
+        items.append(mark("star", at, colours.answer, r=9, rim=css(colours.rim)))
+    return items
+
+
+def rival(at: Pose2, hull: FloatArray, heading: float | None, words: str, colours: Palette) -> list[Item]:
+    """Where map 2 and its robot would lie under the rival that leaves the answer in doubt.
+
+    at      : where the rival puts map 2's anchor, and its turn; scene
+    hull    : (N, 2) outline of map 2, from its anchor
+    heading : of robot 2 in map 2; None where it is not known
+    """
+    outline = at.apply(hull)
+    foot = outline[int(outline[:, 1].argmin())]
+    label = {"t": f"rival: {words}", "tp": foot, "dy": 13, "align": "center", "size": 12}
+    label["tc"] = css(colours.rival)
+    items = [path(outline, colours.rival, alpha=0.8, w=1.4, close=True, d=[7, 5], **label)]
+    # larger than the star of the answer, which lies on it: both put robot 2 where it was seen
+    shape, how = ("robot", {"a": heading + at.theta, "r": 13}) if heading is not None else ("dot", {"r": 12})
+    return [*items, mark(shape, at.xy, colours.rival, **how)]
+
+
+def grip(hull: FloatArray, colours: Palette) -> list[Item]:
+    """What map 2 is held by: its outline, and a knob to turn it about its anchor; in its own frame."""
+    return [
+        path(hull, colours.mov, "mov", w=1.4, close=True, d=[7, 5], halo=True),
+        mark("dot", ZERO, colours.mov, "mov", r=8, a=0.0, arm=TURN_ARM, t="turn"),
+    ]
+
+
+def margins(sigma_x: float, sigma_y: float, colours: Palette) -> list[Item]:
+    """The size of the optimiser's box, before there is a candidate to put it on."""
+    half = np.array([sigma_x, sigma_y])
+    label = {"t": "± σ_x, ± σ_y", "tp": half * (0, -1), "dy": 10, "align": "center"}
+    return [path(rectangle(-half, half), colours.margin, **DASHED, **label)]
+
+
+def box(b: Box, layout: Layout, colours: Palette) -> list[Item]:
+    """The optimiser's box around where its centre puts robot 2."""
+    middle = layout.placed(b.transform(b.centre)).xy
+    half = (b.high - b.low)[:2] / 2
+    corners = rectangle(middle - half, middle + half)
+    return [path(corners, colours.margin, w=1.5, t="box ± σ_x, ± σ_y", tp=corners[3], dy=-8, **DASHED)]
+
+
+def seen_robot(transforms: FloatArray, layout: Layout) -> FloatArray:
+    """(P, 3) where each (Δx, Δy, Δθ) puts x̂2 in the scene, and its turn; metres, metres, radians."""
+    c, s = np.cos(transforms[:, 2]), np.sin(transforms[:, 2])
+    x, y = layout.anchor_mov
+    at = transforms[:, :2] + np.column_stack([c * x - s * y, s * x + c * y]) - layout.anchor_ref
+    return np.column_stack([at, transforms[:, 2]])
+
+
+def footprint(b: Box, layout: Layout) -> Rect:
+    """Rectangle that shows a box of transforms at the seen robot, with walls around it."""
+    edges = list(zip(b.low.tolist(), b.high.tolist(), strict=True))
+    corners = np.array(np.meshgrid(*edges)).reshape(3, -1).T
+    at = seen_robot(b.transforms(corners), layout)[:, :2]
+    low, high = at.min(axis=0), at.max(axis=0)
+    half = max(0.8, 0.85 * float((high - low).max()))
+    x, y = ((low + high) / 2).tolist()
+    return x - half, y - half, x + half, y + half
+
+
+def matches(found: MatchesDetail, mov_at: Pose2, layout: Layout, colours: Palette) -> list[Item]:
+    """Lines between the features that look alike, from map 1 to map 2; those that agree on a transform on
+    top and strong.
+
+    mov_at : where map 2's anchor lies, and its turn; scene
+    """
+    first = found.ref - layout.anchor_ref
+    second = mov_at.apply(found.mov - layout.anchor_mov)
+    agreeing = bool(found.inliers.any())
+    items = []
+    for strong in (False, True):
+        some = np.flatnonzero(found.inliers == strong)
+        for k in some[:: max(1, -(-len(some) // MOST_MATCHES))].tolist():
+            ends = np.array([first[k], second[k]])
+            if strong:
+                items.append(path(ends, colours.best, w=1.7, alpha=0.9))
+                items.append(mark("dot", ends[0], colours.ref, r=2.6, rim="#ffffff"))
+                items.append(mark("dot", ends[1], colours.mov, r=2.6, rim="#ffffff"))
+            else:
+                faint = 0.22 if agreeing else 0.6
+                items.append(path(ends, colours.margin if agreeing else colours.particle, w=0.9, alpha=faint))
+    return items

@@ -1,0 +1,1 @@
+"""Data sets, comparison of methods, parameter sweeps, and their figures."""

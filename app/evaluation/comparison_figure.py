@@ -1,0 +1,201 @@
+"""A comparison as figures: the merged maps side by side, Figs. 15 and 16, and bars of eq. (23), Fig. 17."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from math import ceil, degrees
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from algorithms.common.errors import TooLargeError
+from algorithms.files.case_folder import Case
+from algorithms.maps.map_fusion import fuse
+from algorithms.methods.registry import METHODS
+from app.drawing.grid_pixels import Pixels
+from app.drawing.palette import LIGHT
+from app.evaluation.figure_style import colour, figure_files
+from app.evaluation.method_comparison import Score, tally
+from app.evaluation.method_run import Trial
+from app.report.result_files import overlay
+
+COLUMNS = 4
+MOST_PIXELS = 320  # a side of a panel: walls of one pixel are then seen
+MARGIN = 10  # pixels around it
+MOST_CASES = 8  # with bars of their own
+
+RIGHT, WRONG, NOTHING = colour(LIGHT.ref), colour(LIGHT.conflict), colour(LIGHT.margin)
+
+
+def maps_figure(case: Case, scores: Sequence[Score], title: str) -> dict[str, bytes]:
+    """The files of the merged maps of one case, a panel per method, by suffix."""
+    in_order = [score for name in METHODS for score in scores if score.method == name]
+    columns = min(COLUMNS, len(in_order))
+    rows = ceil(len(in_order) / columns)
+
+    def draw(figure: Figure) -> None:
+        figure.suptitle(title, x=0.01, ha="left")
+        figure.get_layout_engine().set(w_pad=0.08, h_pad=0.12, hspace=0.03)  # type: ignore[union-attr]
+        panels = figure.subplots(rows, columns, squeeze=False).ravel()
+        for panel, score in zip(panels, in_order, strict=False):
+            _panel(panel, case, score)
+        for panel in panels[len(in_order) :]:
+            panel.set_axis_off()
+        keys = (
+            ("wall of map 1", LIGHT.ref),
+            ("wall of map 2", LIGHT.mov),
+            ("wall of both", LIGHT.agreed),
+            ("wall that the other denies", LIGHT.conflict),
+        )
+        figure.legend(
+            handles=[Patch(color=colour(rgb), label=word) for word, rgb in keys],
+            loc="outside lower center",
+            ncols=len(keys),
+        )
+
+    return figure_files(draw, 2.6 * columns, 2.9 * rows + 0.6)
+
+
+def _panel(axes: Axes, case: Case, score: Score) -> None:
+    axes.set_box_aspect(1)
+    axes.set_xticks([])
+    axes.set_yticks([])
+    axes.grid(visible=False)
+    for spine in axes.spines.values():
+        spine.set(visible=True, color=colour(LIGHT.unknown))
+    said, hue = _said(score.trial)
+    axes.set_title("\n".join(textwrap.wrap(METHODS[score.method].title, 30)), fontsize=8.5)
+    axes.set_xlabel(said, color=hue, fontsize=8)
+    pose = score.trial.pose
+    if pose is None:
+        why = textwrap.fill(score.trial.reason.removeprefix("Refused: "), 34, max_lines=7)
+        axes.text(
+            0.5, 0.5, why, transform=axes.transAxes, ha="center", va="center", fontsize=7, color=NOTHING
+        )
+        return
+    try:
+        pixels = overlay(fuse(case.ref, case.mov, pose), MOST_PIXELS)
+    except TooLargeError:
+        axes.text(0.5, 0.5, "too far apart to be drawn", transform=axes.transAxes, ha="center", fontsize=7)
+        return
+    axes.imshow(_square(pixels), interpolation="antialiased")
+
+
+def _square(pixels: Pixels) -> Pixels:
+    """What is known of a picture in the middle of a square."""
+    known = np.any(pixels != np.array(LIGHT.unknown, dtype=np.uint8), axis=2)
+    rows, cols = (np.flatnonzero(known.any(axis=axis)) for axis in (1, 0))
+    if len(rows):
+        pixels = pixels[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]
+    height, width = pixels.shape[:2]
+    side = max(height, width) + 2 * MARGIN
+    square = np.full((side, side, 3), LIGHT.unknown, dtype=np.uint8)
+    top, left = (side - height) // 2, (side - width) // 2
+    square[top : top + height, left : left + width] = pixels
+    return square
+
+
+def _said(trial: Trial) -> tuple[str, str]:
+    """What became of it, and the colour of that."""
+    if trial.failed:
+        return "could not be run", NOTHING
+    if trial.T_ref_mov is None:
+        return "no transform found", NOTHING
+    index = "" if trial.index is None else f"\neq. (23): {trial.index:.3f}"
+    verdict = ("accepted, bent" if trial.bent else "accepted") if trial.accepted else "refused"
+    if trial.right is None:
+        return f"{verdict}{index}", colour(LIGHT.text)
+    word, hue = ("right", RIGHT) if trial.right else ("WRONG", WRONG)
+    off = ""
+    if trial.distance is not None and trial.angle is not None:
+        off = f", {trial.distance:.2f} m and {degrees(trial.angle):.1f}° off"
+    return f"{word}{off}\n{verdict}{index.replace(chr(10), ' · ')}", hue
+
+
+def bars_figure(scores: Sequence[Score]) -> dict[str, bytes]:
+    """The files of the bars of eq. (23), by suffix: a group per case, or the means of many cases."""
+    cases = list(dict.fromkeys(score.case for score in sorted(scores, key=lambda score: score.case)))
+    methods = [name for name in METHODS if any(score.method == name for score in scores)]
+    if len(cases) > MOST_CASES:
+        return figure_files(lambda figure: _means(figure, scores, methods), 8, 1.2 + 0.32 * len(methods))
+    columns = min(COLUMNS, len(cases))
+    rows = ceil(len(cases) / columns)
+
+    def draw(figure: Figure) -> None:
+        panels = figure.subplots(rows, columns, squeeze=False, sharey=True, sharex=True)
+        for panel, case in zip(panels.ravel(), cases, strict=False):
+            mine = {score.method: score.trial for score in scores if score.case == case}
+            _bars(panel, [mine.get(name) for name in methods], case)
+        for panel in panels.ravel()[len(cases) :]:
+            panel.set_axis_off()
+        first = panels[0, 0]
+        first.set_yticks(range(len(methods)), methods)
+        first.invert_yaxis()
+        for panel in panels[-1]:
+            panel.set_xlabel("eq. (23)")
+        _legend(figure)
+
+    return figure_files(draw, 2.0 + 2.1 * columns, 0.9 + rows * (0.5 + 0.2 * len(methods)))
+
+
+def _bars(axes: Axes, trials: Sequence[Trial | None], title: str) -> None:
+    axes.set(xlim=(0, 1.14), title=title)
+    axes.set_xticks([0, 0.5, 1])
+    axes.grid(visible=False, axis="y")
+    for row, trial in enumerate(trials):
+        if trial is None or trial.failed:
+            axes.text(0.02, row, "not run", va="center", fontsize=7, color=NOTHING)
+        elif trial.T_ref_mov is None:
+            axes.text(0.02, row, "no transform", va="center", fontsize=7, color=NOTHING)
+        elif trial.index is not None:
+            _bar(axes, row, trial.index, trial.right)
+
+
+def _bar(axes: Axes, row: int, index: float, right: bool | None) -> None:
+    hue = {True: RIGHT, False: WRONG, None: NOTHING}[right]
+    axes.barh(
+        row, index, height=0.7, color=hue if right is not False else "white", edgecolor=hue, linewidth=1.2
+    )
+    axes.text(index + 0.015, row, f"{index:.2f}", va="center", fontsize=7)
+
+
+def _means(figure: Figure, scores: Sequence[Score], methods: Sequence[str]) -> None:
+    axes = figure.subplots()
+    rows = tally(scores)
+    for row, name in enumerate(methods):
+        mean = rows[name].index
+        if mean is not None:
+            axes.barh(row, mean, height=0.75, color=colour(LIGHT.unknown), zorder=1)
+            axes.text(1.03, row, f"{mean:.3f}", va="center", fontsize=8)
+        for right, hue, fill in ((True, RIGHT, RIGHT), (False, WRONG, "white")):
+            values = [
+                score.trial.index
+                for score in scores
+                if score.method == name and score.trial.right is right and score.trial.index is not None
+            ]
+            axes.scatter(
+                values, [row] * len(values), s=16, color=fill, edgecolor=hue, linewidth=0.9, zorder=2
+            )
+    axes.set(
+        xlim=(0, 1.12),
+        title="Eq. (23): bars are means, a dot is a case",
+        xlabel="eq. (23) over the true overlap",
+    )
+    axes.set_yticks(range(len(methods)), methods)
+    axes.invert_yaxis()
+    axes.grid(visible=False, axis="y")
+    _legend(figure)
+
+
+def _legend(figure: Figure) -> None:
+    figure.legend(
+        handles=[
+            Patch(facecolor=RIGHT, edgecolor=RIGHT, label="right transform"),
+            Patch(facecolor="white", edgecolor=WRONG, label="wrong transform"),
+        ],
+        loc="outside lower center",
+        ncols=2,
+    )

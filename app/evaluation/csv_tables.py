@@ -1,0 +1,78 @@
+"""Numbers as CSV files hold them: the same digits wherever they were computed."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Sequence
+from math import degrees
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from app.evaluation.method_run import Trial
+
+
+def csv_bytes(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
+    """A CSV file."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(rows)
+    return text.getvalue().encode()
+
+
+def share_text(value: float | None) -> str:
+    """A share of 1; empty where there is none, here and below."""
+    return "" if value is None else f"{value:.6f}"
+
+
+def metres_text(value: float | None) -> str:
+    """A length."""
+    return "" if value is None else f"{value:.4f}"
+
+
+def angle_text(value: float | None) -> str:
+    """An angle, given in radians, told in degrees."""
+    return "" if value is None else f"{degrees(value):.4f}"
+
+
+def yes_text(value: bool | None) -> str:
+    """A yes or a no."""
+    return "" if value is None else "yes" if value else "no"
+
+
+JUDGED = ("right", "fine", "accepted")
+"""Columns of what is to be said of a run."""
+
+
+def judged_cells(trial: Trial) -> tuple[str, ...]:
+    """Cells of JUDGED."""
+    return tuple(map(yes_text, (trial.right, trial.fine, trial.accepted)))
+
+
+PLACED = ("distance_m", "angle_deg", "x_m", "y_m", "theta_deg")
+"""Columns of a run's transform: how far off it is, and what it is."""
+
+
+def placed_cells(trial: Trial) -> tuple[str, ...]:
+    """Cells of PLACED."""
+    x, y, theta = trial.T_ref_mov or (None, None, None)
+    off = metres_text(trial.distance), angle_text(trial.angle)
+    return (*off, metres_text(x), metres_text(y), angle_text(theta))
+
+
+def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    """A table for a terminal: the first column to the left, numbers to the right."""
+    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    return [
+        "  ".join(
+            [row[0].ljust(widths[0]), *(cell.rjust(w) for cell, w in zip(row[1:], widths[1:], strict=True))]
+        )
+        for row in rows
+    ]
+
+
+def markdown(rows: Sequence[Sequence[str]]) -> str:
+    """A table for a Markdown page, its first row the header."""
+    head, *body = (f"| {' | '.join(row)} |" for row in rows)
+    return "\n".join([head, "|---" + "|---:" * (len(rows[0]) - 1) + "|", *body])

@@ -1,0 +1,163 @@
+"""Several methods on the same pairs, and what came of each: the comparison of section IV-C."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import fmean, median
+from threading import Event
+from typing import Any
+
+from algorithms.common.errors import MapMergeError
+from algorithms.files.case_folder import Case, case_folders, read_case
+from algorithms.methods.registry import METHODS
+from app.evaluation.dataset_evaluation import name_in
+from app.evaluation.method_run import Trial, attempt, true_fusion
+from app.jobs.executor import Executor, Lost, Shared, Task
+
+Configs = Mapping[str, Any]
+"""Settings by the name of their method, in the order they are to be shown."""
+
+
+@dataclass(frozen=True)
+class Score:
+    """What came of one method on one pair."""
+
+    case: str
+    method: str
+    trial: Trial
+
+
+@dataclass(frozen=True)
+class Unread:
+    """A case that can't be read, and why."""
+
+    reason: str
+
+
+Pairs = Iterable[tuple[str, Case | Unread]]
+"""Pairs by a name that is theirs alone."""
+
+
+def defaults_of(names: Iterable[str]) -> dict[str, Any]:
+    """The methods of these names at their defaults, in the order of the table."""
+    wanted = set(names)
+    return {name: method.defaults for name, method in METHODS.items() if name in wanted}
+
+
+def contest(
+    pairs: Pairs, configs: Configs, executor: Executor, seed: int = 0, stop: Event | None = None
+) -> Iterator[Score]:
+    """Yield a score per pair and method, as they are done. Close the generator to stop, or set ``stop``
+    in another thread.
+
+    A method that can't be run on a pair, and a pair that can't be read, cost no other.
+    """
+    asked: list[tuple[str, str]] = []
+    unread: list[Score] = []
+
+    def tasks() -> Iterator[Task]:
+        for name, case in pairs:
+            if isinstance(case, Unread):
+                unread.extend(Score(name, method, _not_run(case.reason)) for method in configs)
+                continue
+            shared = Shared.of(case)
+            for method, config in configs.items():
+                asked.append((name, method))
+                yield Task((method, config, seed), shared)
+
+    for number, answer in executor.run(_work, tasks(), stop):
+        yield Score(*asked[number], _not_run(answer.reason) if isinstance(answer, Lost) else answer)
+        while unread:
+            yield unread.pop(0)
+    yield from unread
+
+
+def pairs_in(root: Path, rough: bool = False) -> tuple[int, Pairs]:
+    """How many cases a folder holds, and the cases, each read when it is its turn.
+
+    rough  : take the badly measured observation of each
+    raises : InputFileError where there is none
+    """
+    folders = case_folders(root)
+
+    def read() -> Iterator[tuple[str, Case | Unread]]:
+        for folder in folders:
+            try:
+                yield name_in(root, folder), read_case(folder, rough)
+            except MapMergeError as error:
+                yield name_in(root, folder), Unread(str(error))
+
+    return len(folders), read()
+
+
+def _work(case: Case, order: tuple[str, Any, int]) -> Trial:
+    method, config, seed = order
+    try:
+        true = true_fusion(case)
+    except MapMergeError as error:
+        return _not_run(str(error))
+    return attempt(case, method, config, seed, true)
+
+
+def _not_run(reason: str) -> Trial:
+    return Trial(None, False, reason, None, None, None, None, None, 0.0, failed=True)
+
+
+@dataclass(frozen=True)
+class Tally:
+    """A method's row in the table.
+
+    n         : pairs that it could be run on
+    failed    : pairs that it could not be run on
+    judged    : of n, those whose truth is known. right + wrong + no_answer = judged
+    right, fine, wrong : its transform alone, whatever anyone says of it
+    no_answer : it found no transform
+    refused   : by mapmeld's verdict, which is laid on the transforms of all methods alike
+    wrong_accepted : wrong transforms that the verdict lets pass
+    index     : mean of eq. (23) over the true overlap, 0 where there is no transform; None where no
+                truth is known
+    seconds   : median time of a merge; None where nothing ran
+    """
+
+    n: int
+    failed: int
+    judged: int
+    right: int
+    fine: int
+    wrong: int
+    no_answer: int
+    refused: int
+    wrong_accepted: int
+    index: float | None
+    seconds: float | None
+
+
+def tally(scores: Sequence[Score]) -> dict[str, Tally]:
+    """A row per method, in the order of the table of methods."""
+    found = {score.method for score in scores}
+    return {
+        name: _tally([score.trial for score in scores if score.method == name])
+        for name in METHODS
+        if name in found
+    }
+
+
+def _tally(trials: Sequence[Trial]) -> Tally:
+    ran = [trial for trial in trials if not trial.failed]
+    judged = [trial for trial in ran if trial.right is not None]
+    indices = [trial.index for trial in judged if trial.index is not None]
+    return Tally(
+        n=len(ran),
+        failed=len(trials) - len(ran),
+        judged=len(judged),
+        right=sum(trial.right is True and trial.T_ref_mov is not None for trial in judged),
+        fine=sum(trial.fine is True for trial in judged),
+        wrong=sum(trial.wrong for trial in judged),
+        no_answer=sum(trial.T_ref_mov is None for trial in judged),
+        refused=sum(not trial.accepted for trial in ran),
+        wrong_accepted=sum(trial.wrong and trial.accepted for trial in judged),
+        index=fmean(indices) if indices else None,
+        seconds=median(trial.seconds for trial in ran) if ran else None,
+    )

@@ -1,0 +1,208 @@
+"""One or two settings swept over their values, each with several seeds: Figs. 13 and 14 of the paper."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from statistics import fmean, median, pstdev
+from threading import Event
+from typing import Any
+
+from algorithms.files.case_folder import Case, observations_to_bytes, truth_to_bytes
+from algorithms.maps.grid_map import GridMap
+from algorithms.methods.registry import METHODS
+from algorithms.methods.stage_runner import Memo
+from algorithms.verdict import performance_index as merit
+from app.evaluation.checkpoint import Journal
+from app.evaluation.method_run import Trial, attempt, true_fusion
+from app.jobs.executor import Executor, Lost, Shared, Task
+from app.model.settings import Path as SettingPath
+from app.model.settings import Setting, settings_of, with_value
+from app.report.result_files import plain
+from app.system.version import code, versions
+
+SEEDS = tuple(range(10))  # the paper averages over as many trials
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A setting and the values it is to take, each once."""
+
+    path: SettingPath
+    values: tuple[Any, ...]
+
+    @property
+    def name(self) -> str:
+        """As its flag is called."""
+        return ".".join(self.path).replace("_", "-")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is swept; all else stays as in ``config``.
+
+    y : a second setting, every value of it with every one of x
+    """
+
+    method: str
+    config: Any
+    x: Axis
+    y: Axis | None = None
+    seeds: tuple[int, ...] = SEEDS
+
+    def __post_init__(self) -> None:
+        for x, y in self.places():  # raises SettingError at once, not in the middle
+            self.config_at(x, y)
+
+    def places(self) -> list[tuple[Any, Any]]:
+        """Every (x, y), y None where there is no second setting; x runs fastest."""
+        return [(x, y) for y in (self.y.values if self.y else (None,)) for x in self.x.values]
+
+    def config_at(self, x: Any, y: Any = None) -> Any:
+        """All settings at one place."""
+        config = with_value(self.config, self.x.path, x)
+        return config if self.y is None else with_value(config, self.y.path, y)
+
+    def setting(self, axis: Axis) -> Setting:
+        """What the swept setting is called, in which unit."""
+        return next(found for found in settings_of(self.config) if found.path == axis.path)
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Mean, median, standard deviation and extremes of a number over the seeds."""
+
+    mean: float
+    median: float
+    deviation: float
+    low: float
+    high: float
+
+    @staticmethod
+    def of(values: Sequence[float]) -> Spread:
+        """Of one value or more."""
+        return Spread(fmean(values), median(values), pstdev(values), min(values), max(values))
+
+
+@dataclass(frozen=True)
+class Point:
+    """One place of a sweep: a trial per seed, in the order of the seeds."""
+
+    x: Any
+    y: Any
+    trials: tuple[Trial, ...]
+
+    @property
+    def index(self) -> Spread | None:
+        """Eq. (23) over the seeds; None where the method could not be run."""
+        values = [trial.index for trial in self.trials if trial.index is not None]
+        return Spread.of(values) if values else None
+
+    @property
+    def seconds(self) -> Spread:
+        """Time of a merge over the seeds."""
+        return Spread.of([trial.seconds for trial in self.trials])
+
+    @property
+    def right(self) -> int | None:
+        """How many of the trials have the right transform; None where no truth is known."""
+        judged = [trial.right for trial in self.trials if trial.right is not None]
+        return sum(judged) if judged else None
+
+    @property
+    def accepted(self) -> int:
+        """How many of them were accepted."""
+        return sum(trial.accepted for trial in self.trials)
+
+    @property
+    def failed(self) -> str:
+        """Why the method could not be run; empty where it could."""
+        return next((trial.reason for trial in self.trials if trial.failed), "")
+
+
+def sweep(
+    case: Case, plan: Plan, executor: Executor, journal: Journal | None = None, stop: Event | None = None
+) -> Iterator[Point]:
+    """Yield every point as it is done; those that the journal knows first.
+
+    Points come coarse to fine, so that a curve shows its shape early and what is left can be estimated.
+    Each is in the journal before it is told. Close the generator to stop, or set ``stop`` in another
+    thread.
+    """
+    journal = Journal() if journal is None else journal
+    keys, todo = point_keys(case, plan), []
+    for place in _coarse_first(plan.places()):
+        record = journal.get(keys[place])
+        if record is None:
+            todo.append(place)
+        else:
+            yield Point(*place, tuple(Trial.of(trial) for trial in record["trials"]))
+    if not todo:
+        return
+    shared = Shared.of(case)
+    tasks = (Task((plan.method, plan.config_at(*place), plan.seeds), shared) for place in todo)
+    for number, answer in executor.run(_work, tasks, stop):
+        place = todo[number]
+        if isinstance(answer, Lost):
+            yield Point(*place, (Trial(None, False, answer.reason, *[None] * 5, 0.0, failed=True),))
+            continue
+        point = Point(*place, tuple(Trial.of(trial) for trial in answer))
+        if not point.failed:
+            journal.add(keys[place], {"x": plain(place[0]), "y": plain(place[1]), "trials": answer})
+        yield point
+
+
+def done_before(case: Case, plan: Plan, journal: Journal) -> int:
+    """How many points of a sweep the journal knows."""
+    return sum(journal.get(key) is not None for key in point_keys(case, plan).values())
+
+
+def in_order(plan: Plan, points: Sequence[Point]) -> list[Point]:
+    """The points as they stand in a table, however they came."""
+    at = {(point.x, point.y): point for point in points}
+    return [at[place] for place in plan.places() if place in at]
+
+
+def _work(case: Case, order: tuple[str, Any, tuple[int, ...]]) -> list[dict[str, Any]]:
+    """All seeds of one point: what does not depend on luck is done once for all of them."""
+    method, config, seeds = order
+    true, memo = true_fusion(case), Memo()
+    return [attempt(case, method, config, seed, true, memo).plain() for seed in seeds]
+
+
+def _coarse_first(places: list[tuple[Any, Any]]) -> list[tuple[Any, Any]]:
+    """The ends, the middle, quarters …: in the order of the van der Corput sequence."""
+    if len(places) < 3:
+        return places
+    first, *inner, last = places
+    bits = len(inner).bit_length()
+    order = sorted(range(len(inner)), key=lambda n: int(f"{n + 1:0{bits}b}"[::-1], 2))
+    return [first, last, *(inner[n] for n in order)]
+
+
+# ---- what a point's numbers rest on
+
+
+def point_keys(case: Case, plan: Plan) -> dict[tuple[Any, Any], str]:
+    """A key per place: equal where maps, sightings, truth, method, settings, seeds and code are equal."""
+    common = {
+        "maps": [_digest(case.ref), _digest(case.mov)],
+        "observations": observations_to_bytes(case.observations).decode(),
+        "truth": None if case.truth is None else truth_to_bytes(case.truth).decode(),
+        "method": plan.method,
+        "seeds": plan.seeds,
+        "versions": {**versions(), "code": [code(METHODS[plan.method].run.__module__), code(merit.__name__)]},
+    }
+    return {
+        place: sha256(
+            json.dumps({**common, "settings": plain(plan.config_at(*place))}, sort_keys=True).encode()
+        ).hexdigest()[:32]
+        for place in plan.places()
+    }
+
+
+def _digest(grid: GridMap) -> str:
+    about = repr((grid.cells.shape, grid.resolution, grid.origin)).encode()
+    return sha256(about + grid.cells.tobytes()).hexdigest()

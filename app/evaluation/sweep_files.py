@@ -1,0 +1,104 @@
+"""What a sweep leaves behind: tables and figures. All but the times are the same bytes on every run."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+
+from algorithms.files.case_folder import Case
+from algorithms.methods.registry import METHODS
+from app.evaluation.csv_tables import JUDGED, PLACED, csv_bytes, judged_cells, placed_cells, share_text
+from app.evaluation.parameter_sweep import Plan, Point, in_order
+from app.report.result_files import plain
+from app.system.hardware import machine
+
+JOURNAL_FILE = "journal.jsonl"
+
+
+def name_of(plan: Plan) -> str:
+    """What the files of a sweep are called: by the settings that are swept."""
+    return plan.x.name if plan.y is None else f"{plan.y.name}_by_{plan.x.name}"
+
+
+def sweep_files(case: Case, plan: Plan, points: Sequence[Point]) -> dict[str, bytes]:
+    """The files of a finished sweep by name.
+
+    NAME.csv       a row per point: eq. (23) over the seeds, and how many were right and accepted
+    NAME.runs.csv  a row per merge, with its transform
+    NAME.times.csv a row per point: seconds of a merge. They were measured: no two runs agree on them
+    NAME.json      maps, method, settings, seeds, machine and versions
+    NAME.png, .svg the figure; of a single setting also with the times
+    """
+    from app.evaluation.sweep_figure import sweep_figure
+
+    name, told = name_of(plan), in_order(plan, points)
+    title = f"{case.name}: {METHODS[plan.method].title}"
+    figures = sweep_figure(plan, told, title, case.ref.resolution)
+    return {
+        f"{name}.csv": points_csv(plan, told),
+        f"{name}.runs.csv": runs_csv(plan, told),
+        f"{name}.times.csv": times_csv(plan, told),
+        f"{name}.json": _about(case, plan),
+        **{f"{name}{suffix}": data for suffix, data in figures.items()},
+    }
+
+
+def points_csv(plan: Plan, points: Iterable[Point]) -> bytes:
+    """A row per point, without anything that was measured with a clock."""
+    rows = []
+    for point in points:
+        spread, n = point.index, len(point.trials)
+        numbers = ("", "", "", "")
+        if spread is not None:
+            numbers = tuple(map(share_text, (spread.mean, spread.deviation, spread.low, spread.high)))
+        right = "" if point.right is None else point.right
+        rows.append((*_at(plan, point), n, *numbers, right, point.accepted, point.failed))
+    index = ("index_mean", "index_deviation", "index_min", "index_max")
+    return csv_bytes((*_names(plan), "seeds", *index, "right", "accepted", "failed"), rows)
+
+
+def runs_csv(plan: Plan, points: Iterable[Point]) -> bytes:
+    """A row per merge: metres and degrees."""
+    rows = [
+        (*_at(plan, point), seed, share_text(trial.index), *judged_cells(trial), *placed_cells(trial))
+        for point in points
+        for seed, trial in zip(plan.seeds, point.trials, strict=False)
+    ]
+    return csv_bytes((*_names(plan), "seed", "index", *JUDGED, *PLACED), rows)
+
+
+def times_csv(plan: Plan, points: Iterable[Point]) -> bytes:
+    """A row per point: seconds of a merge, over the seeds."""
+    header = ("seconds_mean", "seconds_median", "seconds_min", "seconds_max")
+    rows = [
+        (
+            *_at(plan, point),
+            *(f"{getattr(point.seconds, of):.4f}" for of in ("mean", "median", "low", "high")),
+        )
+        for point in points
+        if not point.failed
+    ]
+    return csv_bytes((*_names(plan), *header), rows)
+
+
+def _about(case: Case, plan: Plan) -> bytes:
+    about = {
+        "case": case.name,
+        "observation": case.observation_file,
+        "index_over": "true overlap" if case.truth is not None else "overlap of the estimate",
+        "method": plan.method,
+        "swept": {axis.name: axis.values for axis in (plan.x, plan.y) if axis is not None},
+        "seeds": plan.seeds,
+        "settings": plan.config,
+        "machine": machine(),
+    }
+    return (json.dumps(plain(about), indent=1, ensure_ascii=False) + "\n").encode()
+
+
+def _names(plan: Plan) -> tuple[str, ...]:
+    return tuple(axis.name for axis in (plan.y, plan.x) if axis is not None)
+
+
+def _at(plan: Plan, point: Point) -> tuple[str, ...]:
+    values = (point.x,) if plan.y is None else (point.y, point.x)
+    return tuple(str(plain(value)) for value in values)

@@ -1,0 +1,1 @@
+"""Threads, worker processes and executors: where a merge is worked out."""

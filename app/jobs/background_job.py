@@ -1,0 +1,106 @@
+"""Long work of a tab beside its page: in processes of its own, which give way to whatever the page does."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from threading import BoundedSemaphore, Event, RLock, Thread
+from typing import Any, Protocol
+
+from algorithms.common.errors import MapMergeError
+from app.jobs.executor import Executor
+from app.jobs.process_executor import Processes, cores
+
+log = logging.getLogger(__name__)
+
+MOST_AT_ONCE = 2  # comparisons and sweeps of all tabs; a further one waits for its turn
+LOOK_S = 0.1  # how often one that waits looks whether it is still wanted
+
+_turns = BoundedSemaphore(MOST_AT_ONCE)
+
+
+def beside_the_page(jobs: int) -> Executor:
+    """Processes for work behind a page: one core is left to it, and what is left is not fought for."""
+    return Processes(max(1, min(jobs, cores() - 1)), gentle=True)
+
+
+class Asking(Protocol):
+    """Who is told of the work; one call at a time, with nobody else drawing."""
+
+    def waits(self) -> None:
+        """Other tabs' work goes first."""
+
+    def begins(self) -> None:
+        """It is its turn."""
+
+    def told(self, part: Any) -> None:
+        """The next of what the work yields."""
+
+    def over(self, why: str) -> None:
+        """It has come to its end; ``why`` it could not, as a sentence, empty where it could."""
+
+
+class Background:
+    """One piece of work at a time, in a thread of its own. Nothing is told once ``stop`` has returned."""
+
+    def __init__(self, asking: Asking, drawing: RLock, name: str) -> None:
+        self._asking, self._drawing, self._name = asking, drawing, name
+        self._stop: Event | None = None  # of the work at hand
+
+    @property
+    def busy(self) -> bool:
+        """Whether anything is going on."""
+        return self._stop is not None
+
+    def start(self, work: Callable[[Event], Iterator[Any]]) -> None:
+        """Do this in place of whatever is going on.
+
+        work : makes a generator that ends soon once its event is set
+        """
+        stop = Event()
+        with self._drawing:
+            self.stop()
+            self._stop = stop
+        Thread(target=self._run, args=(work, stop), name=f"mapmeld-{self._name}", daemon=True).start()
+
+    def stop(self) -> bool:
+        """Leave what is going on; whether there was anything."""
+        with self._drawing:
+            stop, self._stop = self._stop, None
+            if stop is not None:
+                stop.set()
+        return stop is not None
+
+    def _run(self, work: Callable[[Event], Iterator[Any]], stop: Event) -> None:
+        if not _turns.acquire(blocking=False):
+            self._tell(stop, self._asking.waits)
+            while not _turns.acquire(timeout=LOOK_S):
+                if stop.is_set():
+                    return
+        why = ""
+        try:
+            self._tell(stop, self._asking.begins)
+            with closing(work(stop)) as parts:  # type: ignore[type-var]
+                for part in parts:
+                    if not self._tell(stop, lambda part=part: self._asking.told(part)):
+                        return
+        except MapMergeError as error:
+            why = str(error)
+        except Exception as error:
+            log.exception("the %s ended in a bug", self._name)
+            why = f"A bug of mapmeld's ended it ({type(error).__name__}); the server's log has the details."
+        finally:
+            _turns.release()
+        self._tell(stop, lambda: self._over(why))
+
+    def _over(self, why: str) -> None:
+        self._stop = None
+        self._asking.over(why)
+
+    def _tell(self, stop: Event, tell: Callable[[], None]) -> bool:
+        with self._drawing:
+            if self._stop is not stop:
+                return False
+            tell()
+        return True

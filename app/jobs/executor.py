@@ -1,0 +1,114 @@
+"""Who does long work: processes on this machine, or the workers of a Dask cluster. One interface for all.
+
+Work is a function and its orders, all of which can be pickled. Answers come as they are done, and don't
+depend on who did them, on how many there are, or on workers that died in between.
+"""
+
+from __future__ import annotations
+
+import pickle
+import secrets
+import zlib
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from threading import Event
+from typing import Any
+
+Work = Callable[[Any, Any], Any]
+"""``work(shared, order)`` makes an answer; ``shared`` is the value of the task's Shared, or None."""
+
+
+@dataclass(frozen=True)
+class Shared:
+    """A value that several tasks need: it travels to a worker once, not with every task."""
+
+    data: bytes = field(repr=False)
+    key: str
+
+    @staticmethod
+    def of(value: Any) -> Shared:
+        """Pack a value. Grid maps are mostly floor: they shrink to a twentieth."""
+        return Shared(zlib.compress(pickle.dumps(value), 1), secrets.token_hex(8))
+
+
+def unpacked(data: bytes) -> Any:
+    """The value in ``Shared.data``."""
+    return pickle.loads(zlib.decompress(data))
+
+
+@dataclass(frozen=True)
+class Task:
+    """One order, with the value it shares with others, if any."""
+
+    order: Any
+    shared: Shared | None = None
+
+
+@dataclass(frozen=True)
+class Lost:
+    """In place of an answer: whoever worked on the task died of it, each time that it was tried."""
+
+    reason: str = "the process that ran it ended; was there too little memory?"
+
+
+class Executor(ABC):
+    """Does tasks.
+
+    jobs : how many at a time
+    far  : whether its workers may be on other machines: they can't be told to read files of this one
+    """
+
+    far = False
+
+    @property
+    @abstractmethod
+    def jobs(self) -> int:
+        """How many tasks are worked on at a time."""
+
+    @abstractmethod
+    def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
+        """Yield (number of the task, answer or Lost) in the order of completion.
+
+        Tasks are taken from the iterable only as workers become free. Whoever leaves the loop, or
+        closes the generator, stops the work. What ``work`` raises is raised here.
+
+        stop : set by another thread, which can't close a generator at work, it ends the loop: at once,
+               or after the task at hand where this process does it
+        """
+
+
+class Here(Executor):
+    """This process, one task after the other."""
+
+    @property
+    def jobs(self) -> int:
+        """One."""
+        return 1
+
+    def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
+        """As in Executor; a task that kills its process kills this one."""
+        known: tuple[str, Any] = ("", None)
+        for number, task in enumerate(tasks):
+            if stop is not None and stop.is_set():
+                return
+            if task.shared is not None and task.shared.key != known[0]:
+                known = (task.shared.key, unpacked(task.shared.data))
+            yield number, work(None if task.shared is None else known[1], task.order)
+
+
+def executor_for(jobs: int | None = None, scheduler: str | None = None) -> Executor:
+    """Whoever is asked for.
+
+    jobs      : processes on this machine; None: one per core
+    scheduler : address of a Dask scheduler, whose workers then do it all
+    raises    : SettingError where Dask is not installed or nobody answers there
+    """
+    if scheduler is not None:
+        from app.jobs.dask_executor import Cluster
+
+        return Cluster(scheduler)
+    from app.jobs.process_executor import Processes, cores
+
+    jobs = cores() if jobs is None else jobs
+    return Here() if jobs == 1 else Processes(jobs)

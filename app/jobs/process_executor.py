@@ -1,0 +1,185 @@
+"""Work in processes of this machine. A process that dies costs a second try, not an answer."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections import OrderedDict
+from collections.abc import Generator, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import chain
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from threading import Event, Thread
+from typing import Any
+
+import cv2
+
+from algorithms.common import parallel_kernels as kernels
+from algorithms.common.errors import OutputError
+from app.jobs.executor import Executor, Lost, Shared, Task, Work, unpacked
+
+LOOK_S = 0.1  # how often it is looked whether all is to stop
+KEPT = 2  # shared values that a process holds on to; tasks that share one come one after the other
+SPAWN = get_context("spawn")  # a copy of a process that already has threads can hang
+
+Numbered = tuple[int, Task]
+
+
+@dataclass(frozen=True)
+class _Stopped:
+    """Why work has stopped: a process has died.
+
+    suspects  : tasks that were being worked on
+    untouched : the task that nobody had begun
+    """
+
+    suspects: list[Numbered]
+    untouched: list[Numbered]
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    return kernels.cores()
+
+
+class Processes(Executor):
+    """Processes of this machine, which share its cores evenly."""
+
+    def __init__(self, jobs: int, gentle: bool = False) -> None:
+        """gentle : they take only what time others leave them."""
+        self._jobs, self._gentle = jobs, gentle
+
+    @property
+    def jobs(self) -> int:
+        """How many processes."""
+        return self._jobs
+
+    def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
+        """As in Executor."""
+        left = iter(enumerate(tasks))
+        with _folder() as folder:
+            while True:
+                stopped = yield from self._some(work, left, self._jobs, folder, stop)
+                if stopped is None:
+                    return
+                left = chain(stopped.untouched, left)
+                again = iter(stopped.suspects)  # who of them took its process down? Each alone shows it
+                while stopped := (yield from self._some(work, again, 1, folder, stop)):
+                    again = chain(stopped.untouched, again)
+                    for number, _ in stopped.suspects:
+                        yield number, Lost()
+
+    def _some(
+        self, work: Work, left: Iterator[Numbered], jobs: int, folder: Path, stop: Event | None
+    ) -> Generator[tuple[int, Any], None, _Stopped | None]:
+        """Yield answers until no task is left; return what a process that died has left behind."""
+        # a process ends when nobody holds the other end any more: it is told to, or this one is dead
+        listening, line = SPAWN.Pipe(duplex=False)
+        running: dict[Future[Any], Numbered] = {}
+        pool = ProcessPoolExecutor(
+            jobs, mp_context=SPAWN, initializer=_begin, initargs=(listening, self._jobs, self._gentle)
+        )
+        try:
+            while stop is None or not stop.is_set():
+                while len(running) < jobs and (found := next(left, None)) is not None:
+                    number, task = found
+                    path = None if task.shared is None else _laid_down(task.shared, folder)
+                    try:
+                        running[pool.submit(_do, work, path, task.order)] = found
+                    except BrokenProcessPool:  # an idle process has died meanwhile
+                        return _Stopped((yield from _rescued(running)), [found])
+                if not running:
+                    return None
+                for future in wait(running, None if stop is None else LOOK_S, FIRST_COMPLETED).done:
+                    if isinstance(future.exception(), BrokenProcessPool):
+                        return _Stopped((yield from _rescued(running)), [])
+                    number, _ = running.pop(future)
+                    yield number, future.result()
+            return None
+        finally:
+            if running:  # Ctrl-C, or a caller that has left the loop: nobody waits for the rest
+                line.close()
+            pool.shutdown(wait=True, cancel_futures=True)
+            line.close()
+            listening.close()
+
+
+def _rescued(running: dict[Future[Any], Numbered]) -> Generator[tuple[int, Any], None, list[Numbered]]:
+    """Yield the answers that were there before the pool broke; return the tasks that have none."""
+    lost = []
+    for future, found in running.items():
+        error = future.exception()  # all are done soon: the pool ends what it can't do any more
+        if isinstance(error, BrokenProcessPool):
+            lost.append(found)
+        else:
+            yield found[0], future.result()
+    return lost
+
+
+@contextmanager
+def _folder() -> Iterator[Path]:
+    """A folder for what the processes share, gone afterwards."""
+    try:
+        folder = TemporaryDirectory(prefix="mapmeld-", ignore_cleanup_errors=True)
+    except OSError as error:
+        raise _no_room(error) from error
+    with folder as path:
+        yield Path(path)
+
+
+def _laid_down(shared: Shared, folder: Path) -> Path:
+    path = folder / shared.key
+    if not path.exists():
+        try:
+            path.write_bytes(shared.data)
+        except OSError as error:
+            raise _no_room(error) from error
+    return path
+
+
+def _no_room(error: OSError) -> OutputError:
+    return OutputError(
+        "the folder for temporary files",
+        f"cannot be written to ({error.strerror})",
+        "make room in it, or name another one in $TMPDIR",
+    )
+
+
+# ---- what runs in the other process
+
+_known: OrderedDict[str, Any] = OrderedDict()
+
+
+def _begin(line: Connection, jobs: int, gentle: bool) -> None:
+    if gentle and hasattr(os, "nice"):  # not on Windows
+        os.nice(10)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the first process hears it and ends the others
+    threads = max(1, cores() // jobs)
+    kernels.use_threads(threads)
+    cv2.setNumThreads(threads)
+    Thread(target=_end_with, args=(line,), daemon=True).start()
+
+
+def _end_with(line: Connection) -> None:
+    try:
+        line.recv()
+    except EOFError:
+        os._exit(1)
+
+
+def _do(work: Work, path: Path | None, order: Any) -> Any:
+    return work(None if path is None else _value_in(path), order)
+
+
+def _value_in(path: Path) -> Any:
+    if path.name not in _known:
+        _known[path.name] = unpacked(path.read_bytes())
+        if len(_known) > KEPT:
+            _known.popitem(last=False)
+    return _known[path.name]

@@ -1,0 +1,56 @@
+"""Where a tab's runs are worked out: a worker process, which serves several tabs, each in its turn."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Generator, Iterator
+from contextlib import closing
+from dataclasses import dataclass
+
+from algorithms.methods.steps import Step
+from app.model.merge_job import Job
+
+
+@dataclass(frozen=True)
+class Asker:
+    """Who wants a run.
+
+    wanted : whether they still do; asked now and then
+    waits  : is told how many are before it, where it takes a while
+    """
+
+    wanted: Callable[[], bool] = lambda: True
+    waits: Callable[[int], None] = lambda before: None
+
+
+class Bench(ABC):
+    """Of one tab. It remembers the stages of one run for the next."""
+
+    @abstractmethod
+    def steps(self, job: Job, asker: Asker, aside: bool = False) -> Generator[Step, None, None]:
+        """The steps of a run, each worked out when it is asked for and it is this run's turn.
+
+        They end early where nobody wants them any more.
+
+        aside  : the next run is not to know of this one
+        raises : what the run raises, and WorkerDiedError
+        """
+
+    @abstractmethod
+    def close(self) -> None:
+        """Nobody wants anything of it any more."""
+
+
+class Overheard(Bench):
+    """Another's bench; its steps go through somebody's hands on their way."""
+
+    def __init__(self, bench: Bench, through: Callable[[Iterator[Step]], Iterator[Step]]) -> None:
+        self._bench, self._through = bench, through
+
+    def steps(self, job: Job, asker: Asker, aside: bool = False) -> Generator[Step, None, None]:
+        """As in Bench."""
+        with closing(self._bench.steps(job, asker, aside)) as steps:
+            yield from self._through(steps)
+
+    def close(self) -> None:
+        """Whose bench it is closes it."""

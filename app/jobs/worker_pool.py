@@ -1,0 +1,395 @@
+"""Merges in processes of their own: one that dies of its work takes no page with it.
+
+A worker serves several tabs, a step at a time; what it has worked out for each it keeps. It is started
+when it is first needed, and again when it has died.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import itertools
+import logging
+import pickle
+import signal
+import traceback
+from collections.abc import Callable, Generator, Iterator
+from dataclasses import dataclass, field
+from math import inf
+from multiprocessing import resource_tracker
+from multiprocessing.connection import Connection
+from threading import Lock
+from time import monotonic
+from typing import Any
+
+from algorithms.common import parallel_kernels as kernels
+from algorithms.common.errors import MapMergeError
+from algorithms.methods.stage_runner import Memo
+from algorithms.methods.steps import Step
+from app.jobs.fair_semaphore import Turns
+from app.jobs.incremental_pickle import Parcels
+from app.jobs.process_executor import SPAWN
+from app.jobs.runner import Asker, Bench
+from app.model.merge_job import Job
+from app.system.memory import give_back, whole
+
+log = logging.getLogger(__name__)
+
+MOST = 4  # each takes 200 MB before it has done anything, and has threads for all cores
+HANGS = 10.0  # seconds that a step goes on unwanted, or a word is not heard, until its process is ended
+HANGS_BESIDE = 60.0  # where other runs would end with it; and until a run has to have begun
+LOOK_S = 0.25  # how often it is looked
+SHARE = 0.5  # of this machine's memory that a worker may have; more is a MemoryError, not the end of others
+
+
+class WorkerDiedError(MapMergeError):
+    """The process that worked on a merge has ended; the next merge has a new one."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "The process that merged has ended; was there too little memory? Nothing else is lost. Press "
+            "Merge again; if it ends again, close other tabs or take smaller maps."
+        )
+
+
+class Workers:
+    """As many as there are cores, and not too many."""
+
+    def __init__(self, most: int = MOST) -> None:
+        self._most = max(1, min(most, kernels.cores()))
+        self._workers: list[_Worker] = []
+        self._lock, self._closed = Lock(), False
+
+    def bench(self) -> Bench:
+        """A place for a tab; it takes no worker before its first run."""
+        return _Place(self)
+
+    @property
+    def pids(self) -> list[int]:
+        """The processes that are there now."""
+        return [worker.pid for worker in self._workers if worker.pid is not None]
+
+    def close(self) -> None:
+        """End them all; this is no death to speak of."""
+        with self._lock:
+            self._closed = True
+        for worker in self._workers:
+            worker.close()
+
+    def seat(self, place: _Place) -> _Worker:
+        """The worker of a tab: one that serves no other, if there may be one."""
+        with self._lock:
+            if all(worker.places for worker in self._workers) and len(self._workers) < self._most:
+                self._workers.append(_Worker())
+                if self._closed:
+                    self._workers[-1].close()
+            worker = min(self._workers, key=lambda worker: len(worker.places))
+            worker.places.add(place)
+            return worker
+
+
+class _Worker:
+    """A process and the line to it. Only who has the turn says something to it."""
+
+    def __init__(self) -> None:
+        self.turns = Turns(1)
+        self.places: set[_Place] = set()
+        self.life = 0  # how often it was started
+        self.runs: set[tuple[int, int]] = set()  # that are under way
+        self._process: Any = None
+        self._line: Connection | None = None
+        self._starting, self._closed = Lock(), False
+
+    @property
+    def pid(self) -> int | None:
+        """Of the process; None where there is none."""
+        process = self._process
+        return None if process is None else process.pid
+
+    def start(self) -> None:
+        """Have a process; one that died with nothing to do is missed by nobody."""
+        if self._line is not None:
+            if self._process.is_alive():
+                return
+            self._end()
+        with self._starting:
+            if self._closed:
+                raise WorkerDiedError
+            line, theirs = SPAWN.Pipe()
+            process = SPAWN.Process(target=_serve, args=(theirs,), name="mapmeld-merge", daemon=True)
+            try:
+                with _deaf():
+                    process.start()
+            except BaseException:
+                line.close()
+                raise
+            finally:
+                theirs.close()  # the process alone holds it, so that its end is heard here
+            self._process, self._line = process, line
+            self.life += 1
+
+    def ask(self, *order: Any, wanted: Callable[[], bool] | None = None) -> tuple[Any, ...]:
+        """Have it do something; raises WorkerDiedError, also where it hangs.
+
+        wanted : whether a step is still waited for; None: it is no step, and done in a moment
+        """
+        if self._line is None:
+            raise WorkerDiedError
+        try:
+            self._line.send(order)
+            until = monotonic() + (HANGS_BESIDE if order[0] == "start" else HANGS) if wanted is None else inf
+            while not self._line.poll(LOOK_S):
+                if wanted is not None and wanted():
+                    until = inf
+                elif until == inf:
+                    until = monotonic() + (HANGS if len(self.runs) <= 1 else HANGS_BESIDE)
+                elif monotonic() > until:
+                    raise EOFError
+            answer: tuple[Any, ...] = self._line.recv()
+        except (EOFError, OSError, MemoryError) as error:
+            self._end()
+            raise WorkerDiedError from error
+        return answer
+
+    def _end(self) -> None:
+        assert self._line is not None
+        self._line.close()
+        self.runs.clear()
+        process, self._line, self._process = self._process, None, None
+        process.kill()
+        process.join()
+        if not self._closed:
+            log.warning("a process that merges has ended, with %s", process.exitcode)
+
+    def close(self) -> None:
+        """End the process, whatever it is at; one that is half started would complain of us on stderr."""
+        self._closed = True
+        with self._starting:
+            process = self._process
+        if process is not None:
+            process.kill()
+
+
+@contextlib.contextmanager
+def _deaf() -> Iterator[None]:
+    """A process that starts here does not hear Ctrl-C, not even before its first line: this one ends it."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    resource_tracker.ensure_running()  # it would have this thread hear again
+    heard = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, heard)
+
+
+_numbers = itertools.count()
+
+
+class _Place(Bench):
+    """A tab at its worker.
+
+    epoch : counts how often both had to begin anew with each other
+    """
+
+    def __init__(self, workers: Workers) -> None:
+        self._workers, self._number = workers, next(_numbers)
+        self._worker: _Worker | None = None
+        self._lock, self._closed = Lock(), False
+        self._epoch, self._life = 0, 0
+        self._parcels = Parcels("page")
+        self._maps: tuple[object, object] = (None, None)
+
+    def steps(self, job: Job, asker: Asker, aside: bool = False) -> Generator[Step, None, None]:
+        """As in Bench."""
+        with self._lock:
+            if self._closed:
+                raise WorkerDiedError
+            worker = self._worker = self._worker or self._workers.seat(self)
+        with worker.turns.take(asker.wanted, asker.waits) as mine:
+            if not mine:
+                return
+            run, epoch = self._begin(worker, job, aside), self._epoch
+        over, me = False, (self._number, run)
+        worker.runs.add(me)
+        try:
+            while True:
+                with worker.turns.take(asker.wanted, asker.waits) as mine:
+                    if not mine:
+                        return
+                    over = True  # as it is where this fails
+                    if self._epoch != epoch:
+                        raise WorkerDiedError
+                    step = self._next(worker, run, asker)
+                if step is None:
+                    return
+                over = False
+                yield step
+        finally:
+            worker.runs.discard(me)
+            if not over:
+                self._say(worker, epoch, "leave", run)
+
+    def close(self) -> None:
+        """As in Bench."""
+        with self._lock:
+            self._closed = True
+        if self._worker is not None:
+            self._say(self._worker, self._epoch, "forget")
+            self._worker.places.discard(self)
+            self._epoch += 1
+
+    def _begin(self, worker: _Worker, job: Job, aside: bool) -> int:
+        worker.start()
+        if worker.life != self._life:
+            self._anew()
+            self._life = worker.life
+        maps = job.ref, job.mov
+        others = any(new is not old for new, old in zip(maps, self._maps, strict=True))
+        self._maps = maps
+        turns = 2 if others else 1  # what was made of other maps is not met again
+        for _ in range(turns):
+            self._parcels.turn_over()
+        try:
+            data = self._parcels.pack(job)
+        except BaseException:
+            self._anew()
+            worker.ask("forget", self._number)
+            raise
+        (run,) = self._heard(worker.ask("start", self._number, aside, turns, data))
+        return int(run)
+
+    def _next(self, worker: _Worker, run: int, asker: Asker) -> Step | None:
+        (data,) = self._heard(worker.ask("next", self._number, run, wanted=asker.wanted))
+        if data is None:
+            return None
+        try:
+            step: Step = self._parcels.unpack(data)
+        except BaseException:
+            self._anew()
+            worker.ask("forget", self._number)
+            raise
+        return step
+
+    def _heard(self, answer: tuple[Any, ...]) -> tuple[Any, ...]:
+        if not isinstance(answer[0], _Failed):
+            return answer
+        failed = answer[0]
+        if failed.anew:
+            self._anew()
+        raise failed.error from _ThereError(failed.trace)
+
+    def _anew(self) -> None:
+        self._parcels, self._maps = Parcels("page"), (None, None)
+        self._epoch += 1
+
+    def _say(self, worker: _Worker, epoch: int, verb: str, *what: Any) -> None:
+        """Tell what matters only as long as nobody had to begin anew."""
+        with worker.turns.get(), contextlib.suppress(WorkerDiedError):
+            if self._epoch == epoch and worker.life == self._life:
+                worker.ask(verb, self._number, *what)
+
+
+class _ThereError(Exception):
+    """What went wrong in the other process, where it did: for the log."""
+
+    def __str__(self) -> str:
+        return f"\n{self.args[0]}"
+
+
+@dataclass(frozen=True)
+class _Failed:
+    """anew : the parcels no longer agree."""
+
+    error: Exception
+    trace: str
+    anew: bool = False
+
+
+COMMON = Workers()
+atexit.register(COMMON.close)
+
+
+# ---- what runs in the other process
+
+
+@dataclass
+class _Tab:
+    parcels: Parcels = field(default_factory=lambda: Parcels("worker"))
+    memo: Memo = field(default_factory=dict)
+    runs: dict[int, Iterator[Step]] = field(default_factory=dict)
+
+
+def _serve(line: Connection) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # see _deaf
+    _bound_memory()
+    tabs: dict[int, _Tab] = {}
+    with contextlib.suppress(EOFError, OSError):  # the first process is gone
+        while True:
+            line.send(_obey(tabs, *line.recv()))
+
+
+def _obey(tabs: dict[int, _Tab], verb: str, number: int, *what: Any) -> tuple[Any, ...]:
+    if verb == "forget":
+        if tabs.pop(number, None) is not None:
+            give_back()
+        return ()
+    tab = tabs.setdefault(number, _Tab())
+    if verb == "start":
+        return _started(tabs, number, tab, *what)
+    (run,) = what
+    if verb == "leave":
+        tab.runs.pop(run, None)
+        return ()
+    try:
+        step = next(tab.runs[run], None)
+    except Exception as error:
+        del tab.runs[run]
+        return (_failed(error),)
+    if step is None:
+        del tab.runs[run]
+        return (None,)
+    try:
+        return (tab.parcels.pack(step),)
+    except Exception as error:
+        del tabs[number]
+        return (_failed(error, anew=True),)
+
+
+def _started(
+    tabs: dict[int, _Tab], number: int, tab: _Tab, aside: bool, turns: int, data: bytes
+) -> tuple[Any, ...]:
+    try:
+        for _ in range(turns):
+            tab.parcels.turn_over()
+        job: Job = tab.parcels.unpack(data)
+    except Exception as error:
+        del tabs[number]
+        return (_failed(error, anew=True),)
+    try:
+        steps = job.run(dict(tab.memo) if aside else tab.memo)
+    except Exception as error:
+        return (_failed(error),)
+    run = next(_numbers)
+    tab.runs[run] = steps
+    return (run,)
+
+
+def _failed(error: Exception, anew: bool = False) -> _Failed:
+    trace = traceback.format_exc()
+    try:
+        pickle.loads(pickle.dumps(error))
+    except Exception:  # not every library's errors can travel
+        error = RuntimeError(f"{type(error).__name__}: {error}")
+    return _Failed(error, trace, anew)
+
+
+def _bound_memory() -> None:
+    """Have what is too much for this machine fail here, before the system ends whom it likes."""
+    try:
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_DATA, (int(SHARE * whole()),) * 2)
+    except (ImportError, AttributeError, ValueError, OSError):  # not on every system
+        log.debug("memory is not bounded", exc_info=True)

@@ -1,0 +1,334 @@
+"""The state of the page in words: one sentence, in one place."""
+
+from __future__ import annotations
+
+import re
+from math import degrees, isfinite
+
+import numpy as np
+
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.manual_merge import BY_HAND
+from algorithms.methods.registry import METHODS
+from algorithms.methods.steps import (
+    AnswersDetail,
+    AugmentDetail,
+    CandidatesDetail,
+    HoughDetail,
+    MatchesDetail,
+    MergeResult,
+    ObservationDetail,
+    ProofDetail,
+    ProvenDetail,
+    RefineDetail,
+    ShiftDetail,
+    TriedDetail,
+    TurnsDetail,
+    WeighedDetail,
+    WindowDetail,
+)
+from algorithms.optimisation.branch_and_bound import ProofState
+from algorithms.verdict.decision import NEXT_TO_NO_WALL, SAME_PLACE, Outcome, Verdict
+from algorithms.verdict.probability_model import OTHERS
+from app.model.objective_label import Measure
+from app.model.run_state import Story
+
+# Share of the work done when a stage begins; refining and proving take what lies before the next.
+_SHARE: dict[type, float] = {
+    ObservationDetail: 0.02,
+    AugmentDetail: 0.06,
+    HoughDetail: 0.14,
+    WindowDetail: 0.2,
+    ShiftDetail: 0.2,
+    CandidatesDetail: 0.4,
+    RefineDetail: 0.4,
+    MatchesDetail: 0.4,
+    TurnsDetail: 0.1,
+    AnswersDetail: 0.8,
+    ProofDetail: 0.8,
+    ProvenDetail: 0.95,
+    WeighedDetail: 0.97,
+    Fusion: 0.98,
+    TriedDetail: 0.99,
+    MergeResult: 1.0,
+}
+LEAST_LIKELY = 0.005  # of a rival; what is less likely rounds to nothing
+MOODS = {Outcome.MERGED: "accepted", Outcome.BENT: "bent", Outcome.REFUSED: "refused"}
+"""The colour of an outcome: green, amber, vermilion."""
+_MANY_BLOCKS = 20_000  # a proof has seldom more; nobody knows before its end how many there will be
+
+READY = "Ready. Press Merge."
+# what to do next while the robots are placed by hand, by what is missing
+PLACING = {
+    "observer": "1 of 3: where robot 1 stood, in map 1. Press there, and drag the way it looked.",
+    "seen": "2 of 3: where it saw robot 2, in map 1. Press there.",
+    "observed": "3 of 3: where robot 2 was, in its own map, map 2. Press there; drag its heading, if known.",
+    None: "Drag a sign to move it, and the knob of a robot to turn it. Range and bearing follow.",
+}
+SIDE_BY_SIDE = "Two robots, two maps, no common frame."
+UP_TO_DATE = "Everything up to the candidates is up to date. Press Merge."
+
+
+def typeset(text: str) -> str:
+    """The text with a minus sign before its negative numbers, where a keyboard has a hyphen."""
+    return re.sub(r"(?<![\w.)\]-])-(?=\.?\d)", "−", text)
+
+
+def sentence(story: Story) -> str:
+    """What a run is doing right now."""
+    detail, measure = story.last.detail if story.last else None, story.measure
+    if isinstance(detail, ObservationDetail):
+        times = len(detail.encounters)
+        if times > 1:
+            return f"Robot 1 saw robot 2 at {times} places: they are in both maps."
+        return "Robot 1 saw robot 2: this place is in both maps."
+    if isinstance(detail, AugmentDetail):
+        return "Augmenting: walls near the meeting place are lifted."
+    if isinstance(detail, HoughDetail):
+        return f"Turning: {len(detail.match.turns)} turns where the Hough spectra coincide."
+    if isinstance(detail, WindowDetail):
+        return "Shifting: the observation leaves this window."
+    if isinstance(detail, ShiftDetail):
+        turn = f"{degrees(detail.candidate.T_ref_mov.theta):.1f}".replace("-", "−")
+        return f"Shifting candidate {detail.index + 1} of {detail.total}: map 2 turned by {turn}°."
+    if isinstance(detail, CandidatesDetail):
+        return f"{len(detail.candidates)} candidates, ranked by {measure.name}."
+    if isinstance(detail, RefineDetail):
+        state = detail.state
+        where = f"candidate {detail.index + 1} of {detail.total}, iteration {state.iteration + 1}"
+        value = f"{measure.name} {measure.text(state.best_value)}"
+        return f"Searching: {where}, {value if isfinite(state.best_value) else 'outside the window'}."
+    if isinstance(detail, MatchesDetail):
+        return _matching(detail)
+    if isinstance(detail, TurnsDetail):
+        return _turning(detail)
+    if isinstance(detail, AnswersDetail):
+        return f"The search is done: {detail.answers[0].stopped}."
+    if isinstance(detail, ProofDetail):
+        return _proving(detail.state, measure)
+    if isinstance(detail, ProvenDetail):
+        return found_it(story)
+    if isinstance(detail, WeighedDetail):
+        return _weighing(detail)
+    if isinstance(detail, Fusion):
+        return "Merging the cells: what agrees, what contradicts."
+    if isinstance(detail, TriedDetail):
+        return f"Refused. Why? {detail.index + 1} of {detail.total}: {detail.clause}?"
+    if isinstance(detail, MergeResult):
+        return detail.verdict.reason
+    return "Starting."
+
+
+def _matching(detail: MatchesDetail) -> str:
+    agreeing, all_of_them = int(detail.inliers.sum()), len(detail.ref)
+    if agreeing:
+        return f"{agreeing} of {all_of_them} matched features agree on one transform."
+    found = f"{len(detail.ref_features)} features in map 1, {len(detail.mov_features)} in map 2"
+    return f"{found}: {all_of_them} look alike."
+
+
+def _turning(detail: TurnsDetail) -> str:
+    tried = int(np.isfinite(detail.scores).sum())
+    if detail.best is not None:
+        return typeset(f"Best of {tried} turns: map 2 turned by {degrees(detail.best):.1f}°.")
+    return f"Turning: {tried} of {len(detail.turns)} turns tried."
+
+
+def _weighing(detail: WeighedDetail) -> str:
+    best, places = detail.answers[0], len(detail.answers)
+    named = (
+        "The whole maps speak for this place" if places == 1 else f"Of {places} places one is the likeliest"
+    )
+    if not best.moved:
+        return f"{named}: {best.evidence.floor:.0f} m² of floor in common."
+    off = apart_by(*pose_error(best.T_ref_mov, best.began, np.zeros(2)))
+    return f"{named}, {off} from where the search had ended."
+
+
+def fits_nowhere(state: ProofState) -> bool:
+    """Whether it is known that no transform of the window has a value above zero."""
+    return state.stopped is not None and not state.empty and state.ceiling <= 0
+
+
+def _proving(state: ProofState, measure: Measure) -> str:
+    blocks = f"{state.nodes:,} blocks bounded"
+    if state.empty:
+        return f"Proving: {blocks}, none of them agrees with every sighting."
+    if state.rival_sought:
+        return f"Proven. Rivals: {blocks}, none above {measure.text(state.ceiling)}."
+    return f"Proving: {blocks}, nothing above {measure.text(state.ceiling)} is left."
+
+
+def proof_says(state: ProofState, measure: Measure) -> str:
+    """What the picture of the proof means, in a line."""
+    if state.empty:
+        return "No transform agrees with every sighting: there is nothing to bound."
+    if fits_nowhere(state):
+        return "No turn gets above zero: wherever robot 2 may have stood, more wall contradicts than agrees."
+    if not state.proven:
+        return (
+            f"Every turn stays below its grey ceiling, and all of them below {measure.text(state.ceiling)}. "
+            "It comes down until only the best is left."
+        )
+    best = f"Nothing on the whole circle is better than {measure.text(state.best_value)}"
+    if len(state.rivals):
+        return f"{best}; the best rival has {state.rival_value / state.best_value:.0%} of it."
+    if state.stopped is None:
+        return f"{best}. Is there a rival elsewhere?"
+    return f"{best}, and no other place has {state.floor / state.best_value:.0%} of it."
+
+
+def found_it(story: Story) -> str:
+    """Whether the optimiser had come to the proven optimum; empty for a method without a proof."""
+    proven, answers = story.get(ProvenDetail), story.get(AnswersDetail)
+    if proven is None or answers is None:
+        return ""
+    state = proven.state
+    if state.empty:
+        return "No transform at all agrees with every sighting."
+    if fits_nowhere(state):
+        return f"Proven: nothing anywhere is above {story.measure.text(0.0)}."
+    if not state.proven:
+        left = story.measure.text(state.ceiling)
+        return f"Not proven after {state.nodes:,} blocks: somewhere there may be up to {left}."
+    if proven.search_found_it:
+        return f"{story.searcher} found the proven optimum."
+    seen = story.get(ObservationDetail)
+    stuck = f"{story.searcher} got stuck"
+    if seen is None:
+        return f"{stuck} below the proven optimum."
+    away = apart(answers.answers[0].T_ref_mov, proven.peak.T_ref_mov, seen)
+    return f"{stuck}: the proven optimum lies {away} from its best."
+
+
+def apart(a: Pose2, b: Pose2, seen: ObservationDetail | MergeResult) -> str:
+    """How far two transforms lie apart, at the seen robot."""
+    return apart_by(*pose_error(a, b, seen.encounter.x_mov))
+
+
+def apart_by(distance: float, turn: float) -> str:
+    """A distance in metres and a turn in radians, as words."""
+    return f"{distance:.1f} m and {degrees(turn):.0f}°"
+
+
+def rival(result: MergeResult) -> str:
+    """How the rival in doubt differs, and how likely it is: "180° turned, 48%"; empty without one, and where
+    nobody would believe in either.
+    """
+    other = result.verdict.rival
+    if other is None or likelihood_of_rival(result) < LEAST_LIKELY:
+        return ""
+    distance, turn = pose_error(result.T_ref_mov, other, result.encounter.x_mov)
+    shifted = distance > SAME_PLACE and degrees(turn) < 1
+    how = f"{distance:.1f} m shifted" if shifted else f"{degrees(turn):.0f}° turned"
+    return f"{how}, {likelihood_of_rival(result):.0%}"
+
+
+def odds_of_rival(verdict: Verdict) -> str:
+    """How likely the next best place is beside the named one."""
+    odds = verdict.ambiguity or 0.0
+    if odds > 1:  # of what no search has named
+        return "likelier than this"
+    return f"{odds:.0%} as likely" if odds > 0 else "none"
+
+
+def likelihood_of_rival(result: MergeResult) -> float:
+    """That the rival in doubt is right instead."""
+    verdict = result.verdict
+    return min(1.0 - verdict.probability, verdict.probability * (verdict.ambiguity or 0.0))
+
+
+def progress(story: Story) -> float:
+    """Share of the run that is done, 0 … 1."""
+    detail = story.last.detail if story.last else None
+    share = _SHARE.get(type(detail), 0.0)
+    if isinstance(detail, ShiftDetail):
+        share += 0.2 * (detail.index + 1) / max(1, detail.total)
+    if isinstance(detail, RefineDetail):
+        share += 0.4 * detail.index / max(1, detail.total)
+    if isinstance(detail, TurnsDetail):
+        share += 0.7 * float(np.isfinite(detail.scores).mean())
+    if isinstance(detail, ProofDetail):
+        share += 0.15 * detail.state.nodes / (detail.state.nodes + _MANY_BLOCKS)
+    return share
+
+
+def of_hand(result: MergeResult, taken: bool = False) -> str:
+    """What the verdict says of a transform made by hand.
+
+    taken : whether it is the answer now
+    """
+    reason = result.verdict.reason
+    if taken:
+        return f"By hand. {reason}"
+    clause = reason.split(": ", 1)[-1]
+    return f"By hand, would be {result.verdict.outcome.value}: {clause}"
+
+
+def optimum(proof: ProofState) -> str:
+    """How the proof ended: "proven", or that it is not, and why."""
+    if proof.empty:
+        return "none: the sightings exclude each other"
+    if fits_nowhere(proof):
+        return "nothing fits"
+    return "proven" if proof.proven else f"not proven: {proof.stopped or 'not finished'}"
+
+
+def mood(verdict: Verdict) -> str:
+    """The colour that a verdict is shown in."""
+    return MOODS[verdict.outcome]
+
+
+def likelihood(probability: float) -> str:
+    """A probability as a number in a table."""
+    if probability > 0.9995:
+        return "> 99.9%"
+    return "< 0.1%" if probability < 0.0005 else f"{probability:.1%}"
+
+
+def remedy(result: MergeResult) -> str:
+    """What would help after a refusal, or what to mind of a bent merge; empty where nothing is to be said."""
+    verdict, proof = result.verdict, result.proof
+    if verdict.outcome is Outcome.BENT:
+        return (
+            "Where walls are double a robot may find a passage too narrow, or lose its way. Map again with "
+            "loops closed or better odometry."
+        )
+    if verdict.accepted:
+        return ""
+    if verdict.only_bent:
+        return "Map again with loops closed or better odometry; or take bent merges, too (without --strict)."
+    if verdict.hint:
+        return verdict.hint
+    if result.method in METHODS and not METHODS[result.method].uses_observation:
+        return "This method does not look at the observation: take one that does."
+    if proof is not None and proof.empty:
+        return "Check the numbers of the sightings, leave the odd one out, or widen the window's margin."
+    if proof is not None and fits_nowhere(proof):
+        return "Are these maps of one building? Check the observation's numbers, or widen the window."
+    if proof is not None and not proof.proven:
+        return "Give the proof more patience, or narrow the window, and merge again."
+    if verdict.rival is not None and (verdict.ambiguity or 0.0) > 1:
+        if result.method == BY_HAND:
+            return "Made by hand: refine from there, or snap to the proven optimum."
+        return "This method has missed a better place: take the default one, which proves that it finds it."
+    first = next(iter(verdict.against), "")
+    told = result.weighed[0].evidence
+    if first in ("contradiction", "unbent") and told.rigid_contradicting < NEXT_TO_NO_WALL:
+        first = "across"  # hardly anything contradicts: too little is shared
+    return REMEDIES.get(first, REMEDIES[""])
+
+
+REMEDIES = {
+    OTHERS: "A second observation would tell the two places apart; so would maps that share more.",
+    "contradiction": "Are these maps of one building? Check the observation's numbers; a second observation "
+    "may find a better place.",
+    "unbent": "Are these maps of one building? Check the observation's numbers; a second observation "
+    "may find a better place.",
+    "across": "Let one of the robots drive on, so that the maps share more, and merge again; or give a "
+    "second observation.",
+    "misfit": "Check the observation's numbers, or widen the window.",
+    "": "Let one of the robots drive on, so that the maps share more, or give a second observation.",
+}
+"""What would help, by what speaks most against a merge."""

@@ -1,0 +1,131 @@
+"""The web server: one page per tab, nothing shared between them."""
+
+from __future__ import annotations
+
+import errno
+import logging
+import socket
+import threading
+from math import radians
+from pathlib import Path
+
+import viser
+
+from algorithms.common.errors import MapMergeError
+from algorithms.files.case_folder import Case
+from app.jobs import worker_pool as workers
+from app.jobs.runner import Asker
+from app.model.merge_job import Job
+from app.page.page import Page
+from app.system.logging_setup import facts
+from app.system.memory import Housekeeping
+from app.web.cell_quota import Budget
+from app.web.security.access_control import Access
+from app.web.session_store import Keep
+from app.web.viser_server import guarded_server
+
+log = logging.getLogger(__name__)
+
+
+MOST_TABS = 64  # about 8 MB each, and what its maps and results take
+WARM = 2  # processes for merges that are there from the start: a second tab need not wait for its own
+SPARE = 8  # connections more, so that a tab too many is told so
+
+
+class PortError(MapMergeError):
+    """The address cannot be listened at."""
+
+
+def make_server(
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    initial: Case | None = None,
+    lesson: Path | None = None,
+    access: Access | None = None,
+) -> viser.ViserServer:
+    """Start to serve; every tab opens with ``initial``.
+
+    port   : 0 for any free one (``server.get_port()`` tells which)
+    lesson : folder of the lesson's texts; None for those that come along
+    access : who may talk to it; None: this machine alone
+    raises : PortError where the port is taken or the address is not this machine's
+    """
+    _probe(host, port)
+    server = guarded_server(host, port, access or Access(), MOST_TABS + SPARE)
+    if port and server.get_port() != port:  # taken between the probe and now: viser went one further
+        server.stop()
+        raise PortError(_taken(port))
+    server.scene.set_up_direction("+y")
+    server.scene.configure_environment_map(hdri=None)  # nothing shiny here, and no second of fading in
+    camera = server.initial_camera
+    camera.position, camera.look_at, camera.up = (0.0, 0.0, 600.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+    camera.fov, camera.near, camera.far = radians(4), 10.0, 5000.0
+    pages: dict[int, Page] = {}
+    keep = Keep()
+    budget = Budget(make_room=keep.forget_all)
+    housekeeping = Housekeeping()
+
+    @server.on_client_connect
+    def _(client: viser.ClientHandle) -> None:
+        if len(pages) >= MOST_TABS:
+            client.gui.add_markdown(f"{MOST_TABS} tabs are open already. Close one, then reload this page.")
+            return
+        log.info("a tab came", extra=facts(tab=client.client_id, tabs=len(pages) + 1))
+        pages[client.client_id] = Page(client, initial, keep, server.arrivals, lesson, budget)
+
+    @server.on_client_disconnect
+    def _(client: viser.ClientHandle) -> None:
+        page = pages.pop(client.client_id, None)
+        if page is not None:
+            dropped = dict(server.gate.dropped)
+            log.info("a tab went", extra=facts(tab=client.client_id, tabs=len(pages), dropped=dropped))
+            page.close()
+            housekeeping.soon()
+
+    threading.Thread(target=warm_up, name="mapmeld-warm-up", daemon=True).start()
+    return server
+
+
+def warm_up() -> None:
+    """Merge a room of some cells: the kernels are compiled then, and the first Merge need not wait for it."""
+    import numpy as np
+
+    from algorithms.common.pose import Pose2
+    from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
+    from algorithms.observations.observation import Observation
+
+    cells = np.full((40, 60), FREE, dtype=np.int8)
+    cells[[0, -1], :], cells[:, [0, -1]] = OCCUPIED, OCCUPIED
+    room = GridMap(cells, 0.1)
+    seen = Observation(Pose2(2.0, 2.0), 3.0, 2.0, 1.0, 0.0)
+    benches = [workers.COMMON.bench() for _ in range(WARM)]
+    try:
+        for bench in benches:  # each has a process of its own, as long as the others are there
+            for _ in bench.steps(Job(room, room, (seen,), None), Asker()):
+                pass
+        for _ in Job(room, room, (seen,), None).run({}):  # here, too: for what a hand moves, and the lesson
+            pass
+    except MapMergeError:
+        log.debug("warming up ended early", exc_info=True)
+    except Exception:  # nobody asked for it: who merges is told then
+        log.warning("warming up failed", exc_info=True)
+    finally:
+        for bench in benches:
+            bench.close()
+
+
+def _taken(port: int) -> str:
+    return f"port {port} is taken by another program; give another one with --port, or 0 for any"
+
+
+def _probe(host: str, port: int) -> None:
+    """Raise PortError where the port cannot be had: viser would silently take the next one."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except OSError as error:
+            if error.errno == errno.EADDRINUSE:
+                raise PortError(_taken(port)) from error
+            raise PortError(f"cannot listen at {host}, port {port}: {error.strerror or error}") from error

@@ -1,0 +1,1 @@
+"""Observations and transforms that a person sets by hand."""

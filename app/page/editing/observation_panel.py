@@ -1,0 +1,194 @@
+"""Folder "Observation": its numbers, and the tools to place the robots by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import degrees, radians
+from typing import Any
+
+import viser
+
+from algorithms.maps.grid_map import FARTHEST
+from algorithms.observations.observation import (
+    MOST_RANGE,
+    SIGMA_BEARINGS,
+    SIGMA_RANGES,
+    Encounter,
+    Observation,
+)
+from app.drawing.palette import LIGHT, QUIET
+from app.model import status_text as words
+from app.model.merge_inputs import Inputs
+from app.model.observation_draft import Draft
+from app.page.panels.html_widgets import box, table
+
+# field -> label, hint, least, most, step; angles in degrees
+FIELDS: dict[str, tuple[str, str, float, float, float]] = {
+    "x1": ("robot 1: x (m)", "In map 1.", -FARTHEST, FARTHEST, 0.01),
+    "y1": ("robot 1: y (m)", "In map 1.", -FARTHEST, FARTHEST, 0.01),
+    "turn1": ("robot 1: heading (°)", "Counter-clockwise from map 1's x axis.", -360, 360, 0.1),
+    "range": ("range r (m)", "Of robot 2 from robot 1.", 0, MOST_RANGE, 0.01),
+    "bearing": ("bearing β (°)", "Counter-clockwise from robot 1's heading.", -360, 360, 0.1),
+    "sigma_range": ("σ_r of the range (m)", "One standard deviation.", *SIGMA_RANGES, 0.005),
+    "sigma_bearing": (
+        "σ_β of the bearing (°)",
+        "One standard deviation.",
+        *map(degrees, SIGMA_BEARINGS),
+        0.1,
+    ),
+    "x2": ("robot 2: x (m)", "In map 2.", -FARTHEST, FARTHEST, 0.01),
+    "y2": ("robot 2: y (m)", "In map 2.", -FARTHEST, FARTHEST, 0.01),
+    "turn2": ("robot 2: heading (°)", "From map 2's x axis; the method does not need it.", -360, 360, 0.1),
+}
+ANGLES = {"turn1", "bearing", "sigma_bearing", "turn2"}
+
+
+@dataclass(frozen=True)
+class PlacingWishes:
+    """What a person can ask for here."""
+
+    toggle: Callable[[], None]
+    typed: Callable[[str, float], None]  # a field and its new value; metres, radians; in viser's loop
+    choose: Callable[[int], None]
+    add: Callable[[], None]
+    remove: Callable[[], None]
+    save: Callable[[], None]
+
+
+class ObservationPanel:
+    """Shows where the robots were and what one saw of the other; its widgets only ask."""
+
+    def __init__(self, gui: viser.GuiApi) -> None:
+        with gui.add_folder("Observation", order=20.0, expand_by_default=False):
+            self._html = gui.add_html("")
+            self._toggle = gui.add_button(
+                "Place robots on the maps",
+                icon=viser.Icon.MAP_PIN,
+                color=QUIET,
+                visible=False,
+                hint="With the mouse, in place of an observation file; or mend the one there is.",
+            )
+            self._step = gui.add_html("", visible=False)
+            self._which = gui.add_dropdown("Observation", ("1",), visible=False, hint="Which one is moved.")
+            self._fields: dict[str, Any] = {}
+            for name, (label, hint, least, most, step) in FIELDS.items():
+                start = max(0.0, least)
+                self._fields[name] = gui.add_number(
+                    label, start, min=least, max=most, step=step, hint=hint, visible=False
+                )
+            self._add = gui.add_button("Add another observation", color=QUIET, visible=False)
+            self._remove = gui.add_button("Remove this observation", color=QUIET, visible=False)
+            self._save = gui.add_button(
+                "Save observation",
+                icon=viser.Icon.DOWNLOAD,
+                color=QUIET,
+                visible=False,
+                hint="observation.yaml, to be loaded again.",
+            )
+
+    def listen(self, wishes: PlacingWishes) -> None:
+        """Ask here for what a person wants."""
+        self._toggle.on_click(lambda _: wishes.toggle())
+        self._add.on_click(lambda _: wishes.add())
+        self._remove.on_click(lambda _: wishes.remove())
+        self._save.on_click(lambda _: wishes.save())
+
+        @self._which.on_update
+        def _(event: viser.GuiEvent[Any]) -> None:
+            if event.client_id is not None:
+                wishes.choose(int(self._which.value) - 1)
+
+        for name, handle in self._fields.items():
+
+            async def typed(event: viser.GuiEvent[Any], name: str = name) -> None:  # before it is overwritten
+                if event.client_id is not None:  # not set from here
+                    value = float(event.target.value)
+                    wishes.typed(name, radians(value) if name in ANGLES else value)
+
+            handle.on_update(typed)
+
+    def show(self, inputs: Inputs) -> None:
+        """Show the numbers of these inputs; nothing is being placed."""
+        self._html.content = observations_html(inputs)
+        self._html.visible = True
+        self._toggle.visible = inputs.ref is not None and inputs.mov is not None
+        self._toggle.label = "Move the robots by hand" if inputs.observations else "Place robots on the maps"
+        self._toggle.color = QUIET if inputs.observations else LIGHT.ref
+        for handle in (self._step, self._which, self._add, self._remove, *self._fields.values()):
+            handle.visible = False
+        self._save.visible = bool(inputs.observations)
+
+    def edit(self, drafts: list[Draft], chosen: int, trouble: str = "") -> None:
+        """Show one of the drafts in fields, and what is to be done next.
+
+        trouble : what is wrong with what was just done
+        """
+        draft, several = drafts[chosen], len(drafts) > 1
+        self._html.visible = False
+        self._toggle.label, self._toggle.color = "Done", LIGHT.ref
+        step = box(words.PLACING[draft.missing], "plain")
+        self._step.content = (box(trouble, "refused") if trouble else "") + step
+        self._step.visible = True
+        options = tuple(str(number) for number in range(1, len(drafts) + 1))
+        if self._which.options != options:
+            self._which.options = options
+        if self._which.value != str(chosen + 1):
+            self._which.value = str(chosen + 1)
+        self._which.visible = several
+        for name, value in fields_of(draft).items():
+            handle = self._fields[name]
+            if value is not None:
+                shown = degrees(value) if name in ANGLES else value
+                handle.value = round(shown, 3)
+            if handle.visible != (value is not None):
+                handle.visible = value is not None
+        whole = draft.missing is None
+        self._add.visible, self._remove.visible = whole, several or draft.observer is not None
+        self._save.visible = all(one.missing is None for one in drafts)
+
+
+def fields_of(draft: Draft) -> dict[str, float | None]:
+    """The number of every field; metres, radians; None where it is not known yet."""
+    observer, observed = draft.observer, draft.observed
+    placed = draft.seen is not None
+    return {
+        "x1": observer.x if observer else None,
+        "y1": observer.y if observer else None,
+        "turn1": observer.theta if observer else None,
+        "range": draft.range,
+        "bearing": draft.bearing,
+        "sigma_range": draft.sigma_range if placed else None,
+        "sigma_bearing": draft.sigma_bearing if placed else None,
+        "x2": observed[0] if observed else None,
+        "y2": observed[1] if observed else None,
+        "turn2": draft.heading if observed else None,
+    }
+
+
+def observations_html(inputs: Inputs) -> str:
+    """HTML of a table per sighting, each under what is odd about it."""
+    parts = []
+    total = len(inputs.observations)
+    told = zip(inputs.observations, inputs.encounters, inputs.doubts(), strict=True)
+    for number, (o, at, doubt) in enumerate(told, 1):
+        head = (f"Observation {number} of {total}", "") if total > 1 else ()
+        parts.append((box(doubt, "refused") if doubt else "") + table(numbers(o, at), head))
+    return "".join(parts) or box("No observation yet.", "plain")
+
+
+def numbers(o: Observation, at: Encounter) -> list[tuple[str, ...]]:
+    """Where the robots were, and what the one measured of the other."""
+    rows = [
+        (
+            "robot 1 in map 1",
+            f"{o.observer.x:.2f}, {o.observer.y:.2f} m, {degrees(o.observer.theta):.1f}°",
+        ),
+        ("robot 2 in map 2", f"{o.observed_x:.2f}, {o.observed_y:.2f} m"),
+        ("range r", f"{o.range:.3f} ± {o.sigma_range:.3f} m"),
+        ("bearing β", f"{degrees(o.bearing):.1f} ± {degrees(o.sigma_bearing):.1f}°"),
+        ("x̂₁, seen here", f"{at.x_ref[0]:.2f}, {at.x_ref[1]:.2f} m"),
+    ]
+    if o.bearing_back is not None:
+        rows.append(("bearing back", f"{degrees(o.bearing_back):.1f}°"))
+    return rows

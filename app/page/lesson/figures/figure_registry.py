@@ -1,0 +1,221 @@
+"""Every picture by its name: what it needs, what can be moved in it, and what the map shows beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import radians
+
+import numpy as np
+
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import (
+    AugmentDetail,
+    CandidatesDetail,
+    HoughDetail,
+    MergeResult,
+    ObservationDetail,
+    ProofDetail,
+    ProvenDetail,
+    RefineDetail,
+    ShiftDetail,
+    Step,
+    WeighedDetail,
+)
+from algorithms.optimisation.optimiser import SearchState
+from app.drawing.browser_messages import Item, path
+from app.drawing.palette import Palette
+from app.drawing.scene_layout import Layout
+from app.model.run_state import Story
+from app.page.lesson.figures import map_figures as maps
+from app.page.lesson.figures import search_figures as search
+from app.page.lesson.figures import spectra_figures as spectra
+from app.page.lesson.figures import verdict_figure as judgement
+from app.page.lesson.lesson_run import FEW, Study
+
+At = Sequence[int]
+
+
+@dataclass(frozen=True)
+class Dial:
+    """One thing that can be moved in a picture.
+
+    label       : what it is
+    count       : how many places it has
+    start       : where it stands at first
+    first, step : the number that is shown for the first place, and between two
+    """
+
+    label: str
+    count: int
+    start: int = 0
+    first: float = 1
+    step: float = 1
+
+
+def _no_dials(study: Study) -> tuple[Dial, ...]:
+    return ()
+
+
+def _no_ink(study: Study, at: At, layout: Layout, palette: Palette) -> list[Item]:
+    return []
+
+
+@dataclass(frozen=True)
+class Picture:
+    """How one step is drawn.
+
+    needs : what the run must have come to
+    draw  : makes the SVG, given where the dials stand
+    story : the run as far as the map shows it
+    dials : what can be moved; asked once ``needs`` is there
+    ink   : what is drawn over the map besides
+    turn  : how far map 2 is turned where it lies beside map 1; None: as the story has it
+    """
+
+    needs: tuple[type, ...]
+    draw: Callable[[Study, At, Palette], str]
+    story: Callable[[Study, At], Story]
+    dials: Callable[[Study], tuple[Dial, ...]] = _no_dials
+    ink: Callable[[Study, At, Layout, Palette], list[Item]] = _no_ink
+    turn: Callable[[Study, At], float] | None = None
+
+
+def _up_to(kind: type) -> Callable[[Study, At], Story]:
+    return lambda study, at: study.story(kind)
+
+
+def _nth(kind: type) -> Callable[[Study, At], Story]:
+    return lambda study, at: study.story(kind, min(at[0], len(study.all(kind)) - 1))
+
+
+def _searching(states: Callable[[Study], list[SearchState]], ahead: int) -> Callable[[Study, At], Story]:
+    """The run up to the candidates, and then this search in the best one's box."""
+
+    def story(study: Study, at: At) -> Story:
+        told = states(study)
+        out = study.story(CandidatesDetail)
+        state = told[min(at[0] + ahead, len(told) - 1)]
+        out.tell(Step("refine", RefineDetail(0, 1, study.box, state), 0.0))
+        return out
+
+    return story
+
+
+def _looking(study: Study, at: At) -> Story:
+    """The run up to a look at the proof."""
+    told = search.looks(study)
+    wanted = told[min(at[0], len(told) - 1)]
+    return study.story(ProofDetail, [detail is wanted for detail in study.all(ProofDetail)].index(True))
+
+
+def _lines(study: Study, at: At, layout: Layout, palette: Palette) -> list[Item]:
+    """The strongest lines of both maps, the chosen one of each with its number."""
+    detail, items = study.get(AugmentDetail), []
+    reach = 2.0 * study.config.augment.spread
+    first, second, step = study.votes
+    for votes, lifted, anchor, frame in (
+        (first, detail.ref, layout.anchor_ref, "scene"),
+        (second, detail.mov, layout.anchor_mov, "mov"),
+    ):
+        for k, (theta, rho) in enumerate(spectra.strongest(votes, step)):
+            ends = spectra.line_through(theta, rho, lifted.x_hat, reach) - anchor
+            chosen = k == at[0]
+            name = {"t": str(k + 1), "tp": ends[1], "size": 13} if chosen else {}
+            colour, width = (palette.conflict, 3.0) if chosen else (palette.particle, 1.5)
+            items.append(path(ends, colour, frame, w=width, halo=True, **name))
+    return items
+
+
+def _moves(study: Study, at: At, layout: Layout, palette: Palette) -> list[Item]:
+    """Every particle's last step, and the three pulls on the chosen one, end to end."""
+    told, j = study.few, min(at[1], FEW - 1)
+    k = min(at[0] + 1, len(told) - 1)
+    before, after = told[max(0, k - 1)], told[k]
+    items = [
+        path(np.array([start, end]) - layout.anchor_ref, palette.particle, alpha=0.7, w=1)
+        for start, end in zip(before.poses[:, :2], after.poses[:, :2], strict=True)
+    ]
+    if after.pulls is not None:
+        ends = before.poses[j] + np.concatenate([np.zeros((1, 3)), np.cumsum(after.pulls[:, j], axis=0)])
+        ends = ends[:, :2] - layout.anchor_ref
+        for n, colour in enumerate((palette.ref, palette.best, palette.particle)):
+            items.append(path(ends[n : n + 2], colour, w=3.5, halo=True))
+    return items
+
+
+def _line_dial(study: Study) -> tuple[Dial, ...]:
+    return (Dial("line", spectra.LINES),)
+
+
+def _slide_dial(study: Study) -> tuple[Dial, ...]:
+    return (Dial("slid by (°)", 180, spectra.first_turn(study), first=0),)
+
+
+def _turn_dial(study: Study) -> tuple[Dial, ...]:
+    return (Dial("candidate", len(study.get(HoughDetail).match.turns)),)
+
+
+def _shift_dial(study: Study) -> tuple[Dial, ...]:
+    return (Dial("candidate", len(study.all(ShiftDetail))),)
+
+
+def _off_dial(study: Study) -> tuple[Dial, ...]:
+    half = search.TURN_STEPS // 2
+    return (Dial("off the best (°)", search.TURN_STEPS, half, -half * search.TURN_STEP, search.TURN_STEP),)
+
+
+def _sample_dial(study: Study) -> tuple[Dial, ...]:
+    return (Dial("throws", len(study.samples), 1),)
+
+
+def _swarm_dials(study: Study) -> tuple[Dial, ...]:
+    few = study.few
+    # at first the particle with the longest way to go
+    far = int(np.hypot(*(few[0].poses - few[0].best)[:, :2].T).argmax())
+    return (Dial("move", max(1, len(few) - 1), 1), Dial("particle", FEW, far))
+
+
+def _look_dial(study: Study) -> tuple[Dial, ...]:
+    count = len(search.looks(study))
+    return (Dial("look", count, count - 1),)
+
+
+PICTURES: dict[str, Picture] = {
+    "observation": Picture((ObservationDetail,), maps.observation, _up_to(ObservationDetail)),
+    "augmentation": Picture((AugmentDetail,), maps.augmentation, _up_to(AugmentDetail)),
+    "dual": Picture((ObservationDetail,), maps.dual, _up_to(ObservationDetail)),
+    "hough": Picture((AugmentDetail,), spectra.hough, _up_to(AugmentDetail), _line_dial, _lines),
+    "spectrum": Picture((HoughDetail,), spectra.spectrum, _up_to(AugmentDetail)),
+    "correlation": Picture(
+        (HoughDetail,), spectra.correlation, _up_to(HoughDetail), _slide_dial,
+        turn=lambda study, at: radians(at[0]),
+    ),
+    "turned": Picture(
+        (HoughDetail,), maps.turned, _up_to(HoughDetail), _turn_dial,
+        turn=lambda study, at: study.get(HoughDetail).match.turns[at[0]],
+    ),
+    "shift": Picture((CandidatesDetail,), spectra.shift, _nth(ShiftDetail), _shift_dial),
+    "window": Picture((CandidatesDetail,), spectra.window, _up_to(CandidatesDetail)),
+    "objective": Picture((CandidatesDetail,), search.objective, _up_to(CandidatesDetail), _off_dial),
+    "samples": Picture(
+        (CandidatesDetail,), search.samples, _searching(lambda study: study.samples, 0), _sample_dial
+    ),
+    "swarm": Picture(
+        (CandidatesDetail,), search.swarm, _searching(lambda study: study.few, 1), _swarm_dials, _moves
+    ),
+    "proof": Picture((ProvenDetail,), search.proof, _looking, _look_dial),
+    "answers": Picture((MergeResult,), judgement.answers, _up_to(WeighedDetail)),
+    "merged": Picture((MergeResult,), maps.merged, _up_to(Fusion)),
+    "verdict": Picture((MergeResult,), judgement.verdict, _up_to(MergeResult)),
+}  # fmt: skip
+
+
+def shown(dial: Dial, place: int) -> float:
+    """The number beside a dial that stands at a place."""
+    return dial.first + dial.step * place
+
+
+def place_of(dial: Dial, number: float) -> int:
+    """The place of the number beside a dial."""
+    return min(dial.count - 1, max(0, round((number - dial.first) / dial.step)))

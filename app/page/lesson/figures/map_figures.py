@@ -1,0 +1,242 @@
+"""Pictures of the maps themselves: the sighting, the levels, the list of walls, a turn, the merge."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos, degrees, pi, sin
+
+import numpy as np
+
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, CellArray
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import AugmentDetail, HoughDetail, MergeResult
+from algorithms.observations.observation import Encounter
+from app.drawing.browser_messages import ellipse
+from app.drawing.palette import VIRIDIS, Palette
+from app.drawing.svg.map_plot import robot, scale_bar, scene, view_of
+from app.drawing.svg.map_raster import draw_levels, draw_map, under
+from app.drawing.svg.svg_canvas import INK, Plot, Sheet, number, turn_label, worded
+from app.page.lesson.lesson_run import Study
+
+HALF = 184.0  # width of one of two pictures side by side
+
+
+def observation(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """The sighting in map 1, and the same place in map 2."""
+    i, o = study.inputs, study.inputs.observations[0]
+    met: Encounter = i.encounters[0]
+    assert i.ref is not None
+    assert i.mov is not None
+    sheet, side = Sheet(226), HALF
+    half = max(3.0, 0.75 * o.range + 1.5)
+    middle = (o.observer.xy + met.x_ref) / 2
+    rows = (
+        (0.0, i.ref, middle, palette.ref, "map 1, as robot 1 drew it"),
+        (196.0, i.mov, met.x_mov, palette.mov, "map 2, as robot 2 drew it"),
+    )
+    for x, grid, centre, colour, title in rows:
+        view = view_of(centre, half, side, side)
+        plot = scene(sheet, x, 18, side, side, view)
+        sheet.text(x, 11, title, 11, bold=True)
+        plot.image(draw_map(view, palette, grid, colour))
+        sheet.rect(x, 18, side, side, None, INK, 0.35)
+        scale_bar(plot)
+        if x == 0:
+            seen, here = plot.one(*met.x_ref.tolist()), plot.one(*o.observer.xy.tolist())
+            heading, reach = o.observer.theta, 0.55 * o.range
+            nose = o.observer.xy + reach * 1.25 * np.array([cos(heading), sin(heading)])
+            sheet.path([here, plot.one(*nose.tolist())], palette.margin, 1, dash="3 3")
+            turns = np.linspace(heading, heading + o.bearing, 24)
+            arc = o.observer.xy + reach * np.column_stack([np.cos(turns), np.sin(turns)])
+            sheet.path(plot.at(arc), palette.conflict, 1.8)
+            dark = palette.text
+            rim = palette.free
+            bow = o.observer.xy + 1.25 * reach * np.array(
+                [cos(heading + o.bearing / 2), sin(heading + o.bearing / 2)]
+            )
+            sheet.text(*plot.one(*bow.tolist()), "β", 13, "middle", palette.conflict, True, halo=rim)
+            sheet.path([here, seen], palette.text, 1.8, dash="5 4")
+            away = heading + o.bearing - (0.5 if o.bearing < 0 else -0.5) * pi  # the arc's other side
+            beside = (o.observer.xy + met.x_ref) / 2 + 0.1 * half * np.array([cos(away), sin(away)])
+            px, py = plot.one(*beside.tolist())
+            side_ = "start" if cos(away) > 0 else "end"
+            sheet.text(px, py + 4, f"r = {o.range:.2f} m", 11, side_, dark, halo=rim)
+            robot(plot, o.observer.xy, heading, palette.ref)
+            sheet.dot(*seen, 6, None, palette.conflict, width=2)
+            sheet.text(seen[0] + 9, seen[1] + 4, "x̂₁", 12, colour=palette.conflict, bold=True, halo=rim)
+        else:
+            seen = plot.one(*met.x_mov.tolist())
+            robot(plot, met.x_mov, o.observed_heading, palette.mov)
+            sheet.dot(*seen, 12, None, palette.conflict, width=2)
+            sheet.text(
+                seen[0] + 15, seen[1] + 4, "x̂₂", 12, colour=palette.conflict, bold=True, halo=palette.free
+            )
+    for x, name, place in ((0.0, "x̂₁", met.x_ref), (196.0, "x̂₂", met.x_mov)):
+        words = f"{name} = ({place[0]:.2f}, {place[1]:.2f}) m".replace("-", "−")
+        sheet.text(x, 218, words, 11)
+    return sheet.svg("Robot 1 and what it saw in map 1; the same place in map 2")
+
+
+def level_scale(sheet: Sheet, x: float, y: float, wide: float, peak: float, words: str) -> None:
+    """The colour scale of the levels, from nothing to the peak."""
+    sheet.image(np.ascontiguousarray(VIRIDIS[None]), x, y, wide, 9, smooth=True)
+    sheet.rect(x, y, wide, 9, None, INK, 0.35)
+    for share in (0.0, 0.5, 1.0):
+        anchor = {0.0: "start", 1.0: "end"}.get(share, "middle")
+        sheet.text(x + share * wide, y + 20, number(float(f"{share * peak:.3g}")), 10, anchor)
+    sheet.text(x + wide + 8, y + 9, words, 10.5)
+
+
+def augmentation(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """Both maps with their levels, the rings of Σ_aug around x̂, and the scale."""
+    detail, config = study.get(AugmentDetail), study.config.augment
+    sheet = Sheet(240)
+    half = 2.35 * config.spread * max(config.aspect, 1 / config.aspect) ** 0.5
+    for x, lifted, title in ((0.0, detail.ref, "map 1"), (196.0, detail.mov, "map 2")):
+        view = view_of(lifted.x_hat, half, HALF, HALF)
+        plot = scene(sheet, x, 18, HALF, HALF, view)
+        sheet.text(x, 11, f"{title}, augmented", 11, bold=True)
+        plot.image(draw_levels(view, palette, lifted))
+        for k, name in ((1, "σ"), (2, "2 σ")):
+            ring = plot.at(ellipse(lifted.x_hat, config.covariance(), k))
+            sheet.path(ring, palette.text, 1.2, dash="4 3", close=True, alpha=0.75)
+            top = ring[int(ring[:, 1].argmin())]
+            sheet.text(
+                top[0], top[1] - 3, name, 10, "middle", palette.text, halo=palette.free if k == 1 else None
+            )
+        px, py = plot.one(*lifted.x_hat.tolist())
+        sheet.dot(px, py, 4, palette.conflict, "#fff")
+        sheet.rect(x, 18, HALF, HALF, None, INK, 0.35)
+        scale_bar(plot)
+    level_scale(sheet, 0, 212, 250, detail.ref.peak, "level (1/m²)")
+    return sheet.svg("Both maps, their walls coloured by level around the meeting place")
+
+
+def dual(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """Some cells of map 1 from near by, their centres, and the first columns of the list."""
+    grid, met = study.inputs.ref, study.inputs.encounters[0]
+    assert grid is not None
+    sheet, side, across = Sheet(226), 200.0, 13
+    cell = grid.resolution
+    points = grid.points
+    if not len(points):
+        sheet.text(0, 20, "Map 1 has no wall at all.")
+        return sheet.svg("No walls")
+    centre = points[int(np.hypot(*(points - met.x_ref).T).argmin())]
+    col, row = np.floor(grid.grid_coordinates(centre)).astype(int).tolist()
+    low = np.array([col - across // 2, row - across // 2])
+    plot = Plot(sheet, 0, 18, side, side, (low[0], low[0] + across), (low[1], low[1] + across))
+    sheet.text(0, 11, f"{across} × {across} cells of map 1", 11, bold=True)
+    patch = np.full((across, across), UNKNOWN, dtype=np.int8)
+    r0, c0 = max(0, low[1]), max(0, low[0])
+    r1, c1 = min(grid.height, low[1] + across), min(grid.width, low[0] + across)
+    patch[r0 - low[1] : r1 - low[1], c0 - low[0] : c1 - low[0]] = grid.cells[r0:r1, c0:c1]
+    pixels = np.full((across, across, 3), palette.unknown, dtype=np.uint8)
+    pixels[(patch >= 0) & (patch <= FREE_UP_TO)] = palette.free
+    pixels[patch >= OCCUPIED_FROM] = palette.ref
+    plot.image(np.ascontiguousarray(pixels[::-1]))
+    for k in range(across + 1):
+        at_ = k / across * side
+        sheet.path([(at_, 18), (at_, 18 + side)], palette.margin, 0.5, alpha=0.5)
+        sheet.path([(0, 18 + at_), (side, 18 + at_)], palette.margin, 0.5, alpha=0.5)
+    rows, cols = np.nonzero(patch >= OCCUPIED_FROM)
+    order = np.argsort(np.hypot(rows - across // 2, cols - across // 2), kind="stable")[:9]
+    order = order[np.lexsort((cols[order], -rows[order]))]
+    for r, c in zip(rows, cols, strict=True):
+        sheet.dot(*plot.one(low[0] + c + 0.5, low[1] + r + 0.5), 1.8, "#fff")
+    x = 216.0
+    sheet.text(x, 11, "the list, a column each", 11, bold=True)
+    for k, words in enumerate(("n", "x (m)", "y (m)", "1")):
+        sheet.text(x + (12, 66, 122, 150)[k], 32, words, 10.5, "end", alpha=0.7)
+    for line, n in enumerate(order.tolist()):
+        place = grid.centres(rows[n : n + 1] + low[1], cols[n : n + 1] + low[0])[0]
+        px, py = plot.one(low[0] + cols[n] + 0.5, low[1] + rows[n] + 0.5)
+        sheet.dot(px, py, 6, palette.conflict)
+        sheet.text(px, py + 3.5, str(line + 1), 9, "middle", "#fff", True)
+        y = 50 + 17 * line
+        cells = (str(line + 1), f"{place[0]:.3f}", f"{place[1]:.3f}", "1")
+        for k, words in enumerate(cells):
+            sheet.text(x + (12, 66, 122, 150)[k], y, words.replace("-", "−"), 11, "end")
+    sheet.text(x, 50 + 17 * len(order), f"… {len(points):,} in all", 11, alpha=0.8)
+    sheet.text(x + 164, 218, f"a cell: {cell:g} m", 10.5, "end", alpha=0.8)
+    return sheet.svg("Cells of map 1 and the list of their centres")
+
+
+def turned(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """Map 1 around x̂₁ beside map 2 around x̂₂, turned by the chosen candidate."""
+    match, detail = study.get(HoughDetail).match, study.get(AugmentDetail)
+    k = min(at[0], len(match.turns) - 1)
+    sheet = Sheet(232)
+    half = 2.0 * study.config.augment.spread
+    about = Pose2(0.0, 0.0, match.turns[k]) @ Pose2(*(-detail.mov.x_hat).tolist())
+    places = ((0.0, detail.ref, detail.ref.x_hat, None), (196.0, detail.mov, np.zeros(2), about))
+    for x, lifted, centre, T in places:
+        view = view_of(centre, half, HALF, HALF)
+        plot = scene(sheet, x, 18, HALF, HALF, view)
+        plot.image(draw_levels(view, palette, lifted, T))
+        sheet.dot(*plot.one(*centre.tolist()), 5, None, palette.conflict, width=2)
+        sheet.rect(x, 18, HALF, HALF, None, INK, 0.35)
+        scale_bar(plot)
+    sheet.text(0, 11, "map 1, as it is", 11, bold=True)
+    sheet.text(196, 11, f"map 2, turned by {turn_label(match.turns[k])}", 11, bold=True)
+    kind = "the twin of a peak" if match.twins[k] else "a peak"
+    words = (
+        f"Candidate {k + 1} of {len(match.turns)}: {kind}, correlation {match.strengths[k]:.0%} of the best."
+    )
+    sheet.text(0, 222, words, 11)
+    return sheet.svg("Map 1 beside map 2, turned")
+
+
+def _class(cells: CellArray) -> np.ndarray:
+    """0 wall, 1 free, 2 unknown, of every cell."""
+    return np.where(cells >= OCCUPIED_FROM, 0, np.where((cells >= 0) & (cells <= FREE_UP_TO), 1, 2))
+
+
+def merged(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """The merged map around the meeting, and what became of every cell."""
+    fusion, result = study.get(Fusion), study.get(MergeResult)
+    first, second = _class(fusion.ref_cells), _class(fusion.mov_cells)
+    counts = np.bincount((3 * first + second).ravel(), minlength=9).reshape(3, 3)
+    sheet = Sheet(218)
+    view = view_of(result.encounter.x_ref, 2.0 * study.config.augment.spread, HALF, HALF)
+    plot = scene(sheet, 0, 18, HALF, HALF, view)
+    sheet.text(0, 11, "around the meeting place", 11, bold=True)
+    pixels = view.blank(palette)
+    a, b = (under(part, fusion.merged, view, None, 2) for part in (first, second))
+    for mask, colour in (
+        ((a == 1) | (b == 1), palette.free),
+        (a == 0, palette.ref),
+        (b == 0, palette.mov),
+        ((a == 0) & (b == 0), palette.agreed),
+        ((a == 0) & (b == 1) | (a == 1) & (b == 0), palette.conflict),
+    ):
+        pixels[mask] = colour
+    plot.image(pixels)
+    sheet.rect(0, 18, HALF, HALF, None, INK, 0.35)
+    scale_bar(plot)
+    x, y, wide, high = 242.0, 62.0, 45.0, 38.0
+    sheet.text(x + 1.5 * wide, 30, "map 2 says", 11, "middle", worded(palette.mov, palette), True)
+    sheet.text(x - 44, 51, "map 1", 11, colour=worded(palette.ref, palette), bold=True)
+    names = ("wall", "free", "unknown")
+    colours = {(0, 0): palette.agreed, (0, 1): palette.conflict, (1, 0): palette.conflict}
+    colours |= {(0, 2): palette.ref, (2, 0): palette.mov}
+    for r, name in enumerate(names):
+        sheet.text(x + (r + 0.5) * wide, 51, name, 10, "middle")
+        sheet.text(x - 4, y + (r + 0.5) * high + 4, name, 10, "end")
+        for c in range(3):
+            colour = colours.get((r, c))
+            left, top = x + c * wide, y + r * high
+            sheet.rect(
+                left + 1, top + 1, wide - 2, high - 2, colour or palette.margin, None, 1 if colour else 0.15
+            )
+            light = palette.dark and (r, c) == (0, 0)
+            ink = "#111827" if light else "#fff" if colour else INK
+            share = "–" if (r, c) == (2, 2) else f"{counts[r, c]:,}"
+            sheet.text(left + wide / 2, top + high / 2 + 4, share, 10, "middle", ink)
+    sheet.text(
+        x - 44, y + 3 * high + 18, f"turned by {degrees(result.T_ref_mov.theta):.1f}°".replace("-", "−"), 11
+    )
+    T = result.T_ref_mov
+    sheet.text(x - 44, y + 3 * high + 33, f"shifted by ({T.x:.2f}, {T.y:.2f}) m".replace("-", "−"), 11)
+    return sheet.svg("The merged map, and the cells by what each map says of them")

@@ -1,0 +1,277 @@
+"""Pictures of the search: the landscape, darts, the swarm and its pulls, the proof."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import degrees, hypot
+
+import numpy as np
+from skimage.measure import block_reduce
+
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.methods.steps import AugmentDetail, ProofDetail, WindowDetail
+from algorithms.optimisation.objective import PAD, Objective
+from algorithms.optimisation.optimiser import SearchState
+from app.drawing.browser_messages import ellipse
+from app.drawing.palette import Palette, css, viridis
+from app.drawing.svg.svg_canvas import INK, Plot, Sheet, ticks
+from app.model import chart_data as charts
+from app.model.objective_label import AGREEMENT, GAMMA, Measure, measure_of
+from app.page.lesson.lesson_run import FEW, Study
+
+SIDE = 61  # samples of a landscape along each axis
+TURN_STEPS, TURN_STEP = 41, 0.5  # of the slider; degrees
+LOOKS = 40  # at a proof
+PALED = (17, 24, 39)  # a landscape is darkened with it, so that marks over it stand out
+PLACES = "where x̂₂ goes, x (m)"
+
+
+def transforms(x: FloatArray, y: FloatArray, turn: FloatArray | float, pivot: FloatArray) -> FloatArray:
+    """(P, 3) Δx, Δy, Δθ of the transforms that put a pivot at (x, y) and turn by ``turn``."""
+    turn = np.broadcast_to(turn, x.shape)
+    c, s = np.cos(turn), np.sin(turn)
+    px, py = pivot.tolist()
+    return np.column_stack([x - c * px + s * py, y - s * px - c * py, turn])
+
+
+def best_of(study: Study) -> Pose2:
+    """The best transform that the run has come to."""
+    answer = study.story(type(study.steps[-1].detail)).answer if study.steps else None
+    if answer is not None:
+        return answer
+    return study.box.transform(study.box.centre)
+
+
+def _landscape(objective: Objective, study: Study, turn: float, half: float) -> FloatArray:
+    """(SIDE, SIDE) values around x̂₁ at one turn, row 0 at the top."""
+    coupled = study.get(WindowDetail).coupled
+    x0, y0 = coupled.x_ref[0].tolist()
+    offset = (np.arange(SIDE) + 0.5) / SIDE * 2 * half - half
+    x, y = np.meshgrid(x0 + offset, y0 - offset)
+    return objective(transforms(x.ravel(), y.ravel(), turn, coupled.pivot)).reshape(SIDE, SIDE)
+
+
+def _half(study: Study) -> float:
+    coupled = study.get(WindowDetail).coupled
+    return max(1.0, 0.75 * float((coupled.high - coupled.low).max()))
+
+
+def objective(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """Γ and the agreement over the shift at a turn, and over the turn at the best shift."""
+    best, coupled, half = best_of(study), study.get(WindowDetail).coupled, _half(study)
+    off = np.radians(TURN_STEP) * (at[0] - TURN_STEPS // 2)
+    turn = best.theta + off
+    place = best.apply(coupled.pivot)
+    x0, y0 = coupled.x_ref[0].tolist()
+    sheet, side = Sheet(336), 124.0
+    turns = np.radians(np.arange(0.0, 360.0, 0.5))
+    round_ = transforms(np.full(720, place[0]), np.full(720, place[1]), turns, coupled.pivot)
+    order = np.argsort(np.mod(np.degrees(turns) + 180, 360))
+    below = Plot(sheet, 42, 226, 324, 68, (-180, 180), (-0.35, 1.1))
+    sheet.text(0, 219, "both over the turn (each of its highest)", 11, bold=True)
+    rows: tuple[tuple[float, Objective, Measure, str], ...] = (
+        (42.0, study.gamma, GAMMA, css(palette.best)),
+        (226.0, study.agreement, AGREEMENT, css(palette.particle)),
+    )
+    for x, value, measure, colour in rows:
+        grid = _landscape(value, study, turn, half)
+        plot = Plot(sheet, x, 18, side, side, (x0 - half, x0 + half), (y0 - half, y0 + half))
+        top = float(value(best.array()[None])[0])
+        highest = max(top, float(grid.max()), 1e-12)
+        name = "Γ, eq. (17)" if measure is GAMMA else "A"
+        sheet.text(x, 11, f"{name}: up to {measure.text(float(grid.max()))}", 11, bold=True)
+        plot.image(viridis(np.clip(grid / highest, 0, 1)))
+        ring = plot.at(ellipse(coupled.x_ref[0], coupled.covariances[0], coupled.k))
+        sheet.path(ring, "#fff", 1.4, dash="4 3", close=True)
+        sheet.star(*plot.one(*place.tolist()), 7, palette.answer, palette.rim)
+        marks = [round(x0 - half / 2, 1), round(x0 + half / 2, 1)]
+        plot.axes(PLACES, "y (m)" if x < 100 else "", marks, _few(y0, half))
+        curve = value(round_)
+        curve = curve / max(float(curve.max()), 1e-12)
+        below.curve(np.mod(np.degrees(turns) + 180, 360)[order] - 180, curve[order], colour, 1.5)
+    sheet.text(
+        0, 186, f"at Δθ = {_turn(turn)}, {_turn(off)} off the best. Dashed: the window. Star: the best.", 10
+    )
+    sheet.text(0, 200, "Dark: nothing fits, or more is denied than agrees.", 10, alpha=0.8)
+    here = (degrees(turn) + 180) % 360 - 180
+    below.upright(here, INK, 1, "3 3")
+    below.axes("turn Δθ (°)", "", (-180, -90, 0, 90, 180), (0, 0.5, 1), grid=True)
+    after = sheet.chip(250, 219, palette.best, "Γ", "line")
+    sheet.chip(after, 219, palette.particle, "agreement", "line")
+    return sheet.svg("Landscapes of both objectives")
+
+
+def _turn(turn: float) -> str:
+    value = (degrees(turn) + 180) % 360 - 180
+    return f"{value:.1f}°".replace("-", "−")
+
+
+def _few(middle: float, half: float) -> list[float]:
+    return [round(middle - half / 2, 1), round(middle + half / 2, 1)]
+
+
+def _box_plot(study: Study, sheet: Sheet, x: float, y: float, side: float) -> Plot:
+    """The box over x and y, a landscape of what is maximised behind it, its longer edge filling the plot."""
+    box = study.box
+    half = 0.5 * float((box.high - box.low)[:2].max()) * 1.02
+    cx, cy = box.centre[:2].tolist()
+    plot = Plot(sheet, x, y, side, side, (cx - half, cx + half), (cy - half, cy + half))
+    offset = (np.arange(SIDE) + 0.5) / SIDE * 2 * half - half
+    gx, gy = np.meshgrid(cx + offset, cy - offset)
+    value = study.agreement if study.config.refine.objective == "agreement" else study.gamma
+    best = best_of(study)
+    grid = value(transforms(gx.ravel(), gy.ravel(), best.theta, box.pivot)).reshape(SIDE, SIDE)
+    share = np.clip(grid / max(float(grid.max()), 1e-12), 0, 1)
+    plot.image(np.asarray(0.55 * viridis(share) + 0.45 * np.array(PALED), dtype=np.uint8))
+    low, high = box.low[:2], box.high[:2]
+    corners = np.array([low, [high[0], low[1]], high, [low[0], high[1]]])
+    sheet.path(plot.at(corners), "#fff", 1.5, dash="6 4", close=True)
+    coupled = study.get(WindowDetail).coupled
+    sheet.path(plot.at(ellipse(coupled.x_ref[0], coupled.covariances[0], coupled.k)), "#fff", 1.2, close=True)
+    return plot
+
+
+def samples(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """The darts so far in the box, the best of them, and how the best value climbed."""
+    told, sheet = study.samples, Sheet(232)
+    k = min(at[0], len(told) - 1)
+    plot = _box_plot(study, sheet, 42, 18, 160)
+    shown = told[max(0, k - 3) : k + 1]  # the newest ones; all of them would be a blot
+    count = (k + 1) * len(told[0].poses)
+    sheet.text(0, 11, f"{count:,} darts", 11, bold=True)
+    for age, state in enumerate(reversed(shown)):
+        for px, py in plot.at(state.poses[:120, :2]).tolist():
+            sheet.dot(px, py, 1.7, palette.particle, None, 0.9 - 0.22 * age)
+    sheet.star(*plot.one(*told[k].best[:2].tolist()), 7, palette.answer, palette.rim)
+    plot.axes(PLACES, "y (m)", _few(float(study.box.centre[0]), 0.5), _few(float(study.box.centre[1]), 0.5))
+    measure, best = measure_of(study.config), np.array([state.best_value for state in told])
+    known = np.where(np.isfinite(best), best, 0.0)
+    low, high = float(known.min()), max(float(known.max()), 1e-12)
+    low = min(low, 0.9 * high)
+    chart = Plot(sheet, 252, 18, 118, 160, (0, len(told)), (low, high + 0.08 * (high - low)))
+    sheet.text(376, 11, f"best so far: {measure.text(float(best[k]))}", 11, "end", bold=True)
+    chart.curve(np.arange(1.0, len(told) + 1), known, css(palette.margin), 1, alpha=0.6)
+    chart.curve(np.arange(1.0, k + 2), known[: k + 1], css(palette.particle), 2.2)
+    chart.axes(f"throws of {len(told[0].poses):,}", "", ticks(0, len(told), 3), ticks(low, high, 4))
+    return sheet.svg("Samples in the box and the best of them")
+
+
+def swarm(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """One move of the swarm: all particles in the box, and the pulls on the chosen one from near by."""
+    told = study.few
+    k, j = min(at[0] + 1, len(told) - 1), min(at[1], FEW - 1)
+    before, after = told[max(0, k - 1)], told[k]
+    sheet = Sheet(284)
+    plot = _box_plot(study, sheet, 42, 18, 160)
+    sheet.text(0, 11, f"move {k} of {len(told) - 1}: all {FEW} particles", 11, bold=True)
+    for n, (start, end) in enumerate(
+        zip(plot.at(before.poses[:, :2]).tolist(), plot.at(after.poses[:, :2]).tolist(), strict=True)
+    ):
+        sheet.path([start, end], palette.particle, 1, alpha=0.8)
+        sheet.dot(*end, 3, palette.particle)
+        if n == j:
+            sheet.dot(*end, 6, None, "#fff", width=2)
+    sheet.star(*plot.one(*before.best[:2].tolist()), 6, palette.best, "#fff")
+    plot.axes(PLACES, "y (m)", _few(float(study.box.centre[0]), 0.5), _few(float(study.box.centre[1]), 0.5))
+    if after.pulls is not None:
+        _pulls(sheet, before, after, j, palette)
+    return sheet.svg("A move of the swarm and what pulls at one particle")
+
+
+def _pulls(sheet: Sheet, before: SearchState, after: SearchState, j: int, palette: Palette) -> None:
+    """The three terms of eq. (21) on one particle, end to end, and the step they add up to."""
+    assert after.pulls is not None
+    here, there = before.poses[j], after.poses[j]
+    terms = after.pulls[:, j]
+    ends = here + np.concatenate([[np.zeros(3)], np.cumsum(terms, axis=0)])
+    places = np.array([*ends, there, before.best, before.own_poses[j]])[:, :2]
+    low, high = places.min(axis=0), places.max(axis=0)
+    half = max(0.004, 0.62 * float((high - low).max()))
+    cx, cy = ((low + high) / 2).tolist()
+    plot = Plot(sheet, 216, 18, 158, 158, (cx - half, cx + half), (cy - half, cy + half))
+    sheet.text(216, 11, f"particle {j + 1}, near by", 11, bold=True)
+    sheet.rect(plot.x, plot.y, plot.wide, plot.high, palette.free, INK, 0.35)
+    sheet.rect(plot.x, plot.y, plot.wide, plot.high, None, INK, 0.35)
+    sheet.star(*plot.one(*before.best[:2].tolist()), 7, palette.best, palette.rim)
+    sheet.star(*plot.one(*before.own_poses[j, :2].tolist()), 6, palette.particle, palette.rim)
+    names = ("ω · own motion", "ω κτ · to the swarm's best", "ω κτ · to its own best")
+    colours = (palette.ref, palette.best, palette.particle)
+    corners = plot.at(ends[:, :2])
+    for n, colour in enumerate(colours):
+        sheet.arrow(corners[n].tolist(), corners[n + 1].tolist(), colour, 2.4)
+    sheet.arrow(corners[0].tolist(), corners[3].tolist(), palette.text, 1.6, dash="4 3")
+    sheet.dot(*corners[0].tolist(), 4, palette.text, "#fff", width=1)
+    sheet.dot(*plot.one(*there[:2].tolist()), 5, None, palette.text, width=1.8)
+    length = 2 * half
+    sheet.text(374, 190, f"{_length(length)} across", 10, "end", alpha=0.8)
+    for n, (name, colour) in enumerate(zip(names, colours, strict=True)):
+        x, y, turn = terms[n].tolist()
+        sheet.path([(0, 222 + 16 * n), (16, 222 + 16 * n)], colour, 3)
+        words = f"{name}: {_length(hypot(x, y))}, {degrees(turn):.2f}°".replace("-", "−")
+        sheet.text(24, 226 + 16 * n, words, 11)
+    sheet.path([(0, 270), (16, 270)], palette.text, 1.6, dash="4 3")
+    step = terms.sum(axis=0)
+    bounded = not np.allclose(here + step, there, atol=1e-9)
+    words = f"the step: {_length(hypot(step[0], step[1]))}, {degrees(step[2]):.2f}°".replace("-", "−")
+    sheet.text(24, 274, words + ("; the box stops it" if bounded else ""), 11)
+
+
+def _length(metres: float) -> str:
+    if metres >= 0.1:
+        return f"{metres:.2f} m"
+    return f"{100 * metres:.1f} cm" if metres >= 0.01 else f"{1000 * metres:.1f} mm"
+
+
+def looks(study: Study) -> list[ProofDetail]:
+    """The proof from its beginning to its end, thinned."""
+    told = study.all(ProofDetail)
+    chosen = np.unique(np.linspace(0, len(told) - 1, LOOKS).round().astype(int)) if told else []
+    return [told[k] for k in chosen]
+
+
+def proof(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """Map 1 pooled coarser and coarser, and what is left of every turn."""
+    told, sheet = looks(study), Sheet(318)
+    detail = told[min(at[0], len(told) - 1)]
+    table = study.gamma.sides[0].table[PAD:-PAD, PAD:-PAD]
+    lifted = study.get(AugmentDetail).ref
+    rows, cols = np.array(table.shape)
+    centre = lifted.grid.grid_coordinates(lifted.x_hat) - study.gamma.sides[0].corner
+    reach = min(64, max(rows, cols) // 2)
+    col, row = centre.astype(int).tolist()
+    part = np.zeros((2 * reach, 2 * reach), dtype=np.float32)
+    r0, c0, r1, c1 = max(0, row - reach), max(0, col - reach), min(rows, row + reach), min(cols, col + reach)
+    if r1 > r0 and c1 > c0:
+        inside = table[r0:r1, c0:c1]
+        part[r0 - row + reach : r1 - row + reach, c0 - col + reach : c1 - col + reach] = inside
+    top = max(float(part.max()), 1e-12)
+    sheet.text(0, 11, "map 1's levels; the highest within 1, 4, 8, 16 cells", 11, bold=True)
+    for k, size in enumerate((1, 4, 8, 16)):
+        pooled = block_reduce(part, (size, size), np.max)
+        pixels = viridis(pooled / top)
+        sheet.image(np.ascontiguousarray(pixels[::-1]), 96.0 * k, 18, 90, 90)
+        sheet.text(96.0 * k + 45, 121, f"{size} cell{'s' if size > 1 else ''}", 10, "middle")
+    state = detail.state
+    low, high = charts.proof_range(state, study.story(ProofDetail).ceiling)
+    x, ceiling, met, floor, best, rivals = charts.proof(state, high)
+    plot = Plot(sheet, 42, 150, 324, 118, (-180, 180), (low, high))
+    measure = measure_of(study.config)
+    left = "proven" if state.proven else f"nothing above {measure.text(state.ceiling)} is left"
+    sheet.text(0, 143, f"{state.nodes:,} blocks looked at: {left}", 11, bold=True)
+    plot.curve(x, ceiling, css(palette.margin), 1.5, fill=True)
+    plot.curve(x, met, css(palette.particle), 1, fill=True)
+    plot.curve(x, floor, css(palette.rival), 1, dash="3 4")
+    for column, star in ((rivals, False), (best, True)):
+        for n in np.flatnonzero(np.isfinite(column)):
+            px, py = plot.one(float(x[n]), float(column[n]))
+            if star:
+                sheet.star(px, py, 7, palette.answer, palette.rim)
+            else:
+                sheet.dot(px, py, 4, palette.rival, "#fff", width=1)
+    unit = f" ({measure.unit})" if measure.unit else ""
+    plot.axes("turn Δθ (°)", f"best{unit}", (-180, -90, 0, 90, 180), ticks(low, high, 4))
+    after = sheet.chip(42, 313, palette.margin, "ceiling", "line")
+    after = sheet.chip(after, 313, palette.particle, "best met", "line")
+    after = sheet.chip(after, 313, palette.answer, "best", "dot")
+    sheet.chip(after, 313, palette.rival, "rivals", "dot")
+    return sheet.svg("Bounds of every turn")

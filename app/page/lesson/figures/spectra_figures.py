@@ -1,0 +1,275 @@
+"""Pictures of the spectra: votes, sums, correlations, and the window that bounds the shift."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import degrees
+
+import numpy as np
+from scipy.ndimage import maximum_filter
+
+from algorithms.common.pose import FloatArray, Pose2, rotation, wrap_angle
+from algorithms.methods.steps import AugmentDetail, HoughDetail, ShiftDetail, WindowDetail
+from app.drawing.browser_messages import ellipse, rectangle
+from app.drawing.palette import Palette, viridis
+from app.drawing.scene_layout import known_corners
+from app.drawing.svg.map_plot import scale_bar, scene
+from app.drawing.svg.map_raster import View, around, draw_map, walls
+from app.drawing.svg.svg_canvas import INK, Plot, Sheet, number, turn_label, worded
+from app.page.lesson.lesson_run import Study
+
+DEGREES = (0, 30, 60, 90, 120, 150, 180)
+LINES = 3  # the strongest ones of each map that are marked
+APART = 8.0, 0.5  # degrees and metres in which two spots of the votes are one line
+
+
+def strongest(votes: FloatArray, step: float, count: int = LINES) -> list[tuple[float, float]]:
+    """θ (radians) and ρ (metres) of the lines with the most votes, each apart from those before it.
+
+    votes : (K, R) M_H; the middle column is ρ = 0
+    step  : width of a bin of ρ; metres
+    """
+    directions, bins = votes.shape
+    # a ridge beside a spot that is taken is no line: only the tops of hills are asked
+    size = 2 * round(APART[0] * directions / 180) + 1, 2 * round(APART[1] / step) + 1
+    edge = size[0] // 2
+    round_ = np.concatenate([votes[-edge:, ::-1], votes, votes[:edge, ::-1]])
+    left = np.where(maximum_filter(round_, size)[edge : edge + directions] == votes, votes, 0.0)
+    rho = (np.arange(bins) - bins // 2) * step
+    found: list[tuple[float, float]] = []
+    for _ in range(count):
+        k, r = np.unravel_index(int(left.argmax()), left.shape)
+        if left[k, r] <= 0:
+            break
+        found.append((float(k) * np.pi / directions, float(rho[r])))
+        off = (np.arange(directions) - k + directions / 2) % directions - directions / 2
+        near = np.abs(off) * 180 / directions <= APART[0]
+        wraps = np.abs(np.arange(directions) - k) > directions / 2  # past 180° a line has the other sign of ρ
+        for row in np.flatnonzero(near):
+            at = -rho[r] if wraps[row] else rho[r]
+            left[row, np.abs(rho - at) <= APART[1]] = 0.0
+    return found
+
+
+def _reach(study: Study) -> float:
+    return 2.5 * float(study.config.augment.spread)
+
+
+def _votes(plot: Plot, votes: FloatArray, step: float) -> None:
+    """The accumulator in a plot of θ in degrees and ρ in metres; brightness is the root of the votes."""
+    bins, reach = votes.shape[1], plot.up[1]
+    rho = (np.arange(bins) - bins // 2) * step
+    wanted = np.linspace(reach, -reach, int(2 * plot.high))
+    columns = np.stack([np.interp(wanted, rho, row, left=0, right=0) for row in votes], axis=1)
+    top = float(columns.max())
+    plot.image(viridis(np.sqrt(columns / top if top > 0 else columns)))
+
+
+def hough(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """Both accumulators, their strongest lines marked."""
+    first, second, step = study.votes
+    reach, sheet = _reach(study), Sheet(308)
+    rows = ((18.0, first, palette.ref, "map 1"), (164.0, second, palette.mov, "map 2"))
+    for y, votes, colour, name in rows:
+        plot = Plot(sheet, 42, y, 324, 100, (0, 180), (-reach, reach))
+        sheet.text(0, y - 7, name, 11, colour=worded(colour, palette), bold=True)
+        sheet.text(380, y - 7, "votes of the wall cells (bright: many)", 10.5, "end", alpha=0.8)
+        _votes(plot, votes, step)
+        plot.axes("θ, direction of the normal (°)" if y > 100 else "", "ρ (m)", DEGREES)
+        for k, (theta, rho) in enumerate(strongest(votes, step)):
+            px, py = plot.one(degrees(theta), rho)
+            chosen = k == at[0]
+            sheet.dot(px, py, 8 if chosen else 6, None, palette.conflict if chosen else "#fff", width=2)
+            side, anchor = (-11, "end") if chosen else (10, "start")
+            sheet.text(px + side, py + 4, str(k + 1), 13 if chosen else 10, anchor, "#fff", True)
+    return sheet.svg("Hough accumulators of both maps over θ and ρ")
+
+
+def spectrum(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """The votes of each map, and below them what is left when each column is squared and summed."""
+    match, reach, sheet = study.get(HoughDetail).match, _reach(study), Sheet(286)
+    first, second, step = study.votes
+    x = np.degrees(match.angles)
+    for y, votes, name in ((14.0, first, "map 1"), (80.0, second, "map 2")):
+        plot = Plot(sheet, 42, y, 324, 54, (0, 180), (-reach, reach))
+        _votes(plot, votes, step)
+        plot.axes("", "ρ (m)", (), (-5 * (reach // 5), 0, 5 * (reach // 5)) if reach >= 5 else (0,))
+        sheet.text(46, y + 12, name, 11, colour="#fff", bold=True)
+    top = max(float(match.ref.max()), float(match.mov.max()), 1e-12)
+    plot = Plot(sheet, 42, 154, 324, 88, (0, 180), (0, 1.08))
+    plot.curve(x, match.ref / top, palette.ref, 2, fill=True)
+    plot.curve(x, match.mov / top, palette.mov, 2, fill=True)
+    plot.axes("θ, direction of the normal (°)", "HS, of its highest", DEGREES, (0, 0.5, 1))
+    after = sheet.chip(262, 167, palette.ref, "map 1", "line")
+    sheet.chip(after, 167, palette.mov, "map 2", "line")
+    sheet.text(0, 282, "A column's votes, squared and summed. A peak: long walls run so.", 10)
+    return sheet.svg("Hough spectra of both maps")
+
+
+def correlation(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """Map 2's spectrum slid over map 1's by the chosen turn, and the correlation at every turn."""
+    match, sheet = study.get(HoughDetail).match, Sheet(282)
+    size = len(match.angles)
+    x, turn = np.degrees(match.angles), float(at[0])
+    k = round(turn / 180 * size) % size
+    top = max(float(match.ref.max()), float(match.mov.max()), 1e-12)
+    ref, mov = match.ref / top, np.roll(match.mov, k) / top
+    plot = Plot(sheet, 42, 18, 324, 86, (0, 180), (0, 1.08))
+    sheet.text(0, 11, f"map 2's spectrum, slid by {turn:.0f}°", 11, bold=True)
+    after = sheet.chip(238, 11, palette.ref, "map 1", "line")
+    sheet.chip(after, 11, palette.mov, "map 2, slid", "line")
+    plot.curve(x, np.minimum(ref, mov), palette.margin, 0, fill=True)
+    plot.curve(x, ref, palette.ref, 2)
+    plot.curve(x, mov, palette.mov, 2)
+    plot.axes("direction (°)", "HS", DEGREES, (0, 0.5, 1))
+    low = float(match.correlation.min())
+    low = low - 0.06 * (1 - low) if low < 0.99 else 0.0
+    plot = Plot(sheet, 42, 158, 324, 78, (0, 360), (low, 1 + 0.12 * (1 - low)))
+    sheet.text(0, 151, "their correlation CC; shaded: the same again, the twins", 11, bold=True)
+    twice = np.concatenate([match.correlation, match.correlation])
+    plot.band(180, 360, palette.margin, 0.12)
+    plot.curve(np.arange(2 * size) * 180 / size, twice, INK, 1.6)
+    plot.axes("turn Δθ (°)", "CC", (0, 45, 90, 135, 180, 225, 270, 315, 360), (round(low, 2), 1))
+    for turn_, strength in zip(match.turns, match.strengths, strict=True):
+        px, py = plot.one(np.mod(degrees(turn_), 360.0), strength)
+        sheet.dot(px, py, 4, palette.particle, "#fff", width=1)
+    value = float(match.correlation[k])
+    for there in (turn, turn + 180):
+        plot.upright(there, palette.best, 1.5, "3 3")
+        sheet.dot(*plot.one(there, value), 4.5, palette.best, "#fff", width=1)
+    after = sheet.chip(42, 279, palette.particle, "candidates", "dot")
+    sheet.chip(after, 279, palette.best, f"slid by {turn:.0f}°, or {turn + 180:.0f}°: {value:.0%}", "dot")
+    return sheet.svg("Correlation of the two Hough spectra")
+
+
+def _to_one(values: FloatArray) -> FloatArray:
+    top = float(values.max(initial=0.0))
+    return np.asarray(values / top if top > 0 else values)
+
+
+def shift(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """Both maps at a candidate's turn and shift with their sums beside them, and the correlations."""
+    told, lifted = study.all(ShiftDetail), study.get(AugmentDetail)
+    candidate = told[min(at[0], len(told) - 1)].candidate
+    sheet, wide, high = Sheet(320), 210.0, 120.0
+    half = 2.2 * study.config.augment.spread
+    view = View(around(lifted.ref.x_hat, half, wide / high), int(2 * wide), int(2 * high))
+    plot = scene(sheet, 42, 18, wide, high, view)
+    pixels = draw_map(view, palette, lifted.ref.grid, palette.ref)
+    pixels = draw_map(view, palette, lifted.mov.grid, palette.mov, candidate.T_ref_mov, pixels)
+    both = walls(lifted.ref.grid, view) & walls(lifted.mov.grid, view, candidate.T_ref_mov)
+    pixels[both] = palette.agreed
+    plot.image(pixels)
+    sheet.rect(42, 18, wide, high, None, INK, 0.35)
+    scale_bar(plot)
+    words = f"candidate {min(at[0], len(told) - 1) + 1}: turned by {turn_label(candidate.T_ref_mov.theta)}"
+    sheet.text(42, 11, words, 11, bold=True)
+    x0, y0, x1, y1 = view.rect
+    below = Plot(sheet, 42, 18 + high + 4, wide, 40, (x0, x1), (0, 1.08))
+    beside = Plot(sheet, 42 + wide + 4, 18, 76, high, (0, 1.08), (y0, y1))
+    for curves, places, colour in (
+        ((candidate.x.ref, candidate.y.ref), (candidate.x.ref_at, candidate.y.ref_at), palette.ref),
+        (
+            (candidate.x.mov, candidate.y.mov),
+            (candidate.x.mov_at + candidate.x.shift, candidate.y.mov_at + candidate.y.shift),
+            palette.mov,
+        ),
+    ):
+        below.curve(places[0], _to_one(curves[0]), colour, 1.6)
+        inside = (places[1] >= y0) & (places[1] <= y1)
+        points = beside.at(np.column_stack([_to_one(curves[1])[inside], places[1][inside]]))
+        sheet.path(points, colour, 1.6)
+    for frame in (below, beside):
+        sheet.rect(frame.x, frame.y, frame.wide, frame.high, None, INK, 0.35)
+    sheet.text(38, 18 + high + 28, "XS", 11, "end")
+    sheet.text(42 + wide + 42, 11, "YS", 11, "middle")
+    sheet.text(300, 158, "sums of all", 10, alpha=0.8)
+    sheet.text(300, 171, "levels in a", 10, alpha=0.8)
+    sheet.text(300, 184, "column, a row", 10, alpha=0.8)
+    for x, match, name in ((30.0, candidate.x, "x"), (218.0, candidate.y, "y")):
+        pad = max(3.0, 0.3 * (match.high - match.low))
+        plot = Plot(sheet, x, 208, 150, 70, (match.low - pad, match.high + pad), (0, 1.15))
+        sheet.text(x, 201, f"C{name.upper()}: sliding along {name}", 11, bold=True)
+        plot.band(match.low, match.high, palette.margin, 0.3)
+        near = (match.shifts >= plot.across[0]) & (match.shifts <= plot.across[1])
+        plot.curve(match.shifts[near], match.correlation[near], INK, 1.6)
+        plot.upright(match.shift, palette.best, 1.5, "3 3")
+        top = float(np.interp(match.shift, match.shifts, match.correlation))
+        sheet.dot(*plot.one(match.shift, min(1.1, top)), 4.5, palette.best, "#fff", width=1)
+        middle = (match.low + match.high) / 2
+        marks = [round(middle - pad, 1), round(middle, 1), round(middle + pad, 1)]
+        plot.axes(f"where x̂₂ goes, {name} (m)", "", marks, (0, 0.5, 1))
+    return sheet.svg("X and Y spectra of map 1 and of the turned map 2, and their correlations")
+
+
+def window(study: Study, at: Sequence[int], palette: Palette) -> str:
+    """Both windows to scale over map 1, and the coupled one from near by."""
+    told, grid = study.get(WindowDetail), study.inputs.ref
+    assert grid is not None
+    found = study.all(ShiftDetail)
+    turn = found[0].candidate.T_ref_mov.theta if found else 0.0
+    coupled, paper = told.coupled, told.paper
+    off = rotation(turn) @ (coupled.pivot - paper.pivot)
+    low, high = paper.low + off, paper.high + off
+    sheet, side = Sheet(236), 206.0
+    corners = known_corners(grid)
+    ends = np.concatenate([[low, high], corners])
+    middle = (ends.min(axis=0) + ends.max(axis=0)) / 2
+    half = 0.54 * float(np.ptp(ends, axis=0).max())
+    view = View(around(middle, half), 2 * int(side), 2 * int(side))
+    plot = scene(sheet, 0, 18, side, side, view)
+    sheet.text(0, 11, "the paper's window", 11, bold=True)
+    plot.image(draw_map(view, palette, grid, palette.ref))
+    sheet.path(plot.at(rectangle(low, high)), palette.conflict, 2, dash="6 4", close=True)
+    sheet.rect(0, 18, side, side, None, INK, 0.35)
+    scale_bar(plot)
+    x_hat = coupled.x_ref[0]
+    px, py = plot.one(*x_hat.tolist())
+    sheet.dot(px, py, 7, None, palette.best, width=2)
+    small = 156.0
+    near = max(0.6, 1.5 * float((coupled.high - coupled.low).max()) / 2)
+    view = View(around(x_hat, near), 2 * int(small), 2 * int(small))
+    inset = scene(sheet, 222, 18, small, small, view)
+    sheet.text(222, 11, "the coupled one, near by", 11, bold=True)
+    inset.image(draw_map(view, palette, grid, palette.ref))
+    for k, name in ((1.0, "1 σ"), (coupled.k, f"{number(coupled.k)} σ")):
+        ring = inset.at(ellipse(x_hat, coupled.covariances[0], k))
+        strong = k == coupled.k
+        sheet.path(ring, palette.best, 2 if strong else 1, dash="" if strong else "3 3", close=True)
+        top = ring[int(ring[:, 1].argmin())]
+        sheet.text(top[0], top[1] - 3, name, 10, "middle", palette.best, True, halo=palette.free)
+    o = study.inputs.observations[0]
+    sheet.path(inset.at([_towards(x_hat, o.observer.xy, 0.98 * near), x_hat]), palette.text, 1.5, dash="5 4")
+    sheet.dot(*inset.one(*x_hat.tolist()), 4, None, palette.conflict, width=2)
+    sheet.rect(222, 18, small, small, "none", INK, 0.35)
+    scale_bar(inset)
+    sheet.path([(px + 7, py), (222, 18 + small / 2)], palette.best, 1, dash="2 3")
+    sheet.chip(222, 194, palette.conflict, "eqs. (6)–(10)", "line")
+    sheet.chip(222, 212, palette.best, "eq. (3), turn known", "line")
+    return sheet.svg("The paper's window and the coupled window, to scale")
+
+
+def _towards(start: FloatArray, end: FloatArray, most: float) -> FloatArray:
+    """A point on the way, at most so far."""
+    way = end - start
+    length = float(np.hypot(*way))
+    return np.asarray(start + way * min(1.0, most / length if length else 0.0))
+
+
+def first_turn(study: Study) -> int:
+    """The turn that the correlation prefers; whole degrees in 0 … 179."""
+    turn = study.get(HoughDetail).match.turns[0]
+    return round(degrees(wrap_angle(turn))) % 180
+
+
+def line_through(theta: float, rho: float, x_hat: FloatArray, reach: float) -> FloatArray:
+    """(2, 2) ends of the line (θ, ρ) about x̂, ``reach`` metres to both sides; the map's frame."""
+    normal = np.array([np.cos(theta), np.sin(theta)])
+    along = np.array([-normal[1], normal[0]])
+    return np.array([x_hat + rho * normal - reach * along, x_hat + rho * normal + reach * along])
+
+
+def candidate_place(study: Study, k: int) -> Pose2:
+    """T of a candidate, in the order they were tried."""
+    told = study.all(ShiftDetail)
+    return told[min(k, len(told) - 1)].candidate.T_ref_mov

@@ -1,0 +1,167 @@
+"""The dock of the lesson: one step at a time, with its text, equations, picture, and things to try."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from html import escape
+
+import viser
+
+from app.drawing.palette import QUIET
+from app.page.lesson.equations import equations_html
+from app.page.lesson.figures.figure_registry import Dial, place_of, shown
+from app.page.lesson.lesson_texts import Trial
+from app.page.panels.html_widgets import box
+from app.page.panels.sparing import put
+
+BACK, NEXT, LEAVE = "◀ Back", "Next ▶", "Leave"
+ANSWER, HIDE, PUT_BACK = "Show the answer", "Hide the answer", "Put it back"
+WIDTH = 424
+MOST_TRIALS, MOST_DIALS = 3, 2
+
+
+@dataclass(frozen=True)
+class LessonWishes:
+    """What a person can ask for here.
+
+    go    : to the step of this number, from 0
+    move  : by so many steps from where one is
+    leave : the lesson
+    turn  : a dial was moved
+    try_  : the thing to try of this number
+    """
+
+    go: Callable[[int], None]
+    move: Callable[[int], None]
+    leave: Callable[[], None]
+    turn: Callable[[], None]
+    try_: Callable[[int], None]
+
+
+class LessonPanel:
+    """Widgets; they know nothing of the method."""
+
+    def __init__(self, gui: viser.GuiApi, wishes: LessonWishes) -> None:
+        self._wishes = wishes
+        self._titles: tuple[str, ...] = ("…",)
+        self._dials: tuple[Dial, ...] = ()
+        self._panel = gui.add_panel(visible=False)
+        with self._panel.add_tab("Lesson", icon=viser.Icon.SCHOOL):
+            moves = gui.add_button_group("", (BACK, NEXT, LEAVE))
+            moves.on_click(lambda event: self._move(event.target.value))
+            self._step = gui.add_dropdown("Step", self._titles)
+            self._step.on_update(lambda event: self._jump() if event.client_id is not None else None)
+            self._title = gui.add_html("")
+            self._body = gui.add_markdown("")
+            self._equations = gui.add_html("")
+            self._picture = gui.add_html("")
+            self._sliders = [
+                gui.add_slider(f"dial {k + 1}", min=0, max=1, step=1, initial_value=0, visible=False)
+                for k in range(MOST_DIALS)
+            ]
+            for slider in self._sliders:
+                slider.on_update(lambda event: wishes.turn() if event.client_id is not None else None)
+            self._asks, self._buttons = [], []
+            for k in range(MOST_TRIALS):
+                self._asks.append(gui.add_html("", visible=False))
+                button = gui.add_button("…", color=QUIET, visible=False)
+                button.on_click(lambda _, k=k: wishes.try_(k))
+                self._buttons.append(button)
+            self._foot = gui.add_html("")
+        self._panel.dock_left()
+        self._panel.set_width(WIDTH)
+
+    def visible(self, yes: bool) -> None:
+        """Open or close the dock."""
+        if self._panel.visible != yes:
+            self._panel.visible = yes
+        if yes:
+            self._panel.set_width(WIDTH)
+
+    def _move(self, where: str) -> None:
+        if where == LEAVE:
+            self._wishes.leave()
+        else:
+            self._wishes.move(1 if where == NEXT else -1)
+
+    def _jump(self) -> None:
+        if self._step.value in self._titles:
+            self._wishes.go(self._titles.index(self._step.value))
+
+    def contents(self, titles: Sequence[str]) -> None:
+        """The titles of all steps, in their order."""
+        self._titles = tuple(f"{k}. {title}" for k, title in enumerate(titles, 1))
+        if tuple(self._step.options) != self._titles:
+            self._step.options = self._titles
+
+    def text(self, index: int, title: str, body: str, equations: Sequence[str], foot: str = "") -> None:
+        """Show the words of a step."""
+        if self._step.value != self._titles[index]:
+            self._step.value = self._titles[index]
+        dots = "".join(f"<i{' data-on' if k <= index else ''}></i>" for k in range(len(self._titles)))
+        step, last = index + 1, len(self._titles)
+        where = f"step {step} of {last}"
+        self._title.content = (
+            f'<div class="mm-lesson" data-step="{step}" data-last="{last}"><h3>{escape(title)}</h3>'
+            f'<span class="mm-dots" role="img" aria-label="{where}" title="{where}">{dots}</span></div>'
+        )
+        self._body.content = body
+        self._equations.content = equations_html(equations) if equations else ""
+        self._foot.content = f'<div class="mm-foot">{escape(foot)}</div>' if foot else ""
+
+    def broken(self, index: int, title: str, what: str) -> None:
+        """Tell what is wrong with the text of a step."""
+        self.text(index, title, "", ())
+        self.picture("")
+        self.dials((), ())
+        self.trials((), ())
+        self._body.content = ""
+        self._equations.content = box(f"This text cannot be read. {what}", "refused")
+
+    def picture(self, svg: str) -> None:
+        """Show a picture, or a line in its place."""
+        if svg and not svg.startswith("<svg"):
+            svg = f'<div class="mm-wait">{escape(svg)}</div>'
+        self._picture.content = f'<div class="mm-frame">{svg}</div>' if svg else ""
+
+    def dials(self, dials: tuple[Dial, ...], places: Sequence[int]) -> None:
+        """Show what can be moved in the picture, and where it stands."""
+        self._dials = dials
+        for k, slider in enumerate(self._sliders):
+            there = k < len(dials) and dials[k].count > 1
+            if there:
+                dial = dials[k]
+                slider.min, slider.max = shown(dial, 0), shown(dial, dial.count - 1)
+                slider.step, slider.label = dial.step, dial.label
+                if slider.value != shown(dial, places[k]):
+                    slider.value = shown(dial, places[k])
+            if slider.visible != there:
+                slider.visible = there
+
+    @property
+    def places(self) -> tuple[int, ...]:
+        """Where the dials stand."""
+        return tuple(
+            place_of(dial, float(slider.value)) if dial.count > 1 else 0
+            for dial, slider in zip(self._dials, self._sliders, strict=False)
+        )
+
+    def trials(self, trials: Sequence[Trial], told: Sequence[str]) -> None:
+        """Show what there is to try.
+
+        told : the answer to each, "" where it is not shown yet
+        """
+        for k, (ask, button) in enumerate(zip(self._asks, self._buttons, strict=True)):
+            there = k < len(trials)
+            if there:
+                answer = f'<div class="mm-answer">{escape(told[k])}</div>' if told[k] else ""
+                content = f'<div class="mm-try"><b>Try</b> {escape(trials[k].ask)}{answer}</div>'
+                put(ask, content=content)
+                if trials[k].button:
+                    label = PUT_BACK if told[k] else trials[k].button
+                else:
+                    label = HIDE if told[k] else ANSWER
+                put(button, label=label)
+            put(ask, visible=there)
+            put(button, visible=there)

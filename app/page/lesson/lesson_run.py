@@ -1,0 +1,120 @@
+"""What the lesson looks at: every step of one run on the loaded pair, and what follows from them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from typing import Any, TypeVar
+
+import numpy as np
+
+from algorithms.common.pose import FloatArray
+from algorithms.methods.spectra_method import values_in
+from algorithms.methods.steps import AugmentDetail, CandidatesDetail, RefineDetail, Step, WindowDetail
+from algorithms.observations.search_window import Box, box_around
+from algorithms.optimisation.likelihood_field import make_agreement
+from algorithms.optimisation.monte_carlo import monte_carlo
+from algorithms.optimisation.objective import Objective, make_objective
+from algorithms.optimisation.optimiser import SearchState
+from algorithms.optimisation.particle_swarm import settled_within, swarm
+from algorithms.spectra.hough_spectra import hough_transform
+from app.model.merge_inputs import Inputs
+from app.model.run_state import Story
+
+D = TypeVar("D")
+
+FEW = 14  # particles: so many can be followed by eye
+DRAWS = 60  # batches of the Monte-Carlo search that are looked at
+
+
+def keep(steps: list[Step], step: Step) -> None:
+    """Add a step of a run; of the search on one candidate the newest alone, or a long one would fill the
+    memory.
+    """
+    if steps:
+        last, new = steps[-1].detail, step.detail
+        if isinstance(last, RefineDetail) and isinstance(new, RefineDetail) and last.index == new.index:
+            steps.pop()
+    steps.append(step)
+
+
+class Study:
+    """One run, as far as it has come. Everything drawn from it is worked out once, when asked for.
+
+    steps : of the run, in their order
+    """
+
+    def __init__(self, inputs: Inputs, config: Any, seed: int = 0, steps: tuple[Step, ...] = ()) -> None:
+        self.inputs, self.config, self.seed, self.steps = inputs, config, seed, steps
+
+    def all(self, kind: type[D]) -> list[D]:
+        """Every detail of a kind."""
+        return [step.detail for step in self.steps if isinstance(step.detail, kind)]
+
+    def get(self, kind: type[D]) -> D:
+        """The newest detail of a kind, which must be there: see ``reached``."""
+        return self.all(kind)[-1]
+
+    def reached(self, *kinds: type) -> bool:
+        """Whether the run has come to all of these."""
+        told = {type(step.detail) for step in self.steps}
+        return told.issuperset(kinds)
+
+    def story(self, kind: type, index: int = -1) -> Story:
+        """The run up to a step of a kind, as the page draws it; empty where it has not come to it."""
+        found = [k for k, step in enumerate(self.steps) if isinstance(step.detail, kind)]
+        story = Story(self.config)
+        for step in self.steps[: found[index] + 1] if found else ():
+            story.tell(step)
+        return story
+
+    # --- worked out once --------------------------------------------------------------------------
+
+    @cached_property
+    def votes(self) -> tuple[FloatArray, FloatArray, float]:
+        """M_H of both maps, (K, R) each as eq. (11) sums it, and the width of a bin of ρ in metres."""
+        lifted, directions = self.get(AugmentDetail), self.config.spectra.directions
+        step = max(lifted.ref.grid.resolution, lifted.mov.grid.resolution)
+        first, second = (hough_transform(part, directions, step) for part in (lifted.ref, lifted.mov))
+        return first, second, step
+
+    @cached_property
+    def gamma(self) -> Objective:
+        """Γ of eq. (17), whatever the run maximises."""
+        lifted = self.get(AugmentDetail)
+        return make_objective(lifted.ref, lifted.mov, self.config.refine.lookup)
+
+    @cached_property
+    def agreement(self) -> Objective:
+        """The agreement, whatever the run maximises."""
+        i, config = self.inputs, self.config
+        assert i.ref is not None
+        assert i.mov is not None
+        coupled = self.get(WindowDetail).coupled
+        lookup = config.refine.lookup
+        return make_agreement(i.ref, i.mov, i.encounters, config.augment, config.agreement, coupled, lookup)
+
+    @cached_property
+    def box(self) -> Box:
+        """The optimiser's box around the best candidate."""
+        found = self.get(CandidatesDetail)
+        return box_around(found.candidates[0].T_ref_mov, found.window, self.config.box)
+
+    def _values(self, poses: FloatArray) -> FloatArray:
+        found = self.get(CandidatesDetail)
+        return values_in(found.objective, found.window, self.box, poses)
+
+    @cached_property
+    def samples(self) -> list[SearchState]:
+        """The Monte-Carlo search in the best candidate's box, batch by batch."""
+        config = replace(self.config.swarm, iterations=min(DRAWS, self.config.swarm.iterations))
+        rng = np.random.default_rng([self.seed, 2])
+        return list(monte_carlo(self._values, self.box, config, np.zeros(3), rng))
+
+    @cached_property
+    def few(self) -> list[SearchState]:
+        """A swarm of a few particles in the best candidate's box, with what pulls at each of them."""
+        config = replace(self.config.swarm, particles=FEW)
+        settled = settled_within(self.get(CandidatesDetail).objective.cell)
+        rng = np.random.default_rng([self.seed, 3])
+        return list(swarm(self._values, self.box, config, settled, rng))

@@ -1,0 +1,100 @@
+"""Folder "Museum": an exhibit, what to press, what happened and why, and the cure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import viser
+
+from app.drawing.palette import LIGHT, QUIET
+from app.page.panels.html_widgets import box, table
+
+Row = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class MuseumWishes:
+    """What a person can ask for here.
+
+    pick  : the exhibit of this number, from 0
+    cure  : apply the cure, and merge
+    again : the exhibit as it was, uncured
+    leave : the museum
+    """
+
+    pick: Callable[[int], None]
+    cure: Callable[[], None]
+    again: Callable[[], None]
+    leave: Callable[[], None]
+
+
+class MuseumPanel:
+    """Widgets; they know nothing of the exhibits."""
+
+    def __init__(self, gui: viser.GuiApi, wishes: MuseumWishes) -> None:
+        self._titles: tuple[str, ...] = ("…",)
+        self._folder = gui.add_folder("Museum", order=4.8, visible=False)
+        with self._folder:
+            self._exhibit = gui.add_dropdown("Exhibit", self._titles)
+            self._exhibit.on_update(
+                lambda event: (
+                    wishes.pick(self._titles.index(self._exhibit.value))
+                    if event.client_id is not None and self._exhibit.value in self._titles
+                    else None
+                )
+            )
+            self._body = gui.add_markdown("")
+            self._settings = gui.add_html("")
+            self._told = gui.add_html("")
+            self._cure = gui.add_button("Cure", color=LIGHT.mov, icon=viser.Icon.BANDAGE, visible=False)
+            self._cure.on_click(lambda _: wishes.cure())
+            self._again = gui.add_button("Once more, uncured", color=QUIET, visible=False)
+            self._again.on_click(lambda _: wishes.again())
+            gui.add_button("Leave the museum", color=QUIET).on_click(lambda _: wishes.leave())
+
+    def visible(self, yes: bool) -> None:
+        """Open or close the folder."""
+        if self._folder.visible != yes:
+            self._folder.visible = yes
+
+    def contents(self, titles: Sequence[str]) -> None:
+        """The titles of all exhibits, in their order."""
+        self._titles = tuple(f"{k}. {title}" for k, title in enumerate(titles, 1))
+        if tuple(self._exhibit.options) != self._titles:
+            self._exhibit.options = self._titles
+
+    def exhibit(self, index: int, body: str) -> None:
+        """Show an exhibit before its merge."""
+        if self._exhibit.value != self._titles[index]:
+            self._exhibit.value = self._titles[index]
+        self._body.content = body
+        self._settings.content = ""
+        self._told.content = ""
+        self._buttons(cure="", again=False)
+
+    def settings(self, settings: Sequence[Row]) -> None:
+        """Show what is set for the exhibit, or by its cure."""
+        self._settings.content = table(settings, ("set for this exhibit", ""))
+
+    def broken(self, index: int, what: str) -> None:
+        """Tell what is wrong with the text of an exhibit."""
+        self.exhibit(index, "")
+        self._told.content = box(f"This text cannot be read. {what}", "refused")
+
+    def failed(self, why: str, numbers: str, cure: str) -> None:
+        """The merge went wrong, as it was to."""
+        self._told.content = box(numbers, "refused", why)
+        self._buttons(cure, again=False)
+
+    def cured(self, why: str, numbers: str) -> None:
+        """The cure has helped."""
+        self._told.content = box(numbers, "accepted", why)
+        self._buttons("", again=True)
+
+    def _buttons(self, cure: str, again: bool) -> None:
+        if cure and self._cure.label != f"Cure: {cure}":
+            self._cure.label = f"Cure: {cure}"
+        for button, there in ((self._cure, bool(cure)), (self._again, again)):
+            if button.visible != there:
+                button.visible = there

@@ -1,0 +1,185 @@
+"""The numbers of this pair that a text may hold: {range_m} in a file becomes 2.97 on the page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import degrees, hypot, pi
+
+import numpy as np
+
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.steps import (
+    AnswersDetail,
+    AugmentDetail,
+    CandidatesDetail,
+    HoughDetail,
+    MergeResult,
+    ObservationDetail,
+    ProvenDetail,
+    WindowDetail,
+)
+from algorithms.observations.search_window import CoupledWindow
+from algorithms.optimisation.branch_and_bound import ProofState
+from app.model.objective_label import measure_of
+from app.model.status_text import likelihood
+from app.page.lesson.lesson_run import Study
+
+Number = tuple[tuple[type, ...], Callable[[Study], str]]  # what the run must have come to, and the words
+
+
+def _n(value: float, digits: int = 2) -> str:
+    return f"{value:,.{digits}f}".replace("-", "−")
+
+
+def _place(point: np.ndarray) -> str:
+    return f"({_n(point[0])}, {_n(point[1])}) m"
+
+
+def _angle(turn: float) -> str:
+    return f"{_n(degrees(turn), 1)}°"
+
+
+def _seen(study: Study):  # type: ignore[no-untyped-def]
+    return study.inputs.observations[0]
+
+
+def _walls(study: Study, number: int) -> int:
+    grid = study.inputs.ref if number == 1 else study.inputs.mov
+    return 0 if grid is None else int(grid.occupied.sum())
+
+
+def _cells(study: Study, number: int) -> int:
+    grid = study.inputs.ref if number == 1 else study.inputs.mov
+    return 0 if grid is None else int(grid.cells.size)
+
+
+def _twin(study: Study) -> str:
+    """How near the runner-up comes to the strongest turn, its own twin left out."""
+    match = study.get(HoughDetail).match
+    others = [s for s, twin in zip(match.strengths, match.twins, strict=True) if not twin][1:]
+    return f"{max(others):.0%}" if others else "–"
+
+
+def _size(low: np.ndarray, high: np.ndarray) -> str:
+    wide, tall = (high - low).tolist()
+    return f"{_n(wide, 1)} m × {_n(tall, 1)} m"
+
+
+def _disc(window: CoupledWindow) -> float:
+    """Area of the first sighting's disc; m²."""
+    return float(pi * window.k**2 * np.sqrt(np.linalg.det(window.covariances[0])))
+
+
+def _ratio(study: Study) -> str:
+    told = study.get(WindowDetail)
+    return f"{float(np.prod(told.paper.high - told.paper.low)) / _disc(told.coupled):,.0f}"
+
+
+def _transforms(study: Study) -> str:
+    """How many transforms of the lattice the coupled window holds: a cell, and the turn that moves a
+    wall at 2 σ_aug by a cell."""
+    cell, spread = study.get(CandidatesDetail).objective.cell, study.config.augment.spread
+    turns = 2 * pi / (cell / (2 * spread))
+    return f"{turns * _disc(study.get(WindowDetail).coupled) / cell**2:,.0f}"
+
+
+def _proof(study: Study) -> ProofState:
+    return study.get(ProvenDetail).state
+
+
+def _value(study: Study, value: float) -> str:
+    return measure_of(study.config).text(value)
+
+
+def _rival(study: Study) -> str:
+    state = _proof(study)
+    if not len(state.rivals) or state.best_value <= 0:
+        return "no rival above half of it"
+    return f"a rival with {state.rival_value / state.best_value:.0%} of it"
+
+
+def _verdict(study: Study):  # type: ignore[no-untyped-def]
+    return study.get(MergeResult).verdict
+
+
+_RESULT, _HOUGH, _WINDOW = (MergeResult,), (HoughDetail,), (WindowDetail,)
+_FOUND, _MET, _FUSED = (CandidatesDetail, WindowDetail), (ObservationDetail,), (Fusion,)
+_PROVEN = (ProvenDetail,)
+
+NUMBERS: dict[str, Number] = {
+    "range_m": ((), lambda s: _n(_seen(s).range)),
+    "range_sigma_m": ((), lambda s: _n(_seen(s).sigma_range)),
+    "bearing": ((), lambda s: _angle(_seen(s).bearing)),
+    "bearing_sigma": ((), lambda s: _angle(_seen(s).sigma_bearing)),
+    "heading": ((), lambda s: _angle(_seen(s).observer.theta)),
+    "sideways_m": ((), lambda s: _n(_seen(s).range * _seen(s).sigma_bearing)),
+    "sightings": ((), lambda s: str(len(s.inputs.observations))),
+    "x1": (_MET, lambda s: _place(s.get(ObservationDetail).encounter.x_ref)),
+    "x2": (_MET, lambda s: _place(s.get(ObservationDetail).encounter.x_mov)),
+    "x2_norm_m": (_MET, lambda s: _n(hypot(*s.get(ObservationDetail).encounter.x_mov.tolist()), 1)),
+    "walls1": ((), lambda s: f"{_walls(s, 1):,}"),
+    "walls2": ((), lambda s: f"{_walls(s, 2):,}"),
+    "cells1": ((), lambda s: f"{_cells(s, 1):,}"),
+    "cells2": ((), lambda s: f"{_cells(s, 2):,}"),
+    "walls_share": ((), lambda s: f"{_walls(s, 2) / max(1, _cells(s, 2)):.1%}"),
+    "intensity": ((), lambda s: f"{s.config.augment.intensity:g}"),
+    "spread_m": ((), lambda s: _n(s.config.augment.spread, 1)),
+    "peak": ((AugmentDetail,), lambda s: f"{s.get(AugmentDetail).ref.peak:.3g}"),
+    "lifted1": ((AugmentDetail,), lambda s: f"{len(s.get(AugmentDetail).ref.levels):,}"),
+    "lifted2": ((AugmentDetail,), lambda s: f"{len(s.get(AugmentDetail).mov.levels):,}"),
+    "directions": ((), lambda s: str(s.config.spectra.directions)),
+    "direction_step": ((), lambda s: f"{180 / s.config.spectra.directions:g}°"),
+    "turns": (_HOUGH, lambda s: str(len(s.get(HoughDetail).match.turns))),
+    "turn": (_HOUGH, lambda s: _angle(s.get(HoughDetail).match.turns[0])),
+    "next_peak": (_HOUGH, _twin),
+    "paper_window": (_WINDOW, lambda s: _size(s.get(WindowDetail).paper.low, s.get(WindowDetail).paper.high)),
+    "coupled_window": (
+        _WINDOW,
+        lambda s: _size(s.get(WindowDetail).coupled.low, s.get(WindowDetail).coupled.high),
+    ),
+    "window_ratio": (_WINDOW, _ratio),
+    "margin_m": ((), lambda s: f"{s.config.window.margin:g}"),
+    "deviations": ((), lambda s: f"{s.config.window.deviations:g}"),
+    "candidates": (_FOUND, lambda s: str(len(s.get(CandidatesDetail).candidates))),
+    "particles": ((), lambda s: f"{s.config.swarm.particles:,}"),
+    "iterations": ((), lambda s: str(s.config.swarm.iterations)),
+    "omega": ((), lambda s: f"{s.config.swarm.omega:g}"),
+    "tau": ((), lambda s: f"{s.config.swarm.tau:g}"),
+    "sigma_x_m": ((), lambda s: f"{s.config.box.sigma_x:g}"),
+    "sigma_theta": ((), lambda s: f"{s.config.box.sigma_theta:g}°"),
+    "transforms": (_FOUND, _transforms),
+    "search_value": (
+        (AnswersDetail,),
+        lambda s: _value(s, s.get(AnswersDetail).answers[0].value),
+    ),
+    "search_ended": ((AnswersDetail,), lambda s: s.get(AnswersDetail).answers[0].stopped),
+    "blocks": (_PROVEN, lambda s: f"{_proof(s).nodes:,}"),
+    "proven_value": (_PROVEN, lambda s: _value(s, _proof(s).best_value)),
+    "rival": (_PROVEN, _rival),
+    "shift_x_m": (_RESULT, lambda s: _n(s.get(MergeResult).T_ref_mov.x)),
+    "shift_y_m": (_RESULT, lambda s: _n(s.get(MergeResult).T_ref_mov.y)),
+    "merged_turn": (_RESULT, lambda s: _angle(s.get(MergeResult).T_ref_mov.theta)),
+    "overlap_cells": (_FUSED, lambda s: f"{s.get(Fusion).overlap:,}"),
+    "conflicting_cells": (_FUSED, lambda s: f"{s.get(Fusion).conflicting:,}"),
+    "acceptance": (_FUSED, lambda s: f"{s.get(Fusion).acceptance_index:.1%}"),
+    "contradiction": (_RESULT, lambda s: f"{_verdict(s).contradiction:.1%}"),
+    "shared_wall_m": (_RESULT, lambda s: _n(_verdict(s).shared_wall, 0)),
+    "off_sigma": (_RESULT, lambda s: _n(_verdict(s).deviation, 1)),
+    "rigid_contradiction": (_RESULT, lambda s: f"{_verdict(s).rigid_contradiction:.1%}"),
+    "across_m": (_RESULT, lambda s: _n(_verdict(s).wall_across, 0)),
+    "agreeing_m": (
+        _RESULT,
+        lambda s: _n(_verdict(s).shared_wall * (1 - _verdict(s).contradiction), 0),
+    ),
+    "floor_m2": (_RESULT, lambda s: _n(_verdict(s).shared_floor, 0)),
+    "answers_weighed": (_RESULT, lambda s: str(len(s.get(MergeResult).weighed))),
+    "probability": (_RESULT, lambda s: likelihood(_verdict(s).probability)),
+    "accept_from": ((), lambda s: f"{s.config.verdict.accept_from:.3g}"),
+    "bent_from": ((), lambda s: f"{s.config.verdict.bent_from:.0%}"),
+    "verdict": (_RESULT, lambda s: _verdict(s).reason),
+}
+
+
+def numbers_of(study: Study) -> dict[str, str]:
+    """The words for every number that the run has come to."""
+    return {name: words(study) for name, (needs, words) in NUMBERS.items() if study.reached(*needs)}

@@ -1,0 +1,113 @@
+"""All that a person has on the page, as one value: what undo goes back to, and what a reload brings back."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from algorithms.common.pose import Pose2
+from algorithms.methods.registry import METHODS
+from algorithms.methods.steps import MergeResult
+from app.model.merge_inputs import Files, Inputs
+from app.model.merge_job import Goal
+from app.model.run_state import Story
+from app.model.settings import settings_of, text_for, value_at
+from app.page.research.other_result import Guest
+
+
+@dataclass(frozen=True, eq=False)
+class Desk:
+    """One state of the page; nothing in it is ever changed.
+
+    files   : what the folder "Maps" says of where the inputs came from
+    method, config, seed : how to merge
+    goal    : how far it was asked for; None: nothing was asked for yet
+    hand    : where map 2 was put by hand, T_ref_mov; None where a method says it
+    outcome : of the run that came to its end with all this; None before
+    guest   : another method's answer that is looked at in its place
+    """
+
+    inputs: Inputs
+    files: Files
+    method: str
+    config: Any
+    seed: int
+    goal: Goal | None = None
+    hand: Pose2 | None = None
+    outcome: Story | None = field(default=None, repr=False)
+    guest: Guest | None = None
+
+    @property
+    def held(self) -> bool:
+        """Whether map 2 is in a person's hand: it was put somewhere, and is not the answer yet."""
+        return self.hand is not None and self.outcome is None
+
+    @property
+    def result(self) -> MergeResult | None:
+        """The answer; None where there is none (yet)."""
+        return self.outcome.get(MergeResult) if self.outcome is not None else None
+
+    def same_wish(self, other: Desk) -> bool:
+        """Whether both ask for the same, whatever came of it."""
+        return not change(self, other)[0] and self.goal == other.goal
+
+    def without_outcome(self) -> Desk:
+        """The same, to be worked out again when it is needed: the same seed gives the same answer."""
+        return replace(self, outcome=None)
+
+    def arrays(self) -> Iterator[Any]:
+        """Everything large that it holds."""
+        for grid in (self.inputs.ref, self.inputs.mov):
+            if grid is not None:
+                yield grid.cells
+        for upload in self.files.uploads.values():
+            yield upload.content
+        if self.result is not None:
+            fusion = self.result.fusion
+            yield from (fusion.merged.cells, fusion.ref_cells, fusion.mov_cells)
+
+
+def weight(desk: Desk) -> dict[int, int]:
+    """Bytes by the identity of what holds them, so that what two desks share counts once."""
+    return {id(held): held.nbytes if isinstance(held, np.ndarray) else len(held) for held in desk.arrays()}
+
+
+def first_label(desk: Desk) -> str:
+    """What to call the desk that a tab begins with."""
+    return f"load {desk.inputs.name}" if desk.inputs.name else "an empty page"
+
+
+def change(before: Desk, after: Desk) -> tuple[str, Hashable]:
+    """What a person did between two desks, and what to call doing more of the same; "" for nothing."""
+    old, new = before.inputs, after.inputs
+    if old is not new:
+        if old.ref is new.ref and old.mov is new.mov:
+            count = len(new.observations)
+            said = "observation by hand" if count == 1 else f"{count} observations by hand"
+            return (said if count else "no observation"), "observation"
+        return (f"load {new.name}" if new.name else "forget the files"), None
+    if before.method != after.method:
+        return f"method: {METHODS[after.method].title}", None
+    if before.config != after.config:
+        return _moved(before.config, after.config)
+    if before.seed != after.seed:
+        return f"seed {before.seed} → {after.seed}", "seed"
+    if before.hand != after.hand:
+        return ("map 2 by hand" if after.hand is not None else "not by hand"), "hand"
+    if before.guest is not after.guest:
+        return (f"look at {after.guest.title}" if after.guest is not None else "back to one's own"), None
+    return "", None
+
+
+def _moved(before: Any, after: Any) -> tuple[str, Hashable]:
+    moved = [s for s in settings_of(after) if value_at(before, s.path) != value_at(after, s.path)]
+    if len(moved) != 1:
+        return f"{len(moved)} settings", None
+    (setting,) = moved
+    shown = [text_for(setting, value_at(config, setting.path), "on", "off") for config in (before, after)]
+    unit = f" {setting.bounds.unit}" if setting.bounds and setting.bounds.unit else ""
+    label = setting.label.removesuffix(f"({unit.strip()})").strip()
+    return f"{label} {shown[0]} → {shown[1]}{unit}", setting.path

@@ -1,0 +1,111 @@
+"""Folder "Export": everything as one zip, each file alone, and the line that publishes the transform.
+
+What a robot would act upon is given of a refused merge only after a warning.
+"""
+
+from __future__ import annotations
+
+from html import escape
+
+import viser
+
+from app.drawing.palette import LIGHT, QUIET
+from app.page.cancellable_task import Check, Errand
+from app.page.panels.html_widgets import box
+from app.page.panels.replay import ReplayButton
+from app.report.export import ACTED_UPON, ALONE, ARCHIVE, Harvest
+from app.report.ros_transform import publish_command
+from app.web.download import Delivery
+
+_NOTHING = box("After a merge it can be taken away from here: map, transform, report.", "plain")
+_OUTDATED = "Out of date: a setting was changed."
+
+
+class ExportPanel:
+    """Holds the result that can be downloaded; None while there is none, or it is out of date."""
+
+    def __init__(self, client: viser.ClientHandle, errand: Errand) -> None:
+        self._client, self._deliver = client, Delivery(client, errand)
+        self._harvest: Harvest | None = None
+        gui = client.gui
+        with gui.add_folder("Export", order=70):
+            self._all = gui.add_button(
+                "Download everything",
+                icon=viser.Icon.DOWNLOAD,
+                color=QUIET,
+                visible=False,
+                hint="A zip: merged map for Nav2, transform, report to read and print, picture, observation.",
+            )
+            self._all.on_click(lambda _: self._ask(ARCHIVE))
+            self._one = gui.add_dropdown("One file", ALONE, visible=False, hint="A file of the zip, alone.")
+            self._alone = gui.add_button("Download this file", color=QUIET, visible=False)
+            self._alone.on_click(lambda _: self._ask(self._one.value))
+            self.replay = ReplayButton(client, errand)
+            self.replay.visible(False)
+            self._line = gui.add_html("")
+            self._note = gui.add_html(_NOTHING)  # last, so that nothing moves when it comes
+
+    def offer(self, harvest: Harvest | None) -> None:
+        """Take this result, or none; a replay of its run is offered apart."""
+        self._show(harvest, there=harvest is not None)
+        self._note.content = "" if harvest is not None else _NOTHING
+        self._line.content = "" if harvest is None else line_html(harvest)
+
+    def outdate(self, why: str = _OUTDATED) -> None:
+        """The result is out of date, or not what is seen: it is greyed, and nothing of it can be taken."""
+        last = self._harvest
+        if last is None:
+            return
+        self._show(None, there=True)
+        self._note.content = box(why, "plain", faded=True)
+        self._line.content = line_html(last, faded=True)
+
+    def _show(self, harvest: Harvest | None, there: bool) -> None:
+        self._harvest = harvest
+        self.replay.offer(None)
+        self.replay.visible(there)
+        for widget in (self._all, self._one, self._alone):
+            widget.visible, widget.disabled = there, harvest is None
+
+    def _ask(self, name: str) -> None:
+        """Send a file of the result, or all of them; of a refused one only harmless ones at once."""
+        harvest = self._harvest
+        if harvest is None:
+            return
+        verdict = harvest.result.verdict
+        if verdict.accepted or name not in (ARCHIVE, *ACTED_UPON):
+            self._send(harvest, name)
+            return
+        gui = self._client.gui
+        modal = gui.add_modal("This merge was refused")
+        with modal:
+            gui.add_markdown(f"{verdict.reason}\n\nA robot that trusts this map may get lost.")
+            yes = gui.add_button("Download the refused map anyway", color=LIGHT.conflict)
+            no = gui.add_button("Cancel", color=QUIET)
+
+        def go(really: bool) -> None:
+            modal.close()
+            if really:
+                self._send(harvest, name)
+
+        yes.on_click(lambda _: go(True))
+        no.on_click(lambda _: go(False))
+
+    def _send(self, harvest: Harvest, name: str) -> None:
+        def make(check: Check) -> bytes:
+            files = harvest.make(check)
+            return harvest.archive() if name == ARCHIVE else files[name]
+
+        self._deliver("Making the files: map, pictures and report.", name, make)
+
+
+def line_html(harvest: Harvest, faded: bool = False) -> str:
+    """HTML of the line that publishes the transform, with a button that copies it: see measure_tool.js."""
+    if not harvest.result.verdict.accepted:
+        return box("Refused: there is no transform to publish.", "refused", faded=faded)
+    command = escape(publish_command(harvest.result))
+    dim, off = (' style="opacity:.4"', " disabled") if faded else ("", "")
+    return (
+        f'<div class="mm-publish"{dim}><p>Publish the transform in ROS 2:</p><code>{command}</code>'
+        f'<button type="button" data-mm-copy="{command}"{off}>Copy the line</button></div>'
+    )

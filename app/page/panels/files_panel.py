@@ -1,0 +1,275 @@
+"""Folder "Maps": samples and uploads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from html import escape
+from pathlib import PurePath
+from threading import RLock
+
+import viser
+
+from algorithms.common.display_text import visible
+from algorithms.common.errors import MapMergeError
+from algorithms.files.case_folder import observations_from_bytes, read_case
+from algorithms.files.map_file import map_from_bytes, parse_meta
+from algorithms.maps.grid_map import GridMap
+from app.drawing.palette import QUIET
+from app.model.merge_inputs import Files, Inputs, Upload
+from app.page.cancellable_task import Check, Errand, Left, Watched, unwatched
+from app.page.panels.image_form import ImageForm
+from app.system import data_paths as paths
+
+NONE = "(choose)"
+TAKEN = viser.UploadedFile("", b"")  # what a button holds that holds no file any more
+Report = Callable[[MapMergeError], None]
+
+
+# key -> label of the button, what the picker offers
+SLOTS = {
+    "yaml1": ("Map 1: YAML", ".yaml,.yml"),
+    "image1": ("Map 1: image", ".pgm,.png,.bmp"),
+    "yaml2": ("Map 2: YAML", ".yaml,.yml"),
+    "image2": ("Map 2: image", ".pgm,.png,.bmp"),
+    "observation": ("Observation: YAML", ".yaml,.yml"),
+}
+
+MAPS = (1, 2)
+LARGE = 1_000_000  # bytes; to read less takes no time to speak of
+
+
+Known = dict[tuple[Upload, Upload], GridMap]
+
+
+def _short(name: str) -> str:
+    """The last part of a file's name only, and not much of it: it is shown to a person, nothing else."""
+    return visible(PurePath(name.replace("\\", "/")).name)[:80]
+
+
+def _large(upload: Upload) -> bool:
+    """Whether it takes a while to read. A PNG may be much larger than its file; a map's YAML file is read
+    with its image.
+    """
+    wide, high = upload.content[16:20], upload.content[20:24]
+    pixels = 0
+    if upload.content.startswith(b"\x89PNG"):
+        pixels = int.from_bytes(wide, "big") * int.from_bytes(high, "big")
+    return max(len(upload.content), pixels) >= LARGE
+
+
+def inputs_from(uploads: dict[str, Upload], known: Known | None = None, check: Check = unwatched) -> Inputs:
+    """What the files so far make up: a map where both its files are there, observations.
+
+    known  : maps that were read before, by their two files; holds these in the end
+    check  : is called now and then, and may leave the work by raising
+    raises : MapMergeError that names the file, the finding and the remedy
+    """
+    known = {} if known is None else known
+    now: Known = {}
+    imageless: dict[int, str] = {}
+    unnamed: list[str] = []
+
+    def grid(number: int):  # type: ignore[no-untyped-def]
+        text, image = uploads.get(f"yaml{number}"), uploads.get(f"image{number}")
+        named = _short(parse_meta(text.name, text.content).image) if text is not None else ""
+        if text is not None and image is None:  # what is wrong with it is told at once
+            imageless[number] = named
+        if text is None or image is None:
+            return None
+        if named != image.name and not text.by_form:
+            unnamed.append(
+                f"{text.name} names the image {named}; loaded is {image.name}. Do they belong together?"
+            )
+        found = known.get((text, image))
+        if found is None:
+            found = map_from_bytes(text.name, text.content, image.name, Watched(image.content, check))
+        now[text, image] = found
+        return found
+
+    seen = uploads.get("observation")
+    bare = tuple(n for n in MAPS if f"image{n}" in uploads and f"yaml{n}" not in uploads)
+    ref, mov = grid(1), grid(2)
+    inputs = Inputs(
+        ref=ref,
+        mov=mov,
+        observations=observations_from_bytes(seen.name, seen.content) if seen else (),
+        name="your files" if uploads else "",
+        bare=bare,
+        imageless=imageless,
+        unnamed=tuple(unnamed),
+    )
+    known.clear()  # of what is not there any more
+    known.update(now)
+    return inputs
+
+
+class FilesPanel:
+    """Chooses what is merged. ``load`` gets the inputs, ``report`` what is wrong with a file."""
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        load: Callable[[Inputs], None],
+        report: Report,
+        chosen: str,
+        save: Callable[[str, bytes], None],
+        turn: RLock | None = None,
+        errand: Errand | None = None,
+    ) -> None:
+        """save : sends a file to the person
+        errand : says what is being done, where it takes a while, and lets it be left
+        """
+        self._load, self._report, self._errand = load, report, errand
+        self._uploads: dict[str, Upload] = {}
+        self._known: Known = {}
+        self._placed = False
+        # viser calls back from a thread of its own for each file: two that were dropped together must
+        # not be read, and shown, across each other
+        self._turn = turn or RLock()
+        samples = paths.samples()
+        names = [chosen] if chosen and chosen not in samples else []
+        with gui.add_folder("Maps", order=10.0):
+            self._sample = gui.add_dropdown(
+                "Sample",
+                (NONE, *names, *samples),
+                initial_value=chosen or NONE,
+                hint="A pair that came along.",
+            )
+            self._sample.on_update(lambda _: self._take_sample())
+            self._forms: dict[int, ImageForm] = {}
+            with gui.add_folder("Upload your own", expand_by_default=False):
+                self._status = gui.add_html(self._table())
+                for key, (label, kinds) in SLOTS.items():
+                    button = gui.add_upload_button(label, mime_type=kinds, color=QUIET)
+                    button.on_upload(partial(self._arrived, key))
+                    if key.startswith("image"):
+                        number = int(key[-1])
+                        use = partial(self._take, f"yaml{number}")
+                        self._forms[number] = ImageForm(gui, number, self._turn, use, save)
+                self._forget_them = gui.add_button("Forget uploads", color=QUIET, visible=False)
+                self._forget_them.on_click(lambda _: self._forget())
+        self._taken = chosen or NONE
+
+    @property
+    def files(self) -> Files:
+        """Where what is on the page came from."""
+        return Files("" if self._taken == NONE else self._taken, dict(self._uploads))
+
+    def restore(self, files: Files) -> None:
+        """Show again where inputs came from, and load nothing."""
+        with self._turn:
+            self._uploads = dict(files.uploads)
+            self._offer_forms()
+            self._tell()
+            self._taken = files.sample or NONE
+            if self._sample.value != self._taken:
+                self._sample.value = self._taken
+
+    def placed(self, yes: bool) -> None:
+        """Whether there is an observation, wherever it came from."""
+        if self._placed != yes:
+            self._placed = yes
+            self._tell()
+
+    def _take_sample(self) -> None:
+        with self._turn:
+            name = self._sample.value
+            folder = paths.samples().get(name)
+            if folder is None or name == self._taken:
+                return
+            try:
+                case = read_case(folder)
+            except MapMergeError as error:
+                self._sample.value = self._taken
+                self._report(error)
+                return
+            self._taken = name
+            self._uploads.clear()
+            self._offer_forms()
+            self._tell()
+            self._load(Inputs.of(case))
+
+    def _arrived(self, key: str, event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
+        """Take what the button holds; it would keep that, refused or not, for as long as the tab is there."""
+        held = event.target._impl
+        file, held.value = held.value, TAKEN
+        if file is not TAKEN:  # by an earlier call, where two files came at once: the newest counts
+            self._take_upload(key, file)
+
+    def _take_upload(self, key: str, file: viser.UploadedFile) -> None:
+        self._take(key, Upload(_short(file.name) or key, file.content))
+
+    def _take(self, key: str, upload: Upload) -> None:
+        with self._turn:
+            before = dict(self._uploads)
+            self._uploads[key] = upload
+            text = self._uploads.get(key.replace("image", "yaml"))
+            if key.startswith("image") and text is not None and text.by_form:
+                del self._uploads[key.replace("image", "yaml")]  # it was filled in for another image
+            try:
+                inputs = self._read(upload)
+            except Left:  # nothing has come of it yet
+                self._uploads = before
+                self._offer_forms()
+                return
+            except MapMergeError as error:
+                self._uploads = before  # and what is on the page stays there
+                self._offer_forms()
+                self._tell(key)
+                self._report(error)
+                return
+            self._show(inputs)
+
+    def _read(self, upload: Upload) -> Inputs:
+        """What the files make up now that this one has come; raises Left where Stop was pressed."""
+        if self._errand is None or not _large(upload):
+            self._offer_forms()
+            return inputs_from(self._uploads, self._known)
+        with self._errand(f"Reading {upload.name}, {len(upload.content) / 1e6:.3g} MB.") as check:
+            self._offer_forms(check)
+            return inputs_from(self._uploads, self._known, check)
+
+    def _offer_forms(self, check: Check = unwatched) -> None:
+        """A form for every image that came without a YAML file; raises MapMergeError as ``inputs_from``."""
+        for number, form in self._forms.items():
+            form.show(self._uploads.get(f"image{number}"), self._uploads.get(f"yaml{number}"), check)
+
+    def _forget(self) -> None:
+        with self._turn:
+            self._uploads.clear()
+            self._offer_forms()
+            self._show(Inputs())
+
+    def _show(self, inputs: Inputs) -> None:
+        """What was on the page gives way to the uploads: nobody merges other maps than they think."""
+        self._tell()
+        self._taken = NONE
+        if self._sample.value != NONE:
+            self._sample.value = NONE
+        self._load(inputs)
+
+    def _tell(self, bad: str = "") -> None:
+        """Show which files are there; bad: the one that cannot be used."""
+        self._status.content = self._table(bad)
+        if self._forget_them.visible != bool(self._uploads):
+            self._forget_them.visible = bool(self._uploads)
+
+    def _table(self, bad: str = "") -> str:
+        rows = []
+        for key, (label, _) in SLOTS.items():
+            upload = self._uploads.get(key)
+            sign = "✗" if key == bad else "✓" if upload else "·"
+            colour = "#D55E00" if key == bad else "#009E73" if upload else "#9CA3AF"
+            name = "missing" if upload is None else escape(upload.name)
+            if key == "observation" and upload is None and self._placed and self._uploads:
+                sign, colour, name = "✓", "#009E73", "placed by hand"
+            if upload is not None and upload.by_form:
+                name = "filled in below"
+            if key == bad:
+                name = "cannot be used"
+            rows.append(
+                f'<tr><td style="color:{colour};width:1.2em">{sign}</td>'
+                f"<td>{label}</td><td style='opacity:.75;overflow-wrap:anywhere'>{name}</td></tr>"
+            )
+        return f'<table style="font-size:12px;margin:2px 10px 6px;width:92%">{"".join(rows)}</table>'

@@ -1,0 +1,265 @@
+"""Folders "Augmentation" to "Result": a slider for every setting of the chosen method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from threading import RLock, get_ident
+from typing import Any
+
+import viser
+
+from algorithms.common.errors import MapMergeError, SettingError
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS
+from app.drawing.palette import QUIET
+from app.model.settings import Path, Setting, in_cells, settings_of, value_at, with_value, word_for
+
+# Group of the config -> folder; what is not named goes to "Search".
+FOLDERS = {
+    "augment": "Augmentation",
+    "agreement": "Agreement",
+    "proof": "Proof",
+    "whole_maps": "Proof",
+    "verdict": "Result",
+    "conflict": "Result",
+}
+ORDER = {"Augmentation": 30.0, "Search": 40.0, "Agreement": 43.0, "Proof": 46.0, "Result": 60.0}
+
+# Shown at once, in this order; every other setting is under "More".
+FRONT: tuple[Path, ...] = (
+    ("augment", "intensity"),
+    ("augment", "spread"),
+    ("window", "kind"),
+    ("window", "margin"),
+    ("window", "deviations"),
+    ("refine", "objective"),
+    ("box", "sigma_x"),
+    ("box", "sigma_y"),
+    ("box", "sigma_theta"),
+    ("refine", "optimiser"),
+    ("swarm", "particles"),
+    ("swarm", "iterations"),
+    ("swarm", "omega"),
+    ("swarm", "tau"),
+)
+
+
+def idle(config: Any, path: Path) -> bool:
+    """Whether a setting does nothing beside the others as they stand."""
+    refine, proof = getattr(config, "refine", None), getattr(config, "proof", None)
+    if path[0] == "agreement":
+        return refine is not None and refine.objective != "agreement"
+    if path[0] == "proof" and path[-1] != "whole_circle":
+        return proof is not None and not proof.whole_circle
+    if path in {("swarm", "omega"), ("swarm", "tau")}:
+        return refine is not None and refine.optimiser != "pso"
+    if path[0] in {"swarm", "box"} or path == ("refine", "candidates"):
+        return refine is not None and refine.optimiser == "none"
+    return False
+
+
+def _in_metres(setting: Setting) -> bool:
+    """Whether a setting is a length with a symbol: worth telling in cells, too."""
+    return setting.bounds is not None and setting.bounds.unit == "m" and bool(setting.bounds.symbol)
+
+
+class TuningPanel:
+    """Owns the config. ``changed`` is called after every change by the person, in the same turn: nobody else
+    gets one before everything that goes by the config has heard of it.
+    """
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        changed: Callable[[], None],
+        report: Callable[[MapMergeError], None],
+        turn: RLock | None = None,
+    ) -> None:
+        self._gui, self._changed, self._report = gui, changed, report
+        self._handles: dict[Path, Any] = {}
+        self._settings: dict[Path, Setting] = {}
+        self._folders: dict[str, Any] = {}
+        self._notes: dict[str, Any] = {}
+        self._cells: tuple[float, ...] = ()
+        self._turn = turn or RLock()  # widgets call back from many threads
+        self._writer = 0  # a value that is written calls back at once, half-way through the others
+        self.method = DEFAULT_METHOD
+        self.config: Any = METHODS[self.method].defaults
+        self._build()
+
+    def choose(self, method: str) -> None:
+        """Take another method, at its defaults."""
+        with self._turn:
+            if method == self.method:
+                return
+            self._take(method, METHODS[method].defaults)
+            self._changed()
+
+    def restore(self, method: str, config: Any) -> None:
+        """Show this method with these settings."""
+        with self._turn:
+            if method != self.method:
+                self._take(method, METHODS[method].defaults)
+            self.config = config
+            self._write(config)
+
+    def _take(self, method: str, config: Any) -> None:
+        self.method, self.config = method, config
+        for folder in self._folders.values():
+            folder.remove()
+        self._build()
+
+    def resolutions(self, *cells: float) -> None:
+        """Metres per cell of the maps, so that lengths are shown in cells, too."""
+        self._cells = cells
+        self._show_cells()
+
+    # --- building ---------------------------------------------------------------------------------
+
+    def _build(self) -> None:
+        self._handles.clear()
+        self._notes.clear()
+        self._settings = {setting.path: setting for setting in settings_of(self.config)}
+        self._folders = {}
+        for title, order in ORDER.items():
+            mine = [path for path in self._settings if FOLDERS.get(path[0], "Search") == title]
+            if not mine:
+                continue
+            front = [path for path in FRONT if path in mine]
+            more = [path for path in mine if path not in front]
+            folder = self._gui.add_folder(title, order=order, expand_by_default=bool(front))
+            self._folders[title] = folder
+            with folder:
+                for path in front:
+                    self._add(self._settings[path])
+                if any(_in_metres(self._settings[path]) for path in mine):
+                    self._notes[title] = self._gui.add_html("")
+                if front and more:
+                    with self._gui.add_folder("More", expand_by_default=False):
+                        for path in more:
+                            self._add(self._settings[path])
+                elif more:
+                    for path in more:
+                        self._add(self._settings[path])
+                reset = self._gui.add_button(f"Reset {title.lower()}", color=QUIET)
+                reset.on_click(lambda _, mine=tuple(mine): self._reset(mine))
+        self._show_cells()
+        self._hide_idle()
+
+    def _add(self, setting: Setting) -> None:
+        hint, value = setting.hint or None, setting.default
+        if setting.bounds is not None:
+            b, kind = setting.bounds, int if setting.whole else float
+            handle: Any = self._gui.add_slider(
+                setting.label,
+                min=kind(b.low),
+                max=kind(b.high),
+                step=kind(b.step),
+                initial_value=kind(value),
+                hint=hint,
+            )
+        elif setting.choices is not None:
+            handle = self._gui.add_dropdown(
+                setting.label, tuple(setting.choices), initial_value=word_for(setting, value), hint=hint
+            )
+        else:
+            handle = self._gui.add_checkbox(setting.label, value, hint=hint)
+        self._handles[setting.path] = handle
+        handle.on_update(lambda _: self._read())
+
+    # --- reading and writing ----------------------------------------------------------------------
+
+    def _wanted(self, path: Path) -> Any:
+        value, setting = self._handles[path].value, self._settings[path]
+        if setting.choices is not None:
+            return setting.choices[value]
+        if setting.bounds is None:
+            return bool(value)
+        # sliders step from their lower end in binary fractions; 0.1 + 2 * 0.1 is meant as 0.3
+        return int(value) if setting.whole else round(float(value), 6)
+
+    def read(self) -> Any:
+        """The config as the panel stands: every widget is asked, none is trusted to have told."""
+        config = self.config
+        for path in self._handles:
+            value = self._wanted(path)
+            if value != value_at(config, path):
+                config = with_value(config, path, value)
+        return config
+
+    def sync(self) -> None:
+        """Take in what the widgets say now: a message of theirs may have been lost on the way."""
+        try:
+            self.config = self.read()
+        except SettingError as error:
+            self._report(error)
+            self._write(self.config)
+
+    def _read(self) -> None:
+        if self._writer == get_ident():
+            return
+        with self._turn:
+            try:
+                config = self.read()
+            except SettingError as error:
+                self._report(error)
+                self._write(self.config)
+                return
+            if config == self.config:
+                return
+            self.config = config
+            self._show_cells()
+            self._hide_idle()
+            self._changed()
+
+    def _reset(self, mine: tuple[Path, ...]) -> None:
+        with self._turn:
+            config = self.config
+            if not self._settings.keys() >= set(mine):  # of a method that has given way meanwhile
+                return
+            for path in mine:
+                config = with_value(config, path, self._settings[path].default)
+            if config == self.config:
+                return
+            self.config = config
+            self._write(config)
+            self._changed()
+
+    def _write(self, config: Any) -> None:
+        self._writer = get_ident()
+        try:
+            for path, handle in self._handles.items():
+                value, setting = value_at(config, path), self._settings[path]
+                shown = word_for(setting, value) if setting.choices is not None else value
+                if handle.value != shown:
+                    handle.value = shown
+        finally:
+            self._writer = 0
+        self._show_cells()
+        self._hide_idle()
+
+    def _hide_idle(self) -> None:
+        """Show the settings that do something, and the folders that hold one."""
+        for path, handle in self._handles.items():
+            shown = not idle(self.config, path)
+            if handle.visible != shown:
+                handle.visible = shown
+        for title, folder in self._folders.items():
+            mine = [path for path in self._handles if FOLDERS.get(path[0], "Search") == title]
+            shown = not all(idle(self.config, path) for path in mine)
+            if folder.visible != shown:
+                folder.visible = shown
+
+    def _show_cells(self) -> None:
+        """Lengths in cells below the sliders of a folder; the maps may differ in resolution."""
+        for title, note in self._notes.items():
+            parts = []
+            for path, setting in self._settings.items():
+                bounds = setting.bounds
+                if FOLDERS.get(path[0], "Search") != title or bounds is None or not _in_metres(setting):
+                    continue
+                if self._cells:
+                    cells = in_cells(value_at(self.config, path), *self._cells)
+                    parts.append(f"{bounds.symbol} = {cells}")
+            note.content = (
+                f'<div style="font-size:11.5px;opacity:.7;margin:-2px 10px 6px">{" · ".join(parts)}</div>'
+            )

@@ -1,0 +1,155 @@
+"""Tab "Compare": which methods are to run on the loaded pair, and a card for what came of each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from html import escape
+from typing import Literal
+
+import viser
+
+from algorithms.methods.registry import METHODS, Family
+from app.drawing.palette import LIGHT, QUIET
+from app.model.status_text import typeset
+from app.page.panels.sparing import put
+from app.page.research.run_summary import Outcome
+
+OURS, PAPER, RIVALS, ALL, NONE = "Ours", "Paper's", "Rivals", "All", "None"
+FAMILIES: dict[Family, tuple[str, str]] = {
+    "ours": ("Ours", OURS),
+    "paper": ("The paper's, and its parts", PAPER),
+    "rivals": ("The paper's rivals, and today's", RIVALS),
+}
+HINT = "Which methods: tick them one by one, or a whole group."
+INTRO = (
+    "Run several methods on the maps that are loaded, and see whose merge is right. The method of the panel "
+    "runs as its sliders stand, the others at their defaults."
+)
+SMALL = "margin:4px 12px 6px;font-size:12px;line-height:1.4;opacity:.8"
+
+State = Literal["idle", "waits", "runs", "done"]
+
+
+@dataclass(frozen=True)
+class CompareWishes:
+    """What a person can ask for here; what is pressed in a card comes by the channel.
+
+    group : all methods of a group, and no others
+    """
+
+    run: Callable[[], None]
+    stop: Callable[[], None]
+    group: Callable[[str], None]
+    save: Callable[[], None]
+
+
+@dataclass(frozen=True)
+class Card:
+    """All that a card shows.
+
+    picture : of the merged map, as a data URI; "" where there is none
+    shown   : it is what lies over map 1 now
+    old     : what has changed since, in two words; "" where nothing has
+    note    : added to the numbers
+    """
+
+    chosen: bool
+    state: State = "idle"
+    outcome: Outcome | None = None
+    picture: str = ""
+    shown: bool = False
+    old: str = ""
+    note: str = ""
+
+
+class ComparePanel:
+    """Widgets; they know nothing of a run."""
+
+    def __init__(self, gui: viser.GuiApi, wishes: CompareWishes) -> None:
+        gui.add_html(f'<p style="{SMALL}">{INTRO}</p>')
+        groups = gui.add_button_group("", (OURS, PAPER, RIVALS, ALL, NONE), hint=HINT)
+        groups.on_click(lambda _: wishes.group(groups.value))
+        self._run = gui.add_button("Compare methods", color=LIGHT.ref, icon=viser.Icon.SCALE, disabled=True)
+        self._run.on_click(lambda _: wishes.run())
+        self._stop = gui.add_button(
+            "Stop comparing", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, visible=False
+        )
+        self._stop.on_click(lambda _: wishes.stop())
+        self._says = gui.add_html(says_html(""))
+        self._cards: dict[str, viser.GuiHtmlHandle] = {}
+        for family, (title, _) in FAMILIES.items():
+            gui.add_html(f'<h4 class="mm-family">{escape(title)}</h4>')
+            for name, method in METHODS.items():
+                if method.family == family:
+                    self._cards[name] = gui.add_html(card_html(name, Card(chosen=False)))
+        self._save = gui.add_button(
+            "Download tables and pictures",
+            color=QUIET,
+            icon=viser.Icon.DOWNLOAD,
+            visible=False,
+            hint="A zip: a table of the methods, every transform, the merged maps side by side.",
+        )
+        self._save.on_click(lambda _: wishes.save())
+
+    def possible(self, count: int, ready: bool, busy: bool, harvest: bool) -> None:
+        """How many methods are chosen, whether there is a pair, whether they run, whether any has ended."""
+        label = "Compare methods" if count == 0 else f"Compare {count} method{'s' if count > 1 else ''}"
+        put(self._run, label=label, disabled=count == 0 or not ready, visible=not busy)
+        put(self._stop, visible=busy)
+        put(self._save, visible=harvest and not busy)
+
+    def say(self, words: str, share: float | None = None) -> None:
+        """How far the run is."""
+        self._says.content = says_html(words, share)
+
+    def show(self, cards: Mapping[str, Card]) -> None:
+        """Show these cards; those that stay as they are cost nothing."""
+        for name, card in cards.items():
+            put(self._cards[name], content=card_html(name, card))
+
+
+def says_html(words: str, share: float | None = None) -> str:
+    """HTML of a line with a bar below it; both keep their place while there is nothing to say."""
+    done = "" if share is None else f' style="width:{100 * share:.0f}%"'
+    hidden = ' style="visibility:hidden"' if share is None else ""
+    return (
+        f'<div class="mm-says" role="status"><span>{escape(typeset(words))}</span>'
+        f"<div{hidden}><i{done}></i></div></div>"
+    )
+
+
+def card_html(name: str, card: Card) -> str:
+    """HTML of a method: a box to tick it, and what came of it."""
+    checked = " checked" if card.chosen else ""
+    title = escape(METHODS[name].title)
+    head = (
+        f'<label title="Run this method, too: {escape(name)}">'
+        f'<input type="checkbox" data-mm-pick="{name}"{checked}><span>{title}</span></label>'
+    )
+    body = _body(name, card)
+    return f'<div class="mm-method" data-method="{name}" data-state="{card.state}">{head}{body}</div>'
+
+
+def _body(name: str, card: Card) -> str:
+    told = card.outcome
+    if card.state in ("waits", "runs"):
+        word = "Merging …" if card.state == "runs" else "Waits for its turn."
+        return f'<div class="mm-card"><i class="mm-thumb"></i><span><small>{word}</small></span></div>'
+    if told is None:
+        return ""
+    numbers = " · ".join(part for part in (told.numbers, card.note, card.old) if part)
+    words = (
+        f'<span><b data-mood="{told.mood}">{escape(typeset(told.says))}</b>'
+        f"<small>{escape(typeset(told.verdict))}</small>"
+        f"<em>{escape(typeset(numbers))}</em></span>"
+    )
+    old, verdict = " data-old" if card.old else "", escape(told.verdict)
+    if not card.picture:
+        return f'<div class="mm-card"{old} title="{verdict}"><i class="mm-thumb">–</i>{words}</div>'
+    back = "Press again to go back to your own." if card.shown else "Press to lay it over map 1."
+    pressed = str(card.shown).lower()
+    return (
+        f'<button type="button" class="mm-card" data-mm-show="{name}" aria-pressed="{pressed}"{old} '
+        f'title="{verdict} {back}"><img class="mm-thumb" alt="" src="{card.picture}">{words}</button>'
+    )

@@ -1,0 +1,87 @@
+"""Another method's transform, shown over map 1 in place of one's own result: to be looked at, not taken."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import degrees
+from typing import Any
+
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import GridMap
+from algorithms.maps.map_fusion import fuse
+from algorithms.methods.registry import METHODS
+from algorithms.methods.steps import Answer, AnswersDetail, AugmentDetail, ObservationDetail, Step
+from algorithms.observations.observation import Observation, encounters_of
+from app.evaluation.method_run import Trial
+from app.model.run_state import Story
+from app.page.panels.html_widgets import box, table
+from app.page.research.run_summary import outcome_of, verdict_mood
+
+NOT_YOURS = "This is another method's merge, to be looked at. Go back to your own to take it away."
+
+
+@dataclass(frozen=True)
+class Guest:
+    """What a method has found on the loaded pair.
+
+    config : the settings it ran with
+    """
+
+    method: str
+    config: Any
+    seed: int
+    trial: Trial
+
+    @property
+    def title(self) -> str:
+        """What the method is called."""
+        return METHODS[self.method].title
+
+    @property
+    def pose(self) -> Pose2:
+        """Where it puts map 2."""
+        assert self.trial.pose is not None
+        return self.trial.pose
+
+    def story(self, ref: GridMap, mov: GridMap, seen: tuple[Observation, ...], own: Story) -> Story:
+        """The end of a run that found this; raises TooLargeError.
+
+        own : of the page's own run, whose levels are kept: they do not depend on the answer
+        """
+        story = Story(self.config)
+        augmented = own.get(AugmentDetail)
+        if augmented is not None:
+            story.tell(Step("augment", augmented, 0.0))
+        encounters = encounters_of(seen, ref, mov)
+        answers = AnswersDetail((Answer(self.pose, 0.0, "of another method"),))
+        for stage, detail in (
+            ("observe", ObservationDetail(encounters)),
+            ("search", answers),
+            ("fuse", fuse(ref, mov, self.pose)),
+        ):
+            story.tell(Step(stage, detail, 0.0))  # type: ignore[arg-type]
+        return story
+
+    def sentence(self) -> str:
+        """What is said of it above the map: the truth first, the verdict always."""
+        told = outcome_of(self.trial)
+        says = f" {told.says.rstrip('.')}." if self.trial.right is not None else ""
+        return f"{self.title}:{says} {told.verdict}"
+
+    def html(self) -> str:
+        """HTML of the same for the dock."""
+        told = outcome_of(self.trial)
+        rows = [
+            ("T: Δx", f"{self.pose.x:.3f} m"),
+            ("T: Δy", f"{self.pose.y:.3f} m"),
+            ("T: Δθ", f"{degrees(self.pose.theta):.2f}°"),
+            ("eq. (23)", "–" if self.trial.index is None else f"{self.trial.index:.1%}"),
+            ("time of the merge", f"{self.trial.seconds:.2f} s"),
+            ("seed", f"{self.seed}"),
+        ]
+        says = "" if self.trial.right is None else f" {told.says}"
+        return (
+            box(f"{self.title}.{says}", told.mood)
+            + box(told.verdict, verdict_mood(self.trial), NOT_YOURS)
+            + table(rows)
+        )

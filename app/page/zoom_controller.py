@@ -1,0 +1,49 @@
+"""Where a person looks closely at a large map, its cells are sent: sharp, and no more than can be seen."""
+
+from __future__ import annotations
+
+from threading import RLock
+
+from algorithms.common.pose import Pose2
+from app.drawing.browser_messages import Stage
+from app.drawing.scene.map_layers import Ground
+from app.drawing.scene.zoom_crop import View
+from app.jobs.latest_request import Newest
+from app.web.browser_events import Channel, Numbers
+
+
+class Closeness:
+    """Of one tab: follows its camera. The page tells where it rests, and which part of map 2 is there."""
+
+    def __init__(self, channel: Channel, stage: Stage, ground: Ground, drawing: RLock) -> None:
+        self._stage, self._ground, self._drawing = stage, ground, drawing
+        self._view: View | None = None
+        self._work = Newest(self._sharpen, "mapmeld-closer")
+        ground.changed = self._again
+        seen = {"box": Numbers(4, 4), "mov": Numbers(3, 3), "density": float}
+        channel.on("look", self._look, latest=True, **seen)
+
+    def close(self) -> None:
+        """The tab is gone."""
+        self._work.close()
+
+    def _look(self, box: list[float], mov: list[float], density: float) -> None:
+        x0, y0, x1, y1 = box
+        if x0 < x1 and y0 < y1 and density > 0:
+            self._view = View((x0, y0, x1, y1), Pose2(*mov), density)
+            self._again()
+
+    def _again(self) -> None:
+        if self._view is not None:
+            self._work.ask(self._view)
+
+    def _sharpen(self, view: View) -> None:
+        with self._drawing:
+            lacking = self._ground.closer(view)
+        if not lacking:
+            return
+        drawn = [(closer, closer.picture()) for closer in lacking]  # others may draw meanwhile
+        with self._drawing:
+            for closer, picture in drawn:
+                closer.image.lay(closer, picture)
+            self._stage.flush()

@@ -1,0 +1,1 @@
+"""The files of a result, and the report as HTML."""

@@ -1,0 +1,258 @@
+"""A result as one page to read, print and send on: no script, nothing from elsewhere, every name escaped."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from html import escape
+from math import degrees
+from typing import Any
+
+from algorithms.files.case_folder import observations_to_bytes
+from algorithms.methods.registry import METHODS
+from algorithms.methods.steps import MergeResult
+from algorithms.verdict.contradictions import Conflicts, find_conflicts
+from algorithms.verdict.decision import Outcome, merges_of
+from app.drawing.palette import LIGHT
+from app.model import chart_data as charts
+from app.model import status_text as words
+from app.model.merge_inputs import Inputs
+from app.model.objective_label import measure_of
+from app.model.settings import Setting, settings_of, value_at, word_for
+from app.model.status_text import typeset
+from app.page.cancellable_task import Check, unwatched
+from app.page.lesson.figures import verdict_figure as judgement
+from app.page.panels.places import MOST_PLACES, signed, summary, whose
+from app.page.panels.result_panel import STAGES, numbers
+from app.report import report_figures as outcome
+from app.report.ros_transform import publish_command
+from app.system.data_paths import asset
+
+_STYLE = asset("report.css")
+# what the file may fetch, said to the browser: nothing; its pictures are in it
+_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
+
+Row = Sequence[str]
+STRONG = {
+    Outcome.REFUSED: "<strong>REFUSED</strong>",
+    Outcome.BENT: "<strong>Merged, but the maps are bent</strong>",
+}
+
+
+def report_page(
+    result: MergeResult,
+    inputs: Inputs,
+    config: Any,
+    report: Mapping[str, Any],
+    check: Check = unwatched,
+) -> bytes:
+    """The content of report.html.
+
+    config : the settings that were used
+    report : what report.json says
+    check  : is called between the pictures
+    """
+    verdict, found = result.verdict, find_conflicts(result.fusion)
+    ended = verdict.outcome.value.capitalize()
+    name = inputs.name or "two maps"
+    parts = [
+        _verdict(result, inputs),
+        _pictures(result, inputs, found, check),
+        _section("How likely it is right", *_likely(result)),
+        _section("Contradictions, place by place", *_places(found)),
+        _section("The numbers", _table(numbers(result, inputs, config), "two")),
+        _proof(result, config),
+        _section("What robot 1 saw", *_seen(inputs)),
+        _section("How it was merged", *_settings(result, config, report)),
+        _section("How to use it", *_use(result)),
+    ]
+    made = ", ".join(f"{package} {number}" for package, number in report["versions"].items())
+    html = (
+        '<!doctype html><html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'
+        f"<title>{escape(f'{ended}: {name}')}</title><style>{_STYLE}</style></head><body>"
+        f"<header><b>mapmeld</b><span>Report of a merge</span></header><h1>{escape(name)}</h1>"
+        f"{''.join(parts)}<footer>Made with {escape(made)}.</footer></body></html>\n"
+    )
+    return html.encode()
+
+
+# --- parts ----------------------------------------------------------------------------------------
+
+
+def _verdict(result: MergeResult, inputs: Inputs) -> str:
+    verdict, T = result.verdict, result.T_ref_mov
+    then = words.remedy(result)
+    stop, reason = STRONG.get(verdict.outcome, ""), verdict.reason
+    if stop:
+        reason = _bare(reason)
+    more = f'<p class="then">{escape(then)}</p>' if then else ""
+    where = (
+        f"Map 2 lies in map 1 at x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°."
+        if verdict.accepted
+        else "No robot should act on this transform or on a map made with it. The best place that was found: "
+        f"x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°."
+    )
+    where = typeset(where)
+    read = "".join(f"<p>{escape(remark)}</p>" for remark in inputs.readings())
+    return (
+        f'<div class="verdict {words.mood(verdict)}">{stop}<p>{escape(reason)}</p>{more}</div>'
+        f"{read}<p>{where}</p>"
+    )
+
+
+def _bare(reason: str) -> str:
+    """What follows "Refused: " or "Merged, bent: ", as a sentence."""
+    _, _, rest = reason.partition(": ")
+    return rest[:1].upper() + rest[1:]
+
+
+def _pictures(result: MergeResult, inputs: Inputs, found: Conflicts, check: Check) -> str:
+    figures = []
+    check(0.3)
+    if inputs.ref is not None and inputs.mov is not None:
+        drawn = outcome.sources(inputs.ref, inputs.mov, inputs.observations, result.encounters)
+        figures.append(
+            _figure(drawn, "The maps as they came, each in its own frame, and what robot 1 saw of robot 2.")
+        )
+    check(0.45)
+    figures.append(
+        _figure(
+            outcome.overlay(result, inputs.observations),
+            "Map 2 on map 1 under the transform. A contradiction is a wall of one map on the other's free "
+            "floor; a cell's breadth of it along a wall means nothing.",
+        )
+    )
+    check(0.65)
+    figures.append(
+        _figure(
+            outcome.difference(result, found),
+            "Only what contradicts by more than the breadth of a wall. The numbers are those of the table.",
+        )
+    )
+    check(0.85)
+    return _section("Pictures", *figures)
+
+
+def _likely(result: MergeResult) -> list[str]:
+    verdict = result.verdict
+    said = (
+        f"{merges_of(verdict.probability).capitalize()}, by what merges of simulated buildings teach: "
+        f"{words.likelihood(verdict.probability)}."
+    )
+    caption = (
+        "What moves the probability: to the right what speaks for the merge, to the left what speaks against "
+        "it, beside a typical right merge."
+    )
+    figure = _figure(judgement.bars(verdict, LIGHT), caption)
+    cleared = ""
+    if verdict.cleared_cells:
+        cleared = (
+            f"<p>{verdict.cleared_cells} cells around where robots stood were taken for the robots "
+            "themselves: they speak neither for nor against, and are floor in the merged map.</p>"
+        )
+    return [f"<p>{escape(said)}</p>", figure, cleared]
+
+
+def _places(found: Conflicts) -> list[str]:
+    said = f"<p>{escape(summary(found))}</p>"
+    if not found.places:
+        return [said]
+    rows = [
+        (
+            str(n),
+            whose(place),
+            f"{place.wall:.1f} m",
+            f"{2 * place.radius:.1f} m",
+            signed(place.x),
+            signed(place.y),
+        )
+        for n, place in enumerate(found.places[:MOST_PLACES], 1)
+    ]
+    return [said, _table(rows, "places", ("place", "whose", "wall", "across", "x (m)", "y (m)"))]
+
+
+def _proof(result: MergeResult, config: Any) -> str:
+    state, measure = result.proof, measure_of(config)
+    if state is None:
+        return ""
+    rows = charts.proof_rows(state, measure)
+    head = ("on the search's raster", "turn", measure.unit or measure.name, "of the best")
+    return _section(
+        "Is there a better place?",
+        f"<p>{escape(words.proof_says(state, measure))} {state.nodes:,} blocks were bounded.</p>",
+        _figure(outcome.proof(state, measure), "The best value at every turn of map 2.")
+        if len(state.turns)
+        else "",
+        _table(rows, head=head) if rows else "",
+    )
+
+
+def _seen(inputs: Inputs) -> list[str]:
+    count = len(inputs.observations)
+    said = "One sighting." if count == 1 else f"{count} sightings."
+    text = observations_to_bytes(inputs.observations).decode()
+    return [f"<p>{said} As it stands in observation.yaml:</p><pre>{escape(text.rstrip())}</pre>"]
+
+
+def _settings(result: MergeResult, config: Any, report: Mapping[str, Any]) -> list[str]:
+    method = METHODS.get(result.method)
+    title = method.title if method else result.method
+    told = [("method", title), ("seed", str(result.seed)), *report["inputs"].items()]
+    parts = [_table(told, "words")]
+    if config is not None:
+        standard = method.defaults if method and type(method.defaults) is type(config) else config
+        rows = [_setting(setting, standard) for setting in settings_of(config)]
+        parts.append(_table(rows, "two", ("setting", "value")))
+    times = [
+        (STAGES.get(stage, stage), f"{1000 * seconds:.0f} ms") for stage, seconds in result.timings_s.items()
+    ]
+    parts.append(_table(times, "", ("time per stage", "")))
+    return parts
+
+
+def _setting(setting: Setting, standard: Any) -> Row:
+    def shown(value: Any) -> str:
+        if setting.choices is not None:
+            return word_for(setting, value)
+        return ("yes" if value else "no") if isinstance(value, bool) else f"{value:g}"
+
+    usual = value_at(standard, setting.path)
+    changed = "" if usual == setting.default else f" (usually {shown(usual)})"
+    return setting.label, f"{shown(setting.default)}{changed}"
+
+
+def _use(result: MergeResult) -> list[str]:
+    if not result.verdict.accepted:
+        return ["<p>Refused: there is nothing to publish. See what would help, at the top.</p>"]
+    return [
+        "<p>Tell ROS 2 where map 2's frame lies in map 1's, while both robots run:</p>",
+        f"<pre>{escape(publish_command(result))}</pre>",
+        "<p>Serve the merged map, which is in map 1's frame, to Nav2:</p>",
+        "<pre>ros2 run nav2_map_server map_server --ros-args -p yaml_filename:=merged.yaml</pre>",
+        "<p>The transform takes points of map 2 to map 1: p₁ = R(θ) p₂ + (x, y). It is in transform.yaml, "
+        "with all its digits; its covariance, the verdict and every setting are in report.json.</p>",
+    ]
+
+
+# --- pieces of HTML -------------------------------------------------------------------------------
+
+
+def _section(title: str, *parts: str) -> str:
+    return f"<section><h2>{escape(title)}</h2>{''.join(parts)}</section>"
+
+
+def _figure(svg: str, caption: str) -> str:
+    return f"<figure>{svg}<figcaption>{escape(caption)}</figcaption></figure>"
+
+
+def _table(rows: Iterable[Row], kind: str = "", head: Row = ()) -> str:
+    """A table, first column words; kind "two" sets it in two columns, "words" has words beside words."""
+
+    def row(cells: Row, tag: str) -> str:
+        shown = cells if kind == "words" else map(typeset, cells)  # words may be names of files
+        return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in shown) + "</tr>"
+
+    body = "".join(row(cells, "td") for cells in rows)
+    top = row(head, "th") if head else ""
+    return f'<div class="{escape(kind)}"><table>{top}{body}</table></div>'

@@ -1,0 +1,111 @@
+"""A scene that keeps what the page's pictures are, instead of showing them: see map_layers.
+
+It answers to what a GridImage and the Ground ask of viser's scene, and to nothing else.
+"""
+
+from __future__ import annotations
+
+from math import atan2
+from typing import Any
+
+from app.drawing.grid_pixels import Pixels
+from app.drawing.png import data_uri
+
+FRAMES = {"ref": "scene", "mov": "mov", "ghost": "ghost"}  # of the scene's tree -> of the player
+
+
+class PictureHandle:
+    """A picture that lies in the scene; where it lies in the end is what is recorded."""
+
+    def __init__(
+        self,
+        number: int,
+        position: tuple[float, float, float],
+        wxyz: tuple[float, ...],
+        scene: PictureScene,
+    ) -> None:
+        self.number, self.visible = number, True
+        self.position, self.wxyz = position, wxyz
+        self._scene = scene
+
+    @property
+    def at(self) -> list[float]:
+        """Its middle in its frame, metres, and its turn, radians."""
+        x, y, _ = self.position
+        return [round(x, 4), round(y, 4), round(yaw(self.wxyz), 6)]
+
+    def remove(self) -> None:
+        """It is not shown any more; what was recorded of it stays."""
+        self._scene.shown.remove(self)
+
+
+class FrameHandle:
+    """Where the pictures below a frame lie."""
+
+    def __init__(self, wxyz: tuple[float, ...]) -> None:
+        self.position: tuple[float, ...] = (0.0, 0.0, 0.0)
+        self.wxyz = wxyz
+
+    @property
+    def pose(self) -> list[float]:
+        """x and y in metres, turn in radians."""
+        return [self.position[0], self.position[1], yaw(self.wxyz)]
+
+
+class PictureScene:
+    """Every picture once, in the order they came, and which of them are seen at the moment."""
+
+    def __init__(self) -> None:
+        self._pictures: list[dict[str, Any]] = []
+        self._handles: list[PictureHandle] = []
+        self.shown: list[PictureHandle] = []
+        self.ghost: FrameHandle | None = None
+
+    def add_frame(self, name: str, *, show_axes: bool, wxyz: tuple[float, ...] = (1, 0, 0, 0)) -> FrameHandle:
+        """A frame of the tree; those that move are told by the page or, for the ghost, read here."""
+        frame = FrameHandle(wxyz)
+        if name.endswith("/ghost"):
+            self.ghost = frame
+        return frame
+
+    def add_image(
+        self,
+        name: str,
+        pixels: Pixels,
+        wide: float,
+        high: float,
+        *,
+        position: tuple[float, float, float],
+        wxyz: tuple[float, ...],
+        **_: Any,
+    ) -> PictureHandle:
+        """A picture with its middle at ``position`` of its frame; metres."""
+        self._pictures.append(
+            {
+                "frame": FRAMES[name.split("/")[2]],
+                "data": data_uri(pixels),
+                "size": [round(wide, 4), round(high, 4)],
+                "thin": "free" not in name,
+            }
+        )
+        handle = PictureHandle(len(self._handles), position, wxyz, self)
+        self._handles.append(handle)
+        self.shown.append(handle)
+        return handle
+
+    @property
+    def pictures(self) -> list[dict[str, Any]]:
+        """Every picture with the place that it was given last."""
+        return [
+            picture | {"at": handle.at} for picture, handle in zip(self._pictures, self._handles, strict=True)
+        ]
+
+    @property
+    def seen(self) -> list[int]:
+        """Numbers of the pictures that are seen, the lowest first."""
+        return [h.number for h in sorted(self.shown, key=lambda handle: handle.position[2]) if h.visible]
+
+
+def yaw(wxyz: tuple[float, ...]) -> float:
+    """The turn about z of a quaternion; radians."""
+    return 2 * atan2(float(wxyz[3]), float(wxyz[0]))

@@ -1,0 +1,45 @@
+"""A run as one HTML page that plays offline: recorded from the same pictures and words as the page's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import TYPE_CHECKING
+
+from app.model import status_text as words
+from app.model.merge_inputs import Inputs
+from app.model.run_state import Story
+from app.page.cancellable_task import Check, unwatched, wanted
+from app.report.replay.html_page import replay_html
+from app.report.replay.metadata import About
+from app.report.replay.recorder import record
+
+if TYPE_CHECKING:
+    from algorithms.methods.steps import Step
+    from app.model.merge_job import Job
+
+
+def replay_of(
+    job: Job,
+    steps: Callable[[Job, Callable[[], bool]], Iterator[Step]],
+    inputs: Inputs,
+    check: Check = unwatched,
+) -> bytes:
+    """The page for a run.
+
+    job    : what ran, and how
+    steps  : gives the steps of that run, as long as they are wanted
+    inputs : the same maps and sightings, with their name and, where it is known, the truth
+    check  : is called at every step
+    """
+
+    def watched() -> Iterator[Step]:
+        story = Story(job.config)
+        for step in steps(job, partial(wanted, check)):
+            story.tell(step)
+            check(words.progress(story))
+            yield step
+        check()  # they end early where they are not wanted
+
+    about = About(inputs, job.method, job.config, job.seed)
+    return replay_html(record(watched(), inputs, job.config), about)

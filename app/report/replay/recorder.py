@@ -1,0 +1,181 @@
+"""A run told once more, and every picture of it kept: what the page's map view draws, when it draws it.
+
+Time is the time of the telling: how long each step stays for the eye (app/model/playback.py). Nothing of the
+computer's own clock is in it, so the same run is recorded to the same bytes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from algorithms.methods.steps import AugmentDetail, MergeResult, ObservationDetail, RefineDetail, Step
+from app.drawing.browser_messages import Stage
+from app.drawing.legend import legend
+from app.drawing.palette import LIGHT
+from app.drawing.scene.grid_image import Size
+from app.drawing.scene.map_view import MapView
+from app.drawing.scene_layout import lay_out
+from app.model import status_text as words
+from app.model.merge_inputs import Inputs
+from app.model.playback import FRAME, dwell
+from app.model.run_state import Story
+from app.model.status_text import typeset
+from app.page.editing.observation_panel import numbers as sighting
+from app.page.panels.result_panel import STAGES, numbers
+from app.page.panels.run_panel import MAP
+from app.report.replay.chart_recorder import curves
+from app.report.replay.image_recorder import PictureScene
+
+BEFORE = 1.2  # seconds that the maps lie side by side
+AFTER = 4.0  # seconds that the verdict stays
+PARTICLES = 400  # drawn of the first swarm; more would be megabytes
+LATER_PARTICLES = 120  # of each later one, which is only glanced at
+ASPECT = 1.5  # of the player's map, width over height
+PICTURE = 1024  # pixels of a side of a picture at most
+
+Recording = dict[str, Any]
+
+
+class Recorder(Stage):
+    """Keeps what a tab would have been told; what has not changed since is left out."""
+
+    def __init__(self, scene: PictureScene) -> None:
+        super().__init__()
+        self._scene = scene
+        self._last: dict[str, Any] = {}
+        self.frames: list[dict[str, Any]] = []
+        self.time = 0.0
+        self.particles = PARTICLES
+
+    def extra(self, **told: Any) -> None:
+        """What a replay shows beside the map."""
+        with self._lock:
+            self._pending.update(told)
+
+    def send(self, message: dict[str, Any]) -> None:
+        """Keep it as a frame of this time."""
+        layers = message.pop("layers", {})
+        message.pop("follow", None)
+        message["pictures"] = self._scene.seen
+        if self._scene.ghost is not None:
+            message["ghost"] = _compact(self._scene.ghost.pose)
+        frame = {"t": round(self.time, 3)} | self._news("", message)
+        told = {name: items and [self._thinned(item) for item in items] for name, items in layers.items()}
+        drawn = self._news("layer ", told)
+        if drawn:
+            frame["layers"] = drawn
+        self.frames.append(frame)
+
+    def _news(self, prefix: str, told: dict[str, Any]) -> dict[str, Any]:
+        news = {}
+        for key, value in told.items():
+            value = _compact(value)
+            if self._last.get(prefix + key, self) != value:
+                self._last[prefix + key] = news[key] = value
+        return news
+
+    def _thinned(self, item: dict[str, Any]) -> dict[str, Any]:
+        if item["k"] != "cloud":
+            return item
+        points = np.asarray(item["p"]).reshape(-1, item["n"])
+        return item | {"p": points[:: max(1, -(-len(points) // self.particles))].ravel()}
+
+
+def record(steps: Iterable[Step], inputs: Inputs, config: Any) -> Recording:
+    """The pictures, words and curves of a whole run.
+
+    steps  : of the method, up to its MergeResult
+    inputs : what it merges; complete
+    config : its settings
+    returns: what player.js plays, as JSON can hold it; lengths in metres, times in seconds
+    """
+    scene = PictureScene()
+    stage = Recorder(scene)
+    maps = MapView(SimpleNamespace(scene=scene), stage, Size(PICTURE, PICTURE))  # type: ignore[arg-type]
+    maps.load(inputs, lay_out(inputs.ref, inputs.mov, inputs.at, ASPECT), LIGHT)
+    story, marks, result = Story(config), [{"t": 0.0, "name": "Maps"}], None
+    stage.hud(state=words.SIDE_BY_SIDE, mood="running", legend=legend(LIGHT, MAP, story))
+    stage.extra(curves=[], table=beginning(inputs))
+    stage.flush()
+    stage.time, drawn_at, at_work = BEFORE, -FRAME, ""
+    for step in steps:
+        story.tell(step)
+        if step.stage != at_work:
+            at_work = step.stage
+            name = STAGES.get(at_work, at_work)
+            marks.append({"t": round(stage.time, 3), "name": name[0].upper() + name[1:]})
+            drawn_at = -FRAME  # its first picture is not left out
+        if isinstance(step.detail, MergeResult):
+            result = step.detail
+        stay = dwell(step, 1.0, again=True)
+        if stay >= FRAME or stage.time - drawn_at >= FRAME or result is not None:
+            drawn_at = stage.time
+            _draw(story, stage, maps, inputs, config)
+        stage.time += stay
+        if result is not None:
+            break
+    assert result is not None
+    rows = _typeset(numbers(result, inputs, config))
+    mood = words.mood(result.verdict)
+    stage.hud(mood=mood, state=result.verdict.reason)
+    stage.extra(table={"rows": rows, "says": words.remedy(result), "mood": mood})
+    stage.flush()
+    return {
+        "frames": stage.frames,
+        "pictures": scene.pictures,
+        "marks": marks,
+        "length": round(stage.time + AFTER, 3),
+        "verdict": result.verdict.reason,
+    }
+
+
+def beginning(inputs: Inputs) -> dict[str, Any]:
+    """What there is before anything was done."""
+    rows = [
+        [name, f"{grid.width} × {grid.height} cells of {grid.resolution:g} m"]
+        for name, grid in (("map 1", inputs.ref), ("map 2", inputs.mov))
+        if grid is not None
+    ]
+    return {"title": inputs.name, "rows": [*rows, ["sightings of robot 2", str(len(inputs.observations))]]}
+
+
+def observed(inputs: Inputs) -> dict[str, Any]:
+    """The numbers of the first sighting."""
+    o, at = inputs.observations[0], inputs.encounters[0]
+    of = f", the first of {len(inputs.observations)}" if len(inputs.observations) > 1 else ""
+    return {"title": f"What robot 1 saw{of}", "rows": _typeset(sighting(o, at))}
+
+
+def _typeset(rows: Iterable[tuple[str, ...]]) -> list[list[str]]:
+    return [[name, *map(typeset, values)] for name, *values in rows]
+
+
+def _draw(story: Story, stage: Recorder, maps: MapView, inputs: Inputs, config: Any) -> None:
+    detail = story.last.detail if story.last else None
+    later = isinstance(detail, RefineDetail) and detail.index > 0
+    stage.particles = LATER_PARTICLES if later else PARTICLES
+    maps.show(story, config, camera=True, live=True)
+    stage.hud(state=words.sentence(story), mood="running", legend=legend(LIGHT, MAP, story))
+    seen = isinstance(detail, (ObservationDetail, AugmentDetail))
+    stage.extra(curves=curves(story), table=observed(inputs) if seen else None)
+    stage.flush()
+
+
+def _compact(value: Any) -> Any:
+    """The value as JSON holds it in few letters: to a millimetre, or a thousandth of a radian."""
+    if isinstance(value, np.ndarray):
+        return _compact(np.round(value.astype(float), 3).tolist())
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float):
+        value = round(value, 3)
+        return int(value) if value == int(value) else value
+    if isinstance(value, dict):
+        return {key: _compact(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_compact(inner) for inner in value]
+    return value

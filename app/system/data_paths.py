@@ -1,0 +1,40 @@
+"""Where static/ and sample_maps/ are, beside the packages in a checkout, inside them in a wheel; and the
+files that a browser gets.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+_APP = Path(__file__).resolve().parents[1]
+ALGORITHMS = _APP.parent / "algorithms"
+
+
+def _find(name: str) -> Path:
+    installed = _APP / f"_{name}"
+    return installed if installed.is_dir() else _APP.parent / name
+
+
+def static() -> Path:
+    """Folder of the logo and of the README's pictures."""
+    return _find("static")
+
+
+def asset(name: str) -> str:
+    """Text of a file of ``app/frontend/``: a script, a style, a page."""
+    return (_APP / "frontend" / name).read_text(encoding="utf-8")
+
+
+def sample_maps() -> Path:
+    """Folder of the sample cases, a folder each."""
+    return _find("sample_maps")
+
+
+def samples() -> dict[str, Path]:
+    """The sample cases by the name a person reads in the menu; empty where none are installed."""
+    from algorithms.files.case_folder import FIRST_MAP_FILE  # it loads what reads maps
+
+    root = sample_maps()
+    if not root.is_dir():
+        return {}
+    return {path.parent.name: path.parent for path in sorted(root.glob(f"*/{FIRST_MAP_FILE}"))}

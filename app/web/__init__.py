@@ -1,0 +1,1 @@
+"""The viser server, uploads, downloads, and events of the browser."""

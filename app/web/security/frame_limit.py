@@ -1,0 +1,63 @@
+"""The frames of a connection: no more, and no smaller ones, than a browser sends.
+
+What is not the first of a message costs the sender nothing, and nothing in websockets bounds it: a message
+that never ends, of empty frames, fills the memory, and pings keep the server busy with answers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import monotonic
+from typing import Any
+
+from websockets.asyncio.server import ServerConnection
+from websockets.exceptions import ProtocolError
+from websockets.frames import OP_BINARY, OP_CONT, OP_TEXT, Frame
+
+from app.web.security.message_filter import Gate
+
+MOST = 2048  # frames of one message; a browser cuts a megabyte into a hundred at most
+RATE, BURST = 100.0, 1000.0  # further frames and pings a second, and at once
+EARNS = 1024  # bytes that let another one come: a large file on a fast line has many
+
+
+class Allowance:
+    """Counts the frames of one connection."""
+
+    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
+        self._clock = clock
+        self._left, self._at = BURST, clock()
+        self._parts = 0  # of the message that is coming
+
+    def bears(self, frame: Frame) -> bool:
+        """Take in one more; whether an honest browser could have sent it."""
+        first = frame.opcode is OP_TEXT or frame.opcode is OP_BINARY
+        if first:
+            self._parts = 1
+        elif frame.opcode is OP_CONT:
+            self._parts += 1
+        now = self._clock()
+        earned = (now - self._at) * RATE + len(frame.data) / EARNS
+        self._left, self._at = min(BURST, self._left + earned) - (not first), now
+        return self._left >= 0 and self._parts <= MOST
+
+
+def bounded(gate: Gate) -> type[ServerConnection]:
+    """The connections of a server of ours: one that sends too many frames ends at once, and alone."""
+
+    class Bounded(ServerConnection):
+        def __init__(self, *what: Any, **how: Any) -> None:
+            super().__init__(*what, **how)
+            take, allowance = self.protocol.recv_frame, Allowance()
+
+            def recv_frame(frame: Frame) -> None:
+                if not allowance.bears(frame):
+                    gate.drop("frames")
+                    self.protocol.data_to_send()  # a thousand answers to pings, which nobody hears any more
+                    self.transport.abort()
+                    raise ProtocolError("more frames than a browser sends")
+                take(frame)
+
+            self.protocol.recv_frame = recv_frame  # type: ignore[method-assign]
+
+    return Bounded

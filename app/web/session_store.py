@@ -1,0 +1,106 @@
+"""A tab that is reloaded, or loses its connection for a while, finds everything as it was.
+
+The key to it is kept by the tab itself (sessionStorage, which a reload does not clear and no other tab
+shares), is made anew at every connection, and cannot be guessed. A copy of a tab comes with the key of a
+tab that is still there, and gets nothing for it.
+"""
+
+from __future__ import annotations
+
+import secrets
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass
+from threading import Lock, Timer
+from time import monotonic
+from typing import Any
+
+from app.page.undo_history import History
+
+GRACE = 15 * 60.0  # seconds that a tab may be away
+MOST_KEPT = 8  # tabs that are away; the one that is away longest is forgotten first
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """What a tab leaves behind: where it has been, how it was looked at, and how fast."""
+
+    history: History
+    dark: bool = False
+    speed: str = ""
+    research: tuple[Any, ...] = ()  # what each of its tabs had found
+
+
+Leave = Callable[[], "Kept | None"]
+
+
+class Keep:
+    """Of all tabs of a server."""
+
+    def __init__(
+        self, grace: float = GRACE, most: int = MOST_KEPT, clock: Callable[[], float] = monotonic
+    ) -> None:
+        self._grace, self._most, self._clock = grace, most, clock
+        self._here: dict[str, Leave] = {}
+        self._away: OrderedDict[str, tuple[float, Kept]] = OrderedDict()
+        self._sweeping = False  # whether a timer is set
+        self._lock = Lock()
+
+    def enter(self, key: str, again: bool, leave: Leave) -> tuple[str, Kept | None]:
+        """A tab is here: its new key, and what it left behind under its old one.
+
+        again : it is the same page, which has connected anew: its former connection is dead, even if
+                the server has not noticed yet
+        leave : closes the tab and tells what it leaves behind
+        """
+        with self._lock:
+            self._forget()
+            _, kept = self._away.pop(key, (0.0, None))
+            dead = self._here.pop(key, None) if again else None
+        if dead is not None:
+            kept = dead()
+        fresh = secrets.token_urlsafe(24)
+        with self._lock:
+            self._here[fresh] = leave
+        return fresh, kept
+
+    def leave(self, key: str) -> None:
+        """A tab is gone: what it leaves behind is kept for a while."""
+        with self._lock:
+            leave = self._here.pop(key, None)
+        if leave is None:
+            return  # it has come back already
+        kept = leave()
+        if kept is None:
+            return
+        with self._lock:
+            self._away[key] = self._clock(), kept
+            self._forget()
+            self._sweep_later()
+
+    def forget_all(self) -> None:
+        """Let go of everything that tabs left behind: the room is needed by tabs that are there."""
+        with self._lock:
+            self._away.clear()
+
+    def sweep(self) -> None:
+        """Let go of what nobody came back for."""
+        with self._lock:
+            self._sweeping = False
+            self._forget()
+            self._sweep_later()
+
+    def _sweep_later(self) -> None:
+        """One timer for all: it is set for the tab that is away longest."""
+        if self._sweeping or not self._away:
+            return
+        self._sweeping = True
+        since, _ = next(iter(self._away.values()))
+        timer = Timer(max(1.0, since + self._grace - self._clock()), self.sweep)
+        timer.name, timer.daemon = "mapmeld-keep", True
+        timer.start()
+
+    def _forget(self) -> None:
+        old = self._clock() - self._grace
+        while self._away and (len(self._away) > self._most or next(iter(self._away.values()))[0] <= old):
+            self._away.popitem(last=False)
