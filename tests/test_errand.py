@@ -14,9 +14,10 @@ from PIL import Image
 from algorithms.common.errors import InputFileError
 from algorithms.files.map_file import map_from_bytes
 from app.drawing.browser_messages import Stage
-from app.page.cancellable_task import Errand, Left, Watched
+from app.page.cancellable_task import CancellableTask
 from app.page.panels.files_panel import FilesPanel, Upload
 from app.page.panels.replay import ReplayButton
+from app.system.cancellation import CancellableReader, Cancelled
 from app.web.download import TAKEAWAY
 
 YAML = b"image: a\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
@@ -50,7 +51,7 @@ class Person:
     def __init__(self) -> None:
         self.stage = Silent()
         self.stage.hud(**BEFORE)
-        self.errand = Errand(self.stage, RLock(), self._stoppable)
+        self.errand = CancellableTask(self.stage, RLock(), self._stoppable)
         self.impatient, self.could_stop = False, []
 
     def _stoppable(self, yes: bool) -> None:
@@ -83,13 +84,13 @@ def test_no_reader_takes_stop_for_a_damaged_file(kind):
         nonlocal looks
         looks += 1
         if looks == 2:
-            raise Left
+            raise Cancelled
 
     content = image(kind)
-    with pytest.raises(Left):
-        map_from_bytes("m.yaml", YAML, "m", Watched(content, check))
+    with pytest.raises(Cancelled):
+        map_from_bytes("m.yaml", YAML, "m", CancellableReader(content, check))
     assert looks == 2
-    whole = map_from_bytes("m.yaml", YAML, "m", Watched(content, lambda: None))
+    whole = map_from_bytes("m.yaml", YAML, "m", CancellableReader(content, lambda: None))
     assert (whole.cells == map_from_bytes("m.yaml", YAML, "m", content).cells).all()
 
 
@@ -181,11 +182,11 @@ def test_stop_ends_everything_that_is_under_way_at_once(person):
         with person.errand("Reading.") as first, person.errand("Making the files.", aside=True) as second:
             assert person.errand.stop()
             for check in (first, second):
-                with pytest.raises(Left):
+                with pytest.raises(Cancelled):
                     check()
                 left.append(check)
 
-    with pytest.raises(Left):
+    with pytest.raises(Cancelled):
         both()
     assert len(left) == 2
     assert person.could_stop == [True, True, True, False]
@@ -218,12 +219,12 @@ def test_stop_is_seen_at_once_and_a_second_one_is_for_somebody_else(person):
             assert not person.errand.stop()
             raise OSError("what becomes of it is of no matter any more")
 
-    with pytest.raises(Left):
+    with pytest.raises(Cancelled):
         slow()
 
 
 def test_a_press_at_the_last_moment_still_counts(person):
-    with pytest.raises(Left), person.errand("Reading."):
+    with pytest.raises(Cancelled), person.errand("Reading."):
         person.errand.stop()
     assert person.said == BEFORE
 
@@ -234,6 +235,6 @@ def test_what_a_run_has_said_meanwhile_stays_said(person):
             person.stage.hud(state="Merged.", mood="accepted", progress=None)
             person.errand.stop()
 
-    with pytest.raises(Left):
+    with pytest.raises(Cancelled):
         overtaken()
     assert person.said["state"] == "Merged."

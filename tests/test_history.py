@@ -24,8 +24,8 @@ from app.model.run_state import Story
 from app.model.settings import with_value
 from app.page.page_snapshot import Desk, change
 from app.page.panels.history_panel import history_html, steps_html
-from app.page.undo_history import MOST, PAUSE, Entry, History
-from app.web.session_store import Keep, Kept
+from app.page.undo_history import MOST, PAUSE, Entry, History, SavedTab
+from app.web.session_store import SessionStore
 
 ROOM = GridMap(np.full((40, 40), FREE, dtype=np.int8), 0.1)
 SEEN = Observation(Pose2(), 0.1, 0.1, 0.1, 0.0)
@@ -179,12 +179,12 @@ def clock() -> Clock:
     return Clock()
 
 
-def kept(seed: int = 0) -> Kept:
-    return Kept(history(seeded(seed)))
+def kept(seed: int = 0) -> SavedTab:
+    return SavedTab(history(seeded(seed)))
 
 
 def test_a_tab_that_comes_back_in_time_finds_what_it_left(clock):
-    keep = Keep(grace=10, clock=clock)
+    keep = SessionStore(grace=10, clock=clock)
     left = kept()
     key, nothing = keep.enter("", False, lambda: left)
     assert nothing is None
@@ -197,7 +197,7 @@ def test_a_tab_that_comes_back_in_time_finds_what_it_left(clock):
 
 
 def test_a_tab_that_comes_back_too_late_begins_anew(clock):
-    keep = Keep(grace=10, clock=clock)
+    keep = SessionStore(grace=10, clock=clock)
     key, _ = keep.enter("", False, kept)
     keep.leave(key)
     clock.now += 10
@@ -205,7 +205,7 @@ def test_a_tab_that_comes_back_too_late_begins_anew(clock):
 
 
 def test_a_copy_of_a_tab_gets_nothing_while_the_tab_is_there(clock):
-    keep = Keep(clock=clock)
+    keep = SessionStore(clock=clock)
     left = kept()
     key, _ = keep.enter("", False, lambda: left)
     assert keep.enter(key, False, kept)[1] is None
@@ -214,7 +214,7 @@ def test_a_copy_of_a_tab_gets_nothing_while_the_tab_is_there(clock):
 
 
 def test_a_page_that_connects_anew_takes_over_from_its_dead_connection(clock):
-    keep = Keep(clock=clock)
+    keep = SessionStore(clock=clock)
     left = kept()
     key, _ = keep.enter("", False, lambda: left)
     fresh, found = keep.enter(key, True, kept)
@@ -226,7 +226,7 @@ def test_a_page_that_connects_anew_takes_over_from_its_dead_connection(clock):
 
 
 def test_only_so_many_are_kept_and_the_longest_away_goes_first(clock):
-    keep = Keep(most=3, clock=clock)
+    keep = SessionStore(most=3, clock=clock)
     keys = [keep.enter("", False, kept)[0] for _ in range(5)]
     for key in keys:
         keep.leave(key)
@@ -235,7 +235,7 @@ def test_only_so_many_are_kept_and_the_longest_away_goes_first(clock):
 
 def test_what_nobody_came_back_for_is_let_go_of_by_one_timer_for_all(clock):
     before = sum(thread.name == "mapmeld-keep" for thread in enumerate_threads())
-    keep = Keep(grace=10_000, clock=clock)
+    keep = SessionStore(grace=10_000, clock=clock)
     left = kept()
     gone = ref(left)
     key, _ = keep.enter("", False, lambda box=[left]: box.pop())
@@ -252,7 +252,7 @@ def test_what_nobody_came_back_for_is_let_go_of_by_one_timer_for_all(clock):
 
 
 def test_keys_are_long_and_never_the_same():
-    keep = Keep()
+    keep = SessionStore()
     keys = {keep.enter("", False, kept)[0] for _ in range(100)}
     assert len(keys) == 100
     assert min(map(len, keys)) >= 32

@@ -22,7 +22,8 @@ from app.model.status_text import progress, sentence, typeset
 from app.page.editing.observation_panel import observations_html
 from app.page.panels.files_panel import Upload, inputs_from
 from app.page.panels.html_widgets import box, table
-from app.page.panels.result_panel import numbers, result_html, times
+from app.page.panels.result_panel import result_html
+from app.report.result_rows import numbers, times
 
 DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 

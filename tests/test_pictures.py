@@ -21,11 +21,11 @@ from app.drawing.palette import DARK, LIGHT, css
 from app.drawing.scene_layout import lay_out
 from app.drawing.svg.map_raster import View, around, walls
 from app.drawing.svg.svg_canvas import WIDE, Plot, Sheet, ticks
+from app.drawing.svg.verdict_bars import FULL, bars, values
 from app.model.merge_inputs import Inputs
 from app.page.lesson import equations
 from app.page.lesson.figures.figure_registry import PICTURES, Dial, place_of, shown
 from app.page.lesson.figures.spectra_figures import strongest
-from app.page.lesson.figures.verdict_figure import FULL, bars, values
 from app.page.lesson.lesson_run import FEW, Study, keep
 from app.page.lesson.lesson_texts import PLACEHOLDER, files, filled, lesson_folder, read_step
 from app.page.lesson.placeholders import NUMBERS, numbers_of

@@ -14,7 +14,8 @@ from algorithms.verdict.contradictions import Conflicts, Place, find_conflicts
 from app.drawing import grid_pixels as render
 from app.drawing.palette import DARK, LIGHT
 from app.drawing.scene.map_comparison import rings
-from app.page.panels.places import MOST_PLACES, places_html, summary, whose
+from app.model.contradiction_text import MOST_PLACES, summary, whose
+from app.page.panels.result_panel import places_html
 
 NOTHING = Conflicts(np.zeros((2, 2), bool), np.zeros((2, 2), bool), (), 0.0)
 WALL = Place(1.0, -2.0, 0.5, 3.0, 0.0)

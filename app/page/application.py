@@ -21,7 +21,7 @@ from app.system.logging_setup import facts
 from app.system.memory import Housekeeping
 from app.web.cell_quota import Budget
 from app.web.security.access_control import Access
-from app.web.session_store import Keep
+from app.web.session_store import SessionStore
 from app.web.viser_server import guarded_server
 
 log = logging.getLogger(__name__)
@@ -61,7 +61,7 @@ def make_server(
     camera.position, camera.look_at, camera.up = (0.0, 0.0, 600.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)
     camera.fov, camera.near, camera.far = radians(4), 10.0, 5000.0
     pages: dict[int, Page] = {}
-    keep = Keep()
+    keep = SessionStore()
     budget = Budget(make_room=keep.forget_all)
     housekeeping = Housekeeping()
 

@@ -6,13 +6,17 @@ then it has touched nothing of the page.
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from threading import Lock, RLock
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
+
+import viser
+
+from app.system.cancellation import Cancelled, Check
+from app.web.download import TAKEAWAY
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,43 +24,6 @@ if TYPE_CHECKING:
     from app.drawing.browser_messages import Stage
 
 OFTEN = 0.1  # seconds between two words of how far it is
-
-
-class Check(Protocol):
-    """What work calls now and then to look up; it may raise Left."""
-
-    def __call__(self, done: float | None = None, /) -> None:
-        """done : share of the work that is done, 0 … 1; None where nobody knows."""
-
-
-class Left(BaseException):
-    """Stop was pressed. No Exception: who takes any of those for a damaged file lets this one pass."""
-
-
-def wanted(check: Check) -> bool:
-    """Whether the work is still asked for."""
-    try:
-        check()
-    except Left:
-        return False
-    return True
-
-
-def unwatched(done: float | None = None, /) -> None:
-    """The check of work that cannot be left."""
-
-
-class Watched(io.BytesIO):
-    """A file in memory whose reader looks up at every part of it."""
-
-    def __init__(self, content: bytes, check: Check) -> None:
-        super().__init__(content)
-        self._check = check
-
-    def read(self, size: int | None = -1, /) -> bytes:
-        """The next part, or all that is left; raises Left."""
-        self._check()
-        return super().read(size)
 
 
 @dataclass(eq=False)
@@ -68,7 +35,7 @@ class _Doing:
     left: bool = False
 
 
-class Errand:
+class CancellableTask:
     """Of one tab: says what is done, and puts the words back where nothing is to be said of it."""
 
     def __init__(self, stage: Stage, drawing: RLock, stoppable: Callable[[bool], None]) -> None:
@@ -79,7 +46,7 @@ class Errand:
 
     @contextmanager
     def __call__(self, doing: str, aside: bool = False) -> Iterator[Check]:
-        """Gives what the work calls to look up: it raises Left once Stop was pressed.
+        """Gives what the work calls to look up: it raises Cancelled once Stop was pressed.
 
         aside : it changes nothing on the page, so that the words from before are right afterwards, too
         """
@@ -89,7 +56,7 @@ class Errand:
         def check(done: float | None = None, /) -> None:
             nonlocal told
             if me.left:
-                raise Left
+                raise Cancelled
             if done is not None and perf_counter() - told >= OFTEN and self._shows(me):
                 told = perf_counter()
                 me.said["progress"] = done
@@ -102,7 +69,7 @@ class Errand:
             back = aside
         except Exception as error:
             if me.left:  # what becomes of it is of no matter any more
-                raise Left from error
+                raise Cancelled from error
             raise
         finally:
             self._end(me, back)
@@ -151,3 +118,27 @@ class Errand:
         with self._drawing:
             self._stage.hud(**words)
             self._stage.flush()
+
+
+class DownloadTask:
+    """Of one button: makes a file that is asked for, and sends it."""
+
+    def __init__(self, client: viser.ClientHandle, task: CancellableTask) -> None:
+        self._client, self._task = client, task
+        self._at_work = Lock()
+
+    def __call__(self, doing: str, name: str, make: Callable[[Check], bytes]) -> None:
+        """Make a file while it says what it does; where that is left, there is no file, and that is all.
+
+        make : looks up now and then; raises Cancelled
+        """
+        if not self._at_work.acquire(blocking=False):
+            return  # a second press while it is being made
+        try:
+            with TAKEAWAY.making() as begun, suppress(Cancelled):
+                if begun:
+                    with self._task(doing, aside=True) as check:
+                        content = make(check)
+                    TAKEAWAY.send(self._client, name, content)
+        finally:
+            self._at_work.release()

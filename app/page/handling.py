@@ -16,11 +16,11 @@ from algorithms.observations.observation import Observation
 from app.drawing.legend import legend
 from app.drawing.scene_layout import Layout
 from app.model.run_state import Story
+from app.model.view_modes import MAP
 from app.page.editing.map_drag_controller import ByHand
 from app.page.editing.placement_controller import Placing
 from app.page.page_snapshot import Desk
 from app.page.panels.result_panel import result_html
-from app.page.panels.run_panel import MAP
 from app.page.part import Part
 
 

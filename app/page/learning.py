@@ -14,11 +14,11 @@ from app.drawing.legend import legend
 from app.drawing.scene_layout import Layout
 from app.model.merge_inputs import Files, Inputs
 from app.model.run_state import Story
+from app.model.view_modes import LESSON, MAP, MUSEUM
 from app.page.lesson.lesson_controller import Lesson
 from app.page.lesson.lesson_texts import lesson_folder, museum_folder
 from app.page.lesson.museum_controller import Museum
 from app.page.page_snapshot import Desk
-from app.page.panels.run_panel import LESSON, MAP, MUSEUM
 from app.page.part import Part
 
 

@@ -27,7 +27,8 @@ from app.model import status_text as words
 from app.model.merge_inputs import Inputs
 from app.model.merge_job import Job
 from app.model.run_state import Story
-from app.page.cancellable_task import Errand
+from app.model.view_modes import MAP
+from app.page.cancellable_task import CancellableTask
 from app.page.editing.observation_panel import ObservationPanel
 from app.page.handling import Handling
 from app.page.learning import Learning
@@ -36,18 +37,19 @@ from app.page.panels.charts_panel import PlotDock
 from app.page.panels.export_panel import ExportPanel
 from app.page.panels.files_panel import FilesPanel
 from app.page.panels.result_panel import result_html
-from app.page.panels.run_panel import MAP, RunPanel, Wishes
+from app.page.panels.run_panel import RunPanel, Wishes
 from app.page.panels.settings_panel import TuningPanel
 from app.page.panels.what_if_panel import WhatIfPanel
 from app.page.research.other_result_controller import Researching
 from app.page.run_controller import Telling
 from app.page.undo_controller import Timeline
+from app.page.undo_history import SavedTab
 from app.page.view_controller import Looking
 from app.page.zoom_controller import Closeness
 from app.web.browser_events import Channel
 from app.web.cell_quota import Budget
 from app.web.download import TAKEAWAY
-from app.web.session_store import Keep, Kept
+from app.web.session_store import SessionStore
 from app.web.upload import Arrivals, Recipient
 
 log = logging.getLogger(__name__)
@@ -62,7 +64,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         self,
         client: viser.ClientHandle,
         initial: Case | None,
-        keep: Keep,
+        keep: SessionStore,
         arrivals: Arrivals,
         lesson: Path | None = None,
         budget: Budget | None = None,
@@ -89,7 +91,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         self.session = Session(self, workers.COMMON.bench())
         self._channel.on("compare", self._compare, mode=MODES)
         self._closer = Closeness(self._channel, self._stage, self._maps.ground, self.session.drawing)
-        self._errand = Errand(
+        self._errand = CancellableTask(
             self._stage, self.session.drawing, lambda yes: self._run.stoppable("errand", yes)
         )
         inputs = Inputs.of(initial) if initial else Inputs()
@@ -128,12 +130,12 @@ class Page(Looking, Telling, Handling, Learning, Researching):
                 self._keep.leave(self._key)
             self._end()
 
-    def _leave(self) -> Kept | None:
+    def _leave(self) -> SavedTab | None:
         self._end()
         history = self._timeline.history
         if history is None:
             return None
-        return Kept(history, self._run.dark, self._run.speed, self._research_leaves())
+        return SavedTab(history, self._run.dark, self._run.speed, self._research_leaves())
 
     def _end(self) -> None:
         self._budget.release(self)

@@ -23,7 +23,7 @@ from app.jobs.job_thread import Session
 from app.model.merge_inputs import Inputs
 from app.model.merge_job import Job
 from app.model.run_state import Story
-from app.page.cancellable_task import Errand
+from app.page.cancellable_task import CancellableTask
 from app.page.editing.map_drag_controller import ByHand
 from app.page.editing.observation_panel import ObservationPanel
 from app.page.editing.placement_controller import Placing
@@ -73,7 +73,7 @@ class Part(ABC):
     _asked: bool
     _turn: RLock
     _files: FilesPanel
-    _errand: Errand
+    _errand: CancellableTask
     _refining: tuple[Scales, Pose2] | None
 
     @property

@@ -17,9 +17,9 @@ from app.model import status_text as words
 from app.model.merge_inputs import Inputs
 from app.model.merge_job import Job
 from app.model.run_state import Story
+from app.model.view_modes import HEIGHTS, MAP, SWARM
 from app.page.panels.html_widgets import box
 from app.page.panels.result_panel import result_html
-from app.page.panels.run_panel import HEIGHTS, MAP, SWARM
 from app.page.part import Part
 from app.report.export import Harvest
 from app.report.replay.make_replay import replay_of

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from time import monotonic
+from typing import Any
 
 from app.page.page_snapshot import Desk, weight
 
@@ -95,6 +96,16 @@ class History:
         for entry in self._entries:
             held |= weight(entry.desk)
         return sum(held.values())
+
+
+@dataclass(frozen=True, eq=False)
+class SavedTab:
+    """What a tab leaves behind: where it has been, how it was looked at, and how fast."""
+
+    history: History
+    dark: bool = False
+    speed: str = ""
+    research: tuple[Any, ...] = ()  # what each of its tabs had found
 
 
 def _joined(first: str, then: str) -> str:

@@ -10,7 +10,7 @@ from app.drawing.browser_messages import mark
 from app.drawing.palette import DARK, LIGHT
 from app.drawing.scene.map_layers import Mode
 from app.model import status_text as words
-from app.page.panels.run_panel import HEIGHTS, MAP, SWARM
+from app.model.view_modes import HEIGHTS, MAP, SWARM
 from app.page.part import Part
 
 FAR = 1e6  # metres from the scene's origin; no map reaches there

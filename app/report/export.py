@@ -11,7 +11,6 @@ from typing import Any
 from algorithms.files.case_folder import OBSERVATION_FILE, observations_to_bytes
 from algorithms.methods.steps import MergeResult
 from app.model.merge_inputs import Inputs
-from app.page.cancellable_task import Check, unwatched
 from app.report.result_files import (
     MERGED_FILES,
     OVERLAY_FILE,
@@ -21,6 +20,7 @@ from app.report.result_files import (
     report_of,
     result_files,
 )
+from app.system.cancellation import Check, unwatched
 
 ARCHIVE = "merged.zip"
 # what a robot would act upon: of a refused merge it is given only to who insists

@@ -13,18 +13,18 @@ from algorithms.methods.steps import MergeResult
 from algorithms.verdict.contradictions import Conflicts, find_conflicts
 from algorithms.verdict.decision import Outcome, merges_of
 from app.drawing.palette import LIGHT
+from app.drawing.svg.verdict_bars import bars
 from app.model import chart_data as charts
 from app.model import status_text as words
+from app.model.contradiction_text import MOST_PLACES, signed, summary, whose
 from app.model.merge_inputs import Inputs
 from app.model.objective_label import measure_of
 from app.model.settings import Setting, settings_of, value_at, word_for
 from app.model.status_text import typeset
-from app.page.cancellable_task import Check, unwatched
-from app.page.lesson.figures import verdict_figure as judgement
-from app.page.panels.places import MOST_PLACES, signed, summary, whose
-from app.page.panels.result_panel import STAGES, numbers
 from app.report import report_figures as outcome
+from app.report.result_rows import STAGES, numbers
 from app.report.ros_transform import publish_command
+from app.system.cancellation import Check, unwatched
 from app.system.data_paths import asset
 
 _STYLE = asset("report.css")
@@ -144,7 +144,7 @@ def _likely(result: MergeResult) -> list[str]:
         "What moves the probability: to the right what speaks for the merge, to the left what speaks against "
         "it, beside a typical right merge."
     )
-    figure = _figure(judgement.bars(verdict, LIGHT), caption)
+    figure = _figure(bars(verdict, LIGHT), caption)
     cleared = ""
     if verdict.cleared_cells:
         cleared = (

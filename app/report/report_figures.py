@@ -23,8 +23,8 @@ from app.drawing.svg.map_plot import robot, scale_bar, scene
 from app.drawing.svg.map_raster import Pixels, View, draw_map
 from app.drawing.svg.svg_canvas import Plot, Sheet, ticks
 from app.model import chart_data as charts
+from app.model.contradiction_text import MOST_PLACES
 from app.model.objective_label import Measure
-from app.page.panels.places import MOST_PLACES
 
 FULL = 760.0  # width of a picture of the report; two stand side by side in it
 PAIR, BETWEEN = 372.0, 16.0

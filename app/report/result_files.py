@@ -22,9 +22,9 @@ from algorithms.verdict.ranking import Weighed
 from app.drawing import grid_pixels as render
 from app.drawing.palette import LIGHT
 from app.model.merge_inputs import Inputs
-from app.page.cancellable_task import Check, unwatched
 from app.report.html_report import report_page
 from app.report.ros_transform import transform_yaml
+from app.system.cancellation import Check, unwatched
 from app.system.version import versions
 
 MERGED = "merged"

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
-from threading import Condition, Lock
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Condition
 from time import monotonic, sleep
 
 import viser
-
-from app.page.cancellable_task import Check, Errand, Left
 
 PATIENCE = 15.0  # seconds; who ends a server does not wait for ever
 
@@ -60,27 +58,3 @@ def _waits(client: viser.ClientHandle) -> bool:
 
 
 TAKEAWAY = Takeaway()
-
-
-class Delivery:
-    """Of one button: makes a file that is asked for, and sends it."""
-
-    def __init__(self, client: viser.ClientHandle, errand: Errand) -> None:
-        self._client, self._errand = client, errand
-        self._at_work = Lock()
-
-    def __call__(self, doing: str, name: str, make: Callable[[Check], bytes]) -> None:
-        """Make a file while it says what it does; where that is left, there is no file, and that is all.
-
-        make : looks up now and then; raises Left
-        """
-        if not self._at_work.acquire(blocking=False):
-            return  # a second press while it is being made
-        try:
-            with TAKEAWAY.making() as begun, suppress(Left):
-                if begun:
-                    with self._errand(doing, aside=True) as check:
-                        content = make(check)
-                    TAKEAWAY.send(self._client, name, content)
-        finally:
-            self._at_work.release()

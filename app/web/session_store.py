@@ -10,43 +10,30 @@ from __future__ import annotations
 import secrets
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass
 from threading import Lock, Timer
 from time import monotonic
-from typing import Any
-
-from app.page.undo_history import History
+from typing import Generic, TypeVar
 
 GRACE = 15 * 60.0  # seconds that a tab may be away
 MOST_KEPT = 8  # tabs that are away; the one that is away longest is forgotten first
 
 
-@dataclass(frozen=True, eq=False)
-class Kept:
-    """What a tab leaves behind: where it has been, how it was looked at, and how fast."""
-
-    history: History
-    dark: bool = False
-    speed: str = ""
-    research: tuple[Any, ...] = ()  # what each of its tabs had found
+Saved = TypeVar("Saved")  # what a tab leaves behind
 
 
-Leave = Callable[[], "Kept | None"]
-
-
-class Keep:
+class SessionStore(Generic[Saved]):
     """Of all tabs of a server."""
 
     def __init__(
         self, grace: float = GRACE, most: int = MOST_KEPT, clock: Callable[[], float] = monotonic
     ) -> None:
         self._grace, self._most, self._clock = grace, most, clock
-        self._here: dict[str, Leave] = {}
-        self._away: OrderedDict[str, tuple[float, Kept]] = OrderedDict()
+        self._here: dict[str, Callable[[], Saved | None]] = {}
+        self._away: OrderedDict[str, tuple[float, Saved]] = OrderedDict()
         self._sweeping = False  # whether a timer is set
         self._lock = Lock()
 
-    def enter(self, key: str, again: bool, leave: Leave) -> tuple[str, Kept | None]:
+    def enter(self, key: str, again: bool, leave: Callable[[], Saved | None]) -> tuple[str, Saved | None]:
         """A tab is here: its new key, and what it left behind under its old one.
 
         again : it is the same page, which has connected anew: its former connection is dead, even if

@@ -10,7 +10,7 @@ from app.drawing.browser_messages import Stage
 from app.drawing.palette import Palette, css
 from app.drawing.scene.map_layers import Mode
 from app.drawing.scene.map_view import MapView
-from app.page.panels.places import MOST_PLACES
+from app.model.contradiction_text import MOST_PLACES
 
 MODES: tuple[Mode, ...] = get_args(Mode)
 

@@ -14,14 +14,13 @@ from algorithms.observations.observation import (
     MOST_RANGE,
     SIGMA_BEARINGS,
     SIGMA_RANGES,
-    Encounter,
-    Observation,
 )
 from app.drawing.palette import LIGHT, QUIET
 from app.model import status_text as words
 from app.model.merge_inputs import Inputs
 from app.model.observation_draft import Draft
 from app.page.panels.html_widgets import box, table
+from app.report.result_rows import sighting_rows
 
 # field -> label, hint, least, most, step; angles in degrees
 FIELDS: dict[str, tuple[str, str, float, float, float]] = {
@@ -173,22 +172,5 @@ def observations_html(inputs: Inputs) -> str:
     told = zip(inputs.observations, inputs.encounters, inputs.doubts(), strict=True)
     for number, (o, at, doubt) in enumerate(told, 1):
         head = (f"Observation {number} of {total}", "") if total > 1 else ()
-        parts.append((box(doubt, "refused") if doubt else "") + table(numbers(o, at), head))
+        parts.append((box(doubt, "refused") if doubt else "") + table(sighting_rows(o, at), head))
     return "".join(parts) or box("No observation yet.", "plain")
-
-
-def numbers(o: Observation, at: Encounter) -> list[tuple[str, ...]]:
-    """Where the robots were, and what the one measured of the other."""
-    rows = [
-        (
-            "robot 1 in map 1",
-            f"{o.observer.x:.2f}, {o.observer.y:.2f} m, {degrees(o.observer.theta):.1f}°",
-        ),
-        ("robot 2 in map 2", f"{o.observed_x:.2f}, {o.observed_y:.2f} m"),
-        ("range r", f"{o.range:.3f} ± {o.sigma_range:.3f} m"),
-        ("bearing β", f"{degrees(o.bearing):.1f} ± {degrees(o.sigma_bearing):.1f}°"),
-        ("x̂₁, seen here", f"{at.x_ref[0]:.2f}, {at.x_ref[1]:.2f} m"),
-    ]
-    if o.bearing_back is not None:
-        rows.append(("bearing back", f"{degrees(o.bearing_back):.1f}°"))
-    return rows

@@ -10,12 +10,12 @@ from html import escape
 import viser
 
 from app.drawing.palette import LIGHT, QUIET
-from app.page.cancellable_task import Check, Errand
+from app.page.cancellable_task import CancellableTask, DownloadTask
 from app.page.panels.html_widgets import box
 from app.page.panels.replay import ReplayButton
 from app.report.export import ACTED_UPON, ALONE, ARCHIVE, Harvest
 from app.report.ros_transform import publish_command
-from app.web.download import Delivery
+from app.system.cancellation import Check
 
 _NOTHING = box("After a merge it can be taken away from here: map, transform, report.", "plain")
 _OUTDATED = "Out of date: a setting was changed."
@@ -24,8 +24,8 @@ _OUTDATED = "Out of date: a setting was changed."
 class ExportPanel:
     """Holds the result that can be downloaded; None while there is none, or it is out of date."""
 
-    def __init__(self, client: viser.ClientHandle, errand: Errand) -> None:
-        self._client, self._deliver = client, Delivery(client, errand)
+    def __init__(self, client: viser.ClientHandle, errand: CancellableTask) -> None:
+        self._client, self._deliver = client, DownloadTask(client, errand)
         self._harvest: Harvest | None = None
         gui = client.gui
         with gui.add_folder("Export", order=70):

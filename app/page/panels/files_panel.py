@@ -17,9 +17,10 @@ from algorithms.files.map_file import map_from_bytes, parse_meta
 from algorithms.maps.grid_map import GridMap
 from app.drawing.palette import QUIET
 from app.model.merge_inputs import Files, Inputs, Upload
-from app.page.cancellable_task import Check, Errand, Left, Watched, unwatched
+from app.page.cancellable_task import CancellableTask
 from app.page.panels.image_form import ImageForm
 from app.system import data_paths as paths
+from app.system.cancellation import CancellableReader, Cancelled, Check, unwatched
 
 NONE = "(choose)"
 TAKEN = viser.UploadedFile("", b"")  # what a button holds that holds no file any more
@@ -83,7 +84,9 @@ def inputs_from(uploads: dict[str, Upload], known: Known | None = None, check: C
             )
         found = known.get((text, image))
         if found is None:
-            found = map_from_bytes(text.name, text.content, image.name, Watched(image.content, check))
+            found = map_from_bytes(
+                text.name, text.content, image.name, CancellableReader(image.content, check)
+            )
         now[text, image] = found
         return found
 
@@ -115,7 +118,7 @@ class FilesPanel:
         chosen: str,
         save: Callable[[str, bytes], None],
         turn: RLock | None = None,
-        errand: Errand | None = None,
+        errand: CancellableTask | None = None,
     ) -> None:
         """save : sends a file to the person
         errand : says what is being done, where it takes a while, and lets it be left
@@ -209,7 +212,7 @@ class FilesPanel:
                 del self._uploads[key.replace("image", "yaml")]  # it was filled in for another image
             try:
                 inputs = self._read(upload)
-            except Left:  # nothing has come of it yet
+            except Cancelled:  # nothing has come of it yet
                 self._uploads = before
                 self._offer_forms()
                 return
@@ -222,7 +225,7 @@ class FilesPanel:
             self._show(inputs)
 
     def _read(self, upload: Upload) -> Inputs:
-        """What the files make up now that this one has come; raises Left where Stop was pressed."""
+        """What the files make up now that this one has come; raises Cancelled where Stop was pressed."""
         if self._errand is None or not _large(upload):
             self._offer_forms()
             return inputs_from(self._uploads, self._known)

@@ -25,8 +25,8 @@ from app.drawing import grid_pixels as render
 from app.drawing.palette import LIGHT, QUIET, Rgb, css
 from app.drawing.png import data_uri
 from app.model.merge_inputs import Upload
-from app.page.cancellable_task import Check, Watched, unwatched
 from app.page.panels.html_widgets import box
+from app.system.cancellation import CancellableReader, Check, unwatched
 
 RESOLUTION = 0.05  # metres per cell: what most robots' maps have
 PREVIEW = 280  # pixels of a side at most: as wide as the panel, so that every pixel is a square of its own
@@ -135,7 +135,7 @@ class ImageForm:
             return
         grey = self._grey
         if grey is None or image != self._image:
-            grey = grey_image(image.name, Watched(image.content, check))
+            grey = grey_image(image.name, CancellableReader(image.content, check))
         self._image, self._grey = image, grey
         self._used = text.content if text is not None else None
         if text is not None:

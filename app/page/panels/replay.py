@@ -8,15 +8,15 @@ from collections.abc import Callable
 import viser
 
 from app.drawing.palette import QUIET
-from app.page.cancellable_task import Check, Errand
-from app.web.download import Delivery
+from app.page.cancellable_task import CancellableTask, DownloadTask
+from app.system.cancellation import Check
 
 
 class ReplayButton:
     """Holds the run that can be recorded; None while there is none, or it is out of date."""
 
-    def __init__(self, client: viser.ClientHandle, errand: Errand) -> None:
-        self._deliver = Delivery(client, errand)
+    def __init__(self, client: viser.ClientHandle, errand: CancellableTask) -> None:
+        self._deliver = DownloadTask(client, errand)
         self._name = ""
         self._make: Callable[[Check], bytes] | None = None
         self._button = client.gui.add_button(

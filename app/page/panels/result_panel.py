@@ -2,39 +2,18 @@
 
 from __future__ import annotations
 
-from math import degrees, isfinite, sqrt
 from typing import Any
 
-import numpy as np
-
-from algorithms.common.pose import pose_error
-from algorithms.maps.map_fusion import fuse
-from algorithms.methods.manual_merge import BY_HAND
 from algorithms.methods.steps import MergeResult
 from algorithms.verdict.contradictions import Conflicts
 from algorithms.verdict.decision import Verdict
-from algorithms.verdict.performance_index import performance_index
 from app.drawing.palette import LIGHT
+from app.drawing.svg.verdict_bars import bars
 from app.model import status_text as words
+from app.model.contradiction_text import MOST_PLACES, signed, summary, whose
 from app.model.merge_inputs import Inputs
-from app.model.objective_label import measure_of
-from app.page.lesson.figures import verdict_figure as judgement
 from app.page.panels.html_widgets import box, table
-from app.page.panels.places import places_html
-
-STAGES = {
-    "observe": "observation",
-    "augment": "augmentation",
-    "spectra": "Hough spectra",
-    "match": "matched features",
-    "search": "candidates",
-    "refine": "swarm",
-    "prove": "proof",
-    "weigh": "whole maps",
-    "fuse": "merged cells",
-    "verdict": "verdict",
-    "explain": "cause of the refusal",
-}
+from app.report.result_rows import numbers, times
 
 
 def result_html(
@@ -65,107 +44,21 @@ def why_html(verdict: Verdict, faded: bool = False) -> str:
     dim = ";opacity:.4" if faded else ""
     return (
         f'<details style="margin:0 10px 8px;font-size:12.5px{dim}"><summary style="cursor:pointer">'
-        f"Why {words.likelihood(verdict.probability)}?</summary>{judgement.bars(verdict, LIGHT)}</details>"
+        f"Why {words.likelihood(verdict.probability)}?</summary>{bars(verdict, LIGHT)}</details>"
     )
 
 
-def _share(index: float | None) -> str:
-    return "–" if index is None else f"{index:.1%}"
-
-
-def numbers(result: MergeResult, inputs: Inputs, config: Any = None) -> list[tuple[str, ...]]:
-    """The transform with its standard deviations, its value, and the figures of merit."""
-    T, verdict = result.T_ref_mov, result.verdict
-    at_robot, turn = _deviations(result)
-    rows: list[tuple[str, ...]] = [("made", BY_HAND)] if result.method == BY_HAND else []
-    rows += [
-        ("T: Δx", f"{T.x:.3f} m"),
-        ("T: Δy", f"{T.y:.3f} m"),
-        ("T: Δθ", f"{degrees(T.theta):.2f} ± {degrees(turn):.2f}°"),
-        ("robot 2 known to", f"± {at_robot:.3f} m"),
-    ]
-    if result.value is not None and isfinite(result.value):
-        measure = measure_of(config)
-        digits = ".2f" if measure.unit else ".5g"
-        rows.append((measure.row, f"{result.value:{digits}}"))
-    truth = inputs.truth.T_ref_mov if inputs.truth else None
-    if truth is not None and inputs.ref is not None and inputs.mov is not None:
-        index = performance_index(result.fusion, fuse(inputs.ref, inputs.mov, truth))
-        rows.append(("eq. (23), over the true overlap", _share(index)))
-        apart, turned = pose_error(result.T_ref_mov, truth, result.encounter.x_mov)
-        right = inputs.truth.allows(apart, turned)
-        rows.append(
-            (
-                "error to the truth" if right else "✗ WRONG: error to the truth",
-                f"{apart:.3f} m, {degrees(turned):.2f}°",
-            )
-        )
-    else:
-        rows.append(("eq. (23), at the estimated T", _share(performance_index(result.fusion))))
-    rows += [
-        ("likely right", words.likelihood(verdict.probability)),
-        ("acceptance index", f"{verdict.acceptance_index:.1%}"),
-        ("area known to both", f"{verdict.overlap_area:.1f} m²"),
-        ("wall in view of both", f"{verdict.shared_wall:.1f} m"),
-        ("contradicted, patches slipped", f"{verdict.contradiction:.1%}"),
-        ("contradicted, as the maps are", f"{verdict.rigid_contradiction:.1%}"),
-        ("agreeing wall across the others", f"{verdict.wall_across:.1f} m"),
-        *_moved(result),
-        ("robot 2 off its sighting", f"{verdict.deviation:.1f} σ"),
-        *_rivals(result),
-        *_proof(result),
-        ("seed", f"{result.seed}"),
-    ]
-    return rows
-
-
-def _rivals(result: MergeResult) -> list[tuple[str, ...]]:
-    """The next best place, and the one that leaves the answer in doubt."""
-    verdict = result.verdict
-    if verdict.ambiguity is None:
-        return []
-    rows: list[tuple[str, ...]] = [("next best place", words.odds_of_rival(verdict))]
-    if words.rival(result):
-        rows.append(("rival in doubt", words.rival(result)))
-    return rows
-
-
-def _moved(result: MergeResult) -> list[tuple[str, ...]]:
-    """By how much the whole maps moved the search's answer, and what was taken for a robot."""
-    rows: list[tuple[str, ...]] = []
-    if result.weighed and result.weighed[0].moved:
-        named = result.weighed[0]
-        off = words.apart(named.T_ref_mov, named.began, result)
-        rows.append(("moved by the whole maps", off))
-    if result.verdict.cleared_cells:
-        rows.append(("cells of robots, cleared", f"{result.verdict.cleared_cells:,}"))
-    return rows
-
-
-def _proof(result: MergeResult) -> list[tuple[str, ...]]:
-    """Whether there can be a better answer, and whether the search alone had found this one."""
-    if result.proof is None:
-        return []
-    rows = [("optimum", words.optimum(result.proof)), ("blocks bounded", f"{result.proof.nodes:,}")]
-    if result.proven_optimal and result.search_found_it is not None:
-        rows.append(("found by the search", "yes" if result.search_found_it else "no"))
-    return rows
-
-
-def _deviations(result: MergeResult) -> tuple[float, float]:
-    """Standard deviations of the answer: metres at robot 2 (the larger axis), radians of the turn.
-
-    Those of (Δx, Δy) alone say little: they are taken at map 2's origin, which may lie far away.
-    """
-    x, y = (result.T_ref_mov.apply(result.encounter.x_mov) - result.T_ref_mov.xy).tolist()
-    jacobian = np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])
-    at_robot = jacobian @ result.covariance @ jacobian.T
-    return sqrt(max(0.0, float(np.linalg.eigvalsh(at_robot)[-1]))), sqrt(max(0.0, result.covariance[2, 2]))
-
-
-def times(result: MergeResult) -> list[tuple[str, ...]]:
-    """Milliseconds per stage, and their sum."""
+def places_html(found: Conflicts, faded: bool = False) -> str:
+    """HTML of the list, most wall first; faded and without effect where it is out of date."""
+    dim = ' style="opacity:.4"' if faded else ""
+    if not found.places:
+        return f'<div class="mm-places"{dim}><p>{summary(found)}</p></div>'
+    off = " disabled" if faded else ""
     rows = [
-        (STAGES.get(stage, stage), f"{1000 * seconds:.1f}") for stage, seconds in result.timings_s.items()
+        f'<button type="button" data-mm-place="{n}" aria-pressed="false"{off} '
+        f'title="Go there; press again for everything.">'
+        f"<i>{n}</i><span>{place.wall:.1f} m</span><small>{whose(place)}</small>"
+        f"<small>x {signed(place.x)}, y {signed(place.y)}</small></button>"
+        for n, place in enumerate(found.places[:MOST_PLACES], 1)
     ]
-    return [*rows, ("all", f"{1000 * sum(result.timings_s.values()):.1f}")]
+    return f'<div class="mm-places"{dim}><p>{summary(found)}</p>{"".join(rows)}</div>'

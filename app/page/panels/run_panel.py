@@ -11,9 +11,7 @@ import viser
 from algorithms.methods.registry import METHODS
 from app.drawing.palette import LIGHT, QUIET
 from app.model.playback import PACES
-
-MAP, HEIGHTS, SWARM = "Map", "Heights", "Swarm space"
-LESSON, MUSEUM = "Lesson", "Museum"
+from app.model.view_modes import HEIGHTS, LESSON, MAP, MUSEUM, SWARM
 
 
 @dataclass(frozen=True)

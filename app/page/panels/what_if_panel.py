@@ -17,8 +17,8 @@ from algorithms.verdict.probability_model import Fit, misfit_of, probability, qu
 from algorithms.verdict.ranking import WINDOW_EDGE, Weighed
 from algorithms.verdict.wall_evidence import Evidence
 from app.drawing.palette import LIGHT, QUIET
+from app.drawing.svg.verdict_bars import bars
 from app.model import status_text as words
-from app.page.lesson.figures import verdict_figure as judgement
 from app.page.panels.html_widgets import box
 
 HOW = (
@@ -174,5 +174,5 @@ class WhatIfPanel:
         verdict = supposed(result, self._rules(), changed)
         self._says.content = (
             box(verdict.reason, words.mood(verdict))
-            + f'<div style="margin:0 10px 8px">{judgement.bars(verdict, LIGHT)}</div>'
+            + f'<div style="margin:0 10px 8px">{bars(verdict, LIGHT)}</div>'
         )

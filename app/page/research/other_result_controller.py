@@ -13,14 +13,14 @@ from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.registry import METHODS
 from algorithms.verdict.contradictions import Conflicts, find_conflicts
 from app.model.run_state import Story
-from app.page.cancellable_task import Left
-from app.page.panels.run_panel import MAP
+from app.model.view_modes import MAP
+from app.page.cancellable_task import DownloadTask
 from app.page.part import Part
 from app.page.research.comparison_controller import Compare
 from app.page.research.other_result import NOT_YOURS, Guest
 from app.page.research.run_summary import verdict_mood
 from app.page.research.sweep_controller import Sweep
-from app.web.download import Delivery
+from app.system.cancellation import Cancelled
 
 
 class Researching(Part):
@@ -30,7 +30,7 @@ class Researching(Part):
 
     def _research_with(self, gui: viser.GuiApi) -> None:
         """Add both tabs to the dock of the plots."""
-        self._deliver = Delivery(self._client, self._errand)
+        self._deliver = DownloadTask(self._client, self._errand)
         both = self._turn, self.session.drawing
         with self._plots.add_tab("Compare", viser.Icon.SCALE):
             self._compare_tab = Compare(gui, self._channel, *both, self)
@@ -77,7 +77,7 @@ class Researching(Part):
             with self._errand(f"Laying it over map 1: {guest.title}.") as check:
                 seen = self._merged_by(guest)
                 check()
-        except Left:
+        except Cancelled:
             return
         except MapMergeError as error:  # it throws the maps too far apart
             self._report(error)

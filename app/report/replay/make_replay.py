@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from app.model import status_text as words
 from app.model.merge_inputs import Inputs
 from app.model.run_state import Story
-from app.page.cancellable_task import Check, unwatched, wanted
 from app.report.replay.html_page import replay_html
 from app.report.replay.metadata import About
 from app.report.replay.recorder import record
+from app.system.cancellation import Check, unwatched, wanted
 
 if TYPE_CHECKING:
     from algorithms.methods.steps import Step

@@ -24,11 +24,10 @@ from app.model.merge_inputs import Inputs
 from app.model.playback import FRAME, dwell
 from app.model.run_state import Story
 from app.model.status_text import typeset
-from app.page.editing.observation_panel import numbers as sighting
-from app.page.panels.result_panel import STAGES, numbers
-from app.page.panels.run_panel import MAP
+from app.model.view_modes import MAP
 from app.report.replay.chart_recorder import curves
 from app.report.replay.image_recorder import PictureScene
+from app.report.result_rows import STAGES, numbers, sighting_rows
 
 BEFORE = 1.2  # seconds that the maps lie side by side
 AFTER = 4.0  # seconds that the verdict stays
@@ -147,7 +146,7 @@ def observed(inputs: Inputs) -> dict[str, Any]:
     """The numbers of the first sighting."""
     o, at = inputs.observations[0], inputs.encounters[0]
     of = f", the first of {len(inputs.observations)}" if len(inputs.observations) > 1 else ""
-    return {"title": f"What robot 1 saw{of}", "rows": _typeset(sighting(o, at))}
+    return {"title": f"What robot 1 saw{of}", "rows": _typeset(sighting_rows(o, at))}
 
 
 def _typeset(rows: Iterable[tuple[str, ...]]) -> list[list[str]]:

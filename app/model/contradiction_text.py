@@ -1,26 +1,10 @@
-"""The list of places where the maps contradict each other; a press on one goes there (map_comparison.js)."""
+"""Where two maps contradict each other, in words."""
 
 from __future__ import annotations
 
 from algorithms.verdict.contradictions import Conflicts, Place
 
 MOST_PLACES = 12  # that are listed, and ringed on the map; the smaller ones are told in sum
-
-
-def places_html(found: Conflicts, faded: bool = False) -> str:
-    """HTML of the list, most wall first; faded and without effect where it is out of date."""
-    dim = ' style="opacity:.4"' if faded else ""
-    if not found.places:
-        return f'<div class="mm-places"{dim}><p>{summary(found)}</p></div>'
-    off = " disabled" if faded else ""
-    rows = [
-        f'<button type="button" data-mm-place="{n}" aria-pressed="false"{off} '
-        f'title="Go there; press again for everything.">'
-        f"<i>{n}</i><span>{place.wall:.1f} m</span><small>{whose(place)}</small>"
-        f"<small>x {signed(place.x)}, y {signed(place.y)}</small></button>"
-        for n, place in enumerate(found.places[:MOST_PLACES], 1)
-    ]
-    return f'<div class="mm-places"{dim}><p>{summary(found)}</p>{"".join(rows)}</div>'
 
 
 def summary(found: Conflicts) -> str:

@@ -1,0 +1,85 @@
+"""The picture of the verdict: what speaks for the merge and what against, a bar each."""
+
+from __future__ import annotations
+
+from algorithms.verdict.decision import Outcome, Verdict
+from algorithms.verdict.probability_model import OTHERS, QUANTITIES
+from app.drawing.palette import LIGHT, Palette, Rgb, css
+from app.drawing.svg.svg_canvas import INK, WIDE, Sheet, worded
+from app.model import status_text as words
+
+AMBER: Rgb = (0x7A, 0x52, 0x00)  # as words, on a light page
+
+
+COLOURS: dict[Outcome, Rgb] = {
+    Outcome.MERGED: LIGHT.mov,
+    Outcome.BENT: AMBER,
+    Outcome.REFUSED: LIGHT.conflict,
+}
+
+
+FULL = 6.0  # log-odds of a bar over its whole half; 400 to 1
+
+
+ROW = 40.0
+
+
+TOP = 44.0
+
+
+def values(verdict: Verdict) -> dict[str, str]:
+    """Each quantity of a verdict in words."""
+    left = verdict.contradiction * verdict.shared_wall
+    return {
+        "contradiction": f"{verdict.rigid_contradiction:.1%}",
+        "unbent": f"{left:.1f} m on {verdict.shared_floor:.0f} m²",
+        "across": f"{verdict.wall_across:.1f} m",
+        "misfit": f"{verdict.deviation:.1f} σ",
+        OTHERS: words.odds_of_rival(verdict) if verdict.rival is not None else "none",
+    }
+
+
+def titles() -> dict[str, str]:
+    """What each bar is called."""
+    return {**{name: quantity.title for name, quantity in QUANTITIES.items()}, OTHERS: "other answers"}
+
+
+def bars(verdict: Verdict, palette: Palette) -> str:
+    """A bar per quantity: by how much it moves the log-odds from those of a typical right merge."""
+    named = titles()
+    sheet = Sheet(TOP + ROW * len(named) + 26)
+    head = worded(COLOURS[verdict.outcome], palette)
+    sheet.text(0, 13, f"{verdict.outcome.value.capitalize()}: {words.likelihood(verdict.probability)}", 15,
+               colour=head, bold=True)  # fmt: skip
+    middle = WIDE / 2
+    sheet.text(middle - 6, 33, "◀ speaks against", 10.5, "end", alpha=0.8)
+    sheet.text(middle + 6, 33, "speaks for ▶", 10.5, alpha=0.8)
+    told = values(verdict)
+    for row, name in enumerate(named):
+        y, moved = TOP + ROW * row, verdict.contributions.get(name, 0.0)
+        colour = LIGHT.mov if moved >= 0 else LIGHT.conflict
+        sheet.text(0, y + 11, named[name], 11)
+        sheet.text(WIDE, y + 11, told[name], 12, "end", bold=True)
+        sheet.rect(0, y + 17, WIDE, 10, palette.margin, alpha=0.15)
+        long = middle * min(1.0, abs(moved) / FULL)
+        sheet.rect(middle if moved >= 0 else middle - long, y + 17, long, 10, css(colour))
+        sheet.path([(middle, y + 14), (middle, y + 30)], INK, 1.5)
+        inside = long > middle - 34
+        beside = long - 4 if inside else long + 4
+        sheet.text(
+            middle + beside if moved >= 0 else middle - beside, y + 26, _signed(moved), 10.5,
+            "start" if (moved >= 0) != inside else "end", "#fff" if inside else INK,
+        )  # fmt: skip
+    total = verdict.typical_score + sum(verdict.contributions.values())
+    sheet.text(
+        0, TOP + ROW * len(named) + 14,
+        f"log-odds: a typical right merge {_signed(verdict.typical_score)}, this one {_signed(total)}",
+        11, alpha=0.85,
+    )  # fmt: skip
+    return sheet.svg("What speaks for the merge and what against it")
+
+
+def _signed(value: float) -> str:
+    rounded = f"{abs(value):.1f}"
+    sign = "" if rounded == "0.0" else "+" if value > 0 else "−"
+    return f"{sign}{rounded}"
