@@ -21,6 +21,7 @@ from algorithms.files.atomic_write import write_files  # noqa: E402
 from algorithms.files.case_folder import Case, read_case  # noqa: E402
 from algorithms.methods.registry import METHODS  # noqa: E402
 from algorithms.verdict.probability_model import shipped_model  # noqa: E402
+from app.cli.executor_flags import executor_for  # noqa: E402
 from app.cli.progress_bar import bar  # noqa: E402
 from app.evaluation import sweep_axes as axes  # noqa: E402
 from app.evaluation.checkpoint import Journal  # noqa: E402
@@ -30,7 +31,7 @@ from app.evaluation.method_comparison import Score, contest, defaults_of, pairs_
 from app.evaluation.parameter_sweep import Plan, in_order, point_keys, sweep  # noqa: E402
 from app.evaluation.sweep_figure import sweep_figure  # noqa: E402
 from app.evaluation.sweep_files import points_csv, runs_csv, times_csv  # noqa: E402
-from app.jobs.executor import Executor, executor_for  # noqa: E402
+from app.jobs.executor import Executor  # noqa: E402
 from app.model.settings import with_value  # noqa: E402
 from app.system.hardware import machine  # noqa: E402
 

@@ -12,11 +12,12 @@ from test_executor import fail, until
 from test_sweep import plan, untimed
 
 from algorithms.common.errors import SettingError
+from app.cli.executor_flags import executor_for
 from app.cli.main import main
 from app.evaluation.parameter_sweep import in_order, sweep
 from app.jobs import dask_executor as cluster
-from app.jobs.dask_executor import Cluster
-from app.jobs.executor import Here, Lost, Shared, Task, executor_for
+from app.jobs.dask_executor import DaskExecutor
+from app.jobs.executor import LostTask, SerialExecutor, Shared, Task
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +78,7 @@ def test_a_worker_that_is_killed_in_the_middle_loses_nothing(address, tmp_path):
 
     shooter = Thread(target=shoot)
     shooter.start()
-    told = list(Cluster(address).run(stay, [Task(order, Shared.of(tmp_path)) for order in range(5)]))
+    told = list(DaskExecutor(address).run(stay, [Task(order, Shared.of(tmp_path)) for order in range(5)]))
     shooter.join()
     assert sorted(told) == [(order, order) for order in range(5)]
 
@@ -103,10 +104,10 @@ def test_cases_judged_on_a_cluster_are_those_judged_here_bit_for_bit(
 
 
 def test_a_sweep_on_a_cluster_is_that_of_this_machine_though_a_worker_is_killed_in_it(address, small_case):
-    here = untimed(in_order(plan(), list(sweep(small_case, plan(), Here()))))
-    running = sweep(small_case, plan(), Cluster(address))
+    here = untimed(in_order(plan(), list(sweep(small_case, plan(), SerialExecutor()))))
+    running = sweep(small_case, plan(), DaskExecutor(address))
     points = [next(running)]
-    ((_, victim),) = Cluster(address).run(who, [Task(0)])
+    ((_, victim),) = DaskExecutor(address).run(who, [Task(0)])
     os.kill(victim, signal.SIGKILL)
     points += running
     assert untimed(in_order(plan(), points)) == here
@@ -114,20 +115,20 @@ def test_a_sweep_on_a_cluster_is_that_of_this_machine_though_a_worker_is_killed_
 
 def test_what_the_work_raises_is_raised_to_whoever_asked(address):
     with pytest.raises(SettingError, match="1 is none of ours"):
-        list(Cluster(address).run(fail, [Task(1)]))
+        list(DaskExecutor(address).run(fail, [Task(1)]))
 
 
 def test_another_thread_can_stop_the_work(address, tmp_path):
     stop = Event()
     Timer(0.5, stop.set).start()
-    assert list(Cluster(address).run(stay, [Task(0, Shared.of(tmp_path))], stop)) == []
+    assert list(DaskExecutor(address).run(stay, [Task(0, Shared.of(tmp_path))], stop)) == []
     (tmp_path / "go").touch()  # the worker, which can't be interrupted, is free again
 
 
 def test_a_worker_with_other_code_is_named_and_refused(address, monkeypatch):
     monkeypatch.setattr(cluster, "code", lambda: "other")
     with pytest.raises(SettingError, match=r"worker at tcp://.* has mapmeld's code \w+, here it is other"):
-        Cluster(address)
+        DaskExecutor(address)
 
 
 def free_port():
@@ -153,7 +154,7 @@ def test_something_else_that_listens_is_not_waited_for_long(monkeypatch):
         socket.create_server(("127.0.0.1", 0)) as silent,
         pytest.raises(SettingError, match="no Dask scheduler answers there"),
     ):
-        Cluster(f"tcp://127.0.0.1:{silent.getsockname()[1]}")
+        DaskExecutor(f"tcp://127.0.0.1:{silent.getsockname()[1]}")
 
 
 def test_without_dask_the_remedy_is_named(monkeypatch):
@@ -165,6 +166,6 @@ def test_without_dask_the_remedy_is_named(monkeypatch):
 def test_a_task_that_kills_its_workers_is_lost_and_the_next_one_is_not(scheduler, monkeypatch):
     # the last test: the worker is a while coming back
     monkeypatch.setattr(scheduler, "allowed_failures", 0)
-    ((_, answer),) = Cluster(scheduler.address).run(die_at_two, [Task(2)])
-    assert isinstance(answer, Lost)
-    assert list(Cluster(scheduler.address).run(die_at_two, [Task(3)])) == [(0, 3)]
+    ((_, answer),) = DaskExecutor(scheduler.address).run(die_at_two, [Task(2)])
+    assert isinstance(answer, LostTask)
+    assert list(DaskExecutor(scheduler.address).run(die_at_two, [Task(3)])) == [(0, 3)]

@@ -13,13 +13,13 @@ from algorithms.common.pose import Pose2
 from algorithms.methods.registry import METHODS
 from app.evaluation.method_comparison import Score, Unread, contest, defaults_of, pairs_in, tally
 from app.evaluation.method_run import attempt, true_fusion
-from app.jobs.executor import Executor, Here, Lost
+from app.jobs.executor import Executor, LostTask, SerialExecutor
 
 QUICK = "spectra-swarm"
 
 
 def outcomes(pairs, names=(QUICK,)):
-    return {(s.case, s.method): s.trial for s in contest(pairs, defaults_of(names), Here())}
+    return {(s.case, s.method): s.trial for s in contest(pairs, defaults_of(names), SerialExecutor())}
 
 
 @given(st.lists(trials))
@@ -106,7 +106,7 @@ def test_a_method_whose_process_dies_is_told_as_failed(small_case):
         jobs = 1
 
         def run(self, work, tasks, stop=None):
-            yield from ((number, Lost()) for number, _ in enumerate(tasks))
+            yield from ((number, LostTask()) for number, _ in enumerate(tasks))
 
     (score,) = contest([("flat", small_case)], defaults_of([QUICK]), Deadly())
     assert score.trial.failed

@@ -13,7 +13,7 @@ from PIL import Image
 
 from algorithms.common.errors import InputFileError
 from algorithms.files.map_file import map_from_bytes
-from app.drawing.browser_messages import Stage
+from app.drawing.browser_messages import BrowserMessages
 from app.page.cancellable_task import CancellableTask
 from app.page.panels.files_panel import FilesPanel, Upload
 from app.page.panels.replay import ReplayButton
@@ -34,7 +34,7 @@ def image(kind: str, side: int = 1100) -> bytes:
     return packed.getvalue()
 
 
-class Silent(Stage):
+class Silent(BrowserMessages):
     """Keeps what it is told to say."""
 
     def __init__(self) -> None:

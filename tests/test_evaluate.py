@@ -15,8 +15,8 @@ from algorithms.methods import registry as methods
 from app.cli.main import main
 from app.evaluation import dataset_evaluation as evaluate
 from app.evaluation.dataset_evaluation import Order, judge_case, run_case, totals_of
-from app.jobs.executor import Here
-from app.jobs.process_executor import Processes
+from app.jobs.executor import SerialExecutor
+from app.jobs.process_executor import ProcessExecutor
 
 METHOD = "spectra-swarm"
 DEFAULTS = methods.METHODS[METHOD].defaults
@@ -246,8 +246,8 @@ def without_times(entries):
 
 
 def test_the_answers_do_not_depend_on_how_many_processes_work(cases):
-    one = list(evaluate.evaluate(order(cases), Here()))
-    two = list(evaluate.evaluate(order(cases), Processes(2)))
+    one = list(evaluate.evaluate(order(cases), SerialExecutor()))
+    two = list(evaluate.evaluate(order(cases), ProcessExecutor(2)))
     assert without_times(one) == without_times(two)
 
 
@@ -303,7 +303,7 @@ def die(_, given):
 
 def test_a_case_that_kills_its_process_costs_no_other(cases, monkeypatch):
     monkeypatch.setattr(evaluate, "_work", die)
-    told = list(evaluate.evaluate(order(cases), Processes(2)))
+    told = list(evaluate.evaluate(order(cases), ProcessExecutor(2)))
     assert {case["case"] for case in told} == {"bad_1", "flat_1", "flat_2", "flat_3", "neg_1"}
     assert [case["case"] for case in told if "error" in case] == ["neg_1"]
 

@@ -19,7 +19,7 @@ from algorithms.spectra.augmented_map import augment
 from algorithms.verdict.cell_agreement import Walls
 from algorithms.verdict.contradictions import find_conflicts
 from app.drawing import grid_pixels as render
-from app.drawing.browser_messages import Stage
+from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import LIGHT
 from app.drawing.scene.grid_image import Size
 from app.drawing.scene.map_layers import Ground
@@ -107,7 +107,7 @@ def test_a_part_that_is_drawn_alone_is_that_part_of_the_whole_picture(name):
 # --- where they lie -----------------------------------------------------------------------------------
 
 
-class Page(Stage):
+class Page(BrowserMessages):
     """Keeps the excerpts that a tab would show."""
 
     def __init__(self) -> None:

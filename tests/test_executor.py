@@ -16,8 +16,9 @@ from commandline import as_in_a_terminal
 
 from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import InputFileError, NoAnswerError, OutputError, SettingError
-from app.jobs.executor import Here, Lost, Shared, Task, executor_for, unpacked
-from app.jobs.process_executor import Processes
+from app.cli.executor_flags import executor_for
+from app.jobs.executor import LostTask, SerialExecutor, Shared, Task, unpacked
+from app.jobs.process_executor import ProcessExecutor
 
 ROOT = Path(__file__).parent.parent
 
@@ -69,7 +70,7 @@ def alive(number):
         return False
 
 
-@pytest.mark.parametrize("executor", [Here(), Processes(2)])
+@pytest.mark.parametrize("executor", [SerialExecutor(), ProcessExecutor(2)])
 def test_every_task_is_answered_with_the_value_that_it_shares(executor):
     one, two = Shared.of(100), Shared.of(200)
     told = dict(executor.run(add, [Task(order, one if order < 3 else two) for order in range(6)]))
@@ -85,14 +86,14 @@ def test_a_shared_value_comes_back_as_it_was(small_case):
 
 def test_a_process_that_dies_costs_a_second_try_and_one_that_always_dies_only_its_own_task(tmp_path):
     shared = Shared.of(tmp_path)
-    told = dict(Processes(2).run(fragile, [Task(order, shared) for order in range(8)]))
+    told = dict(ProcessExecutor(2).run(fragile, [Task(order, shared) for order in range(8)]))
     assert {order: answer for order, answer in told.items() if order != 5} == {
         order: order * order for order in range(8) if order != 5
     }
-    assert isinstance(told[5], Lost)
+    assert isinstance(told[5], LostTask)
 
 
-@pytest.mark.parametrize("executor", [Here(), Processes(2)])
+@pytest.mark.parametrize("executor", [SerialExecutor(), ProcessExecutor(2)])
 def test_what_the_work_raises_is_raised_to_whoever_asked(executor):
     with pytest.raises(SettingError, match="1 is none of ours"):
         list(executor.run(fail, [Task(1)]))
@@ -122,13 +123,13 @@ def test_tasks_are_taken_only_as_workers_become_free():
             taken.append(order)
             yield Task(order, Shared.of(order))
 
-    with closing(Here().run(add, tasks())) as answers:
+    with closing(SerialExecutor().run(add, tasks())) as answers:
         assert next(answers) == (0, 0)
         assert taken == [0]
 
 
 def test_processes_share_the_cores_among_them(monkeypatch):
-    ((_, (number, *threads)),) = Processes(max(2, kernels.cores())).run(who, [Task(0)])
+    ((_, (number, *threads)),) = ProcessExecutor(max(2, kernels.cores())).run(who, [Task(0)])
     assert number != os.getpid()
     assert threads == [1, 1]
 
@@ -137,10 +138,10 @@ def test_processes_share_the_cores_among_them(monkeypatch):
 def test_no_process_outlives_the_one_that_asked(end, tmp_path):
     script = (
         "import sys, pathlib; from app.jobs.executor import *\n"
-        "from app.jobs.process_executor import Processes\n"
+        "from app.jobs.process_executor import ProcessExecutor\n"
         "sys.path.insert(0, 'tests'); import test_executor\n"
         "shared = Shared.of(pathlib.Path(sys.argv[1]))\n"
-        "list(Processes(1).run(test_executor.linger, [Task(0, shared)]))"
+        "list(ProcessExecutor(1).run(test_executor.linger, [Task(0, shared)]))"
     )
     command = [sys.executable, "-c", script, str(tmp_path)]
     apart = {"start_new_session": True, "preexec_fn": as_in_a_terminal}
@@ -154,28 +155,30 @@ def test_no_process_outlives_the_one_that_asked(end, tmp_path):
 
 
 def test_who_leaves_the_loop_stops_the_work_at_once(tmp_path):
-    answers = Processes(2).run(linger, [Task("quick", Shared.of(tmp_path)), Task(0, Shared.of(tmp_path))])
+    answers = ProcessExecutor(2).run(
+        linger, [Task("quick", Shared.of(tmp_path)), Task(0, Shared.of(tmp_path))]
+    )
     assert next(answers) == (0, None)
     answers.close()
     assert until(lambda: not any(alive(pid(path)) for path in tmp_path.glob("began_*")))
 
 
-@pytest.mark.parametrize("executor", [Here(), Processes(1)])
+@pytest.mark.parametrize("executor", [SerialExecutor(), ProcessExecutor(1)])
 def test_another_thread_can_stop_the_work(executor, tmp_path):
     stop = threading.Event()
     shared = Shared.of(tmp_path)
     answers = executor.run(linger, [Task("quick", shared), Task(0, shared)], stop)
     assert next(answers) == (0, None)
-    if isinstance(executor, Here):
+    if isinstance(executor, SerialExecutor):
         stop.set()
     else:
         threading.Timer(0.3, stop.set).start()
     assert list(answers) == []
-    if isinstance(executor, Processes):
+    if isinstance(executor, ProcessExecutor):
         assert until(lambda: not any(alive(pid(path)) for path in tmp_path.glob("began_*")))
 
 
 def test_one_job_is_done_here_and_more_in_processes():
-    assert isinstance(executor_for(1), Here)
+    assert isinstance(executor_for(1), SerialExecutor)
     assert executor_for(3).jobs == 3
     assert executor_for().jobs == kernels.cores()

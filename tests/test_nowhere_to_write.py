@@ -27,7 +27,7 @@ from algorithms.files import atomic_write as atomic
 from app.cli.main import main
 from app.evaluation.checkpoint import Journal
 from app.jobs.executor import Shared, Task
-from app.jobs.process_executor import Processes
+from app.jobs.process_executor import ProcessExecutor
 
 QUICK = ["--swarm.iterations", "5", "--refine.candidates", "1", "--seeds", "1"]
 
@@ -234,14 +234,14 @@ def test_a_folder_for_temporary_files_that_cannot_be_used_is_told_with_its_remed
     (tmp_path / "file").touch()
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "file"))
     with pytest.raises(OutputError, match=r"temporary files: .*\$TMPDIR"):
-        list(Processes(1).run(pow, [Task(1)]))
+        list(ProcessExecutor(1).run(pow, [Task(1)]))
 
 
 def test_what_processes_share_is_told_when_there_is_no_room_for_it(tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     shared = Shared.of(os.urandom(9000))
     with files_of_at_most(4000), pytest.raises(OutputError, match=r"temporary files: .*\$TMPDIR"):
-        list(Processes(1).run(pow, [Task(1, shared)]))
+        list(ProcessExecutor(1).run(pow, [Task(1, shared)]))
     assert not any(tmp_path.iterdir())
 
 

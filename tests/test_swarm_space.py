@@ -15,7 +15,7 @@ from algorithms.methods.steps import ProvenDetail, RefineDetail, Step
 from algorithms.observations.search_window import Box
 from algorithms.optimisation.optimiser import SearchState
 from algorithms.optimisation.subcell_peak import Peak
-from app.drawing.browser_messages import Stage
+from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import DARK, LIGHT
 from app.drawing.scene.swarm_view import SwarmSpaceView, in_box, proven_optimum
 from app.model.run_state import Story
@@ -63,7 +63,7 @@ def test_a_turn_is_taken_to_the_side_of_the_box_that_is_nearer():
     assert shown(BOX.transform(BOX.centre + (0, 0, radians(178))))[2]["t"].startswith("0.0 m and 178°")
 
 
-class Drawn(Stage):
+class Drawn(BrowserMessages):
     """A stage that keeps what is drawn on it."""
 
     def __init__(self) -> None:

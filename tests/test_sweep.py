@@ -16,7 +16,7 @@ from app.evaluation import parameter_sweep as sweeping
 from app.evaluation.checkpoint import Journal
 from app.evaluation.method_run import Trial, attempt, true_fusion
 from app.evaluation.parameter_sweep import Axis, Plan, Spread, in_order, point_keys, sweep
-from app.jobs.executor import Executor, Here
+from app.jobs.executor import Executor, SerialExecutor
 from app.system import version
 
 METHOD = "spectra-swarm"
@@ -89,7 +89,7 @@ def test_mean_and_median_lie_between_the_extremes(values):
 
 
 def test_every_place_is_swept_with_every_seed_and_told_in_order_of_the_table(small_case):
-    points = list(sweep(small_case, plan(), Here()))
+    points = list(sweep(small_case, plan(), SerialExecutor()))
     assert {(point.x, point.y) for point in points} == {
         (x, y) for x in (0.5, 1.0, 3.0) for y in (10.0, 100.0)
     }
@@ -99,25 +99,25 @@ def test_every_place_is_swept_with_every_seed_and_told_in_order_of_the_table(sma
 
 
 def test_a_trial_within_a_sweep_is_the_merge_alone_with_that_seed_and_those_settings(small_case):
-    (point,) = (p for p in sweep(small_case, plan(), Here()) if (p.x, p.y) == (1.0, 100.0))
+    (point,) = (p for p in sweep(small_case, plan(), SerialExecutor()) if (p.x, p.y) == (1.0, 100.0))
     alone = attempt(small_case, METHOD, plan().config_at(1.0, 100.0), 1, true_fusion(small_case))
     assert replace(point.trials[1], seconds=0.0) == replace(alone, seconds=0.0)
 
 
 def test_the_intensity_moves_no_answer(small_case):
-    points = list(sweep(small_case, plan(x=Axis(INTENSITY, (1.0, 30.0, 1000.0)), y=None), Here()))
+    points = list(sweep(small_case, plan(x=Axis(INTENSITY, (1.0, 30.0, 1000.0)), y=None), SerialExecutor()))
     first, *others = [point.index.mean for point in points]
     assert others == pytest.approx([first] * 2, abs=1e-3)
 
 
 def test_an_interrupted_sweep_goes_on_where_it_was_and_ends_as_if_it_had_not_been(small_case, tmp_path):
-    whole = untimed(in_order(plan(), list(sweep(small_case, plan(), Here()))))
+    whole = untimed(in_order(plan(), list(sweep(small_case, plan(), SerialExecutor()))))
     path = tmp_path / "new" / "journal.jsonl"
-    with closing(sweep(small_case, plan(), Here(), Journal(path))) as running:
+    with closing(sweep(small_case, plan(), SerialExecutor(), Journal(path))) as running:
         before = list(islice(running, 3))
     with path.open("ab") as stream:
         stream.write(b'{"key": "half a li')  # what a process leaves that is killed as it writes
-    points = list(sweep(small_case, plan(), Here(), Journal(path)))
+    points = list(sweep(small_case, plan(), SerialExecutor(), Journal(path)))
     assert points[:3] == before  # times and all
     assert untimed(in_order(plan(), points)) == whole
     assert list(sweep(small_case, plan(), Nobody(), Journal(path))) != []
@@ -126,8 +126,8 @@ def test_an_interrupted_sweep_goes_on_where_it_was_and_ends_as_if_it_had_not_bee
 def test_points_of_an_earlier_sweep_serve_a_wider_one(small_case):
     journal = Journal()
     narrow = plan(x=Axis(SPREAD, (0.5, 1.0)), y=None)
-    first = list(sweep(small_case, narrow, Here(), journal))
-    wide = list(sweep(small_case, plan(y=None), Here(), journal))
+    first = list(sweep(small_case, narrow, SerialExecutor(), journal))
+    wide = list(sweep(small_case, plan(y=None), SerialExecutor(), journal))
     assert [point for point in wide if point in first] == wide[:2]
     assert len(wide) == 3
 
@@ -174,7 +174,7 @@ def test_a_value_out_of_bounds_is_refused_before_anything_is_run():
 
 
 def test_without_a_truth_the_index_is_that_of_the_estimate_and_nothing_is_called_right(small_case):
-    (point,) = sweep(replace(small_case, truth=None), plan(x=Axis(SPREAD, (1.0,)), y=None), Here())
+    (point,) = sweep(replace(small_case, truth=None), plan(x=Axis(SPREAD, (1.0,)), y=None), SerialExecutor())
     assert point.right is None
     assert point.index.mean > 0.5
 
@@ -185,7 +185,7 @@ def test_a_method_that_cannot_be_run_says_so_and_is_tried_again_next_time(small_
     asked = Plan(
         "bilateral", METHODS["bilateral"].defaults, Axis(("verdict", "bent_from"), (0.2,)), seeds=(0,)
     )
-    (point,) = sweep(case, asked, Here(), journal)
+    (point,) = sweep(case, asked, SerialExecutor(), journal)
     assert "needs measurement.bearing_back" in point.failed
     assert point.index is None
     assert journal.get(point_keys(case, asked)[0.2, None]) is None

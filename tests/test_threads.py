@@ -14,10 +14,10 @@ import pytest
 import viser
 
 from algorithms.methods.registry import METHODS
-from app.drawing.browser_messages import TabStage
 from app.model.merge_inputs import Inputs
 from app.page.panels.files_panel import FilesPanel
 from app.page.panels.settings_panel import TuningPanel
+from app.web.tab_messages import TabMessages
 
 
 @pytest.fixture
@@ -28,7 +28,7 @@ def sent():
 @pytest.fixture
 def stage(sent):
     connection = SimpleNamespace(queue_message=lambda message: sent.append(message.source))
-    return TabStage(SimpleNamespace(_websock_connection=connection))
+    return TabMessages(SimpleNamespace(_websock_connection=connection))
 
 
 @pytest.fixture

@@ -47,28 +47,6 @@ def add_seed(parser: Parser) -> None:
     )
 
 
-def add_workers(parser: Parser, jobs: int | None) -> None:
-    """Add ``--jobs`` and ``--scheduler``: who does the work.
-
-    jobs : processes unless told otherwise; None: one per core
-    """
-    told = "one per core" if jobs is None else jobs
-    who = parser.add_mutually_exclusive_group()
-    who.add_argument(
-        "--jobs",
-        type=_jobs,
-        default=jobs,
-        metavar="N",
-        help=f"merges at a time, a process each, which share the cores (default: {told})",
-    )
-    who.add_argument(
-        "--scheduler",
-        metavar="ADDRESS",
-        help="let the workers of a Dask cluster do it, e.g. tcp://192.168.0.7:8786; "
-        "needs pip install 'mapmeld[dask]', here and there",
-    )
-
-
 def case_folder(name: str, parser: Parser) -> Path:
     """The folder of a case, or of the sample of that name; a usage error where there is neither."""
     known, folder = samples(), Path(name)
@@ -105,12 +83,6 @@ def _method(name: str) -> str:
         near = did_you_mean(name, METHODS) or f"; known are {', '.join(METHODS)}"
         raise argparse.ArgumentTypeError(f"there is no method {name}{near}")
     return name
-
-
-def _jobs(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text} is no whole number from 1 up")
-    return int(text)
 
 
 def _seed(text: str) -> int:

@@ -30,6 +30,7 @@ from algorithms.simulator.training_pairs import training_pairs
 from algorithms.verdict.calibration import brier_score, calibration_error
 from algorithms.verdict.model_fit import Example, Told, cross_validated, fit, most_likely_wrong, told_by
 from algorithms.verdict.probability_model import MODEL_FILE, VerdictModel
+from app.cli.executor_flags import executor_for
 from app.cli.progress_bar import bar
 from app.evaluation.csv_tables import aligned, markdown
 from app.evaluation.dataset_evaluation import (
@@ -41,7 +42,7 @@ from app.evaluation.dataset_evaluation import (
     name_in,
 )
 from app.evaluation.reliability_figure import reliability_figure
-from app.jobs.executor import Executor, Lost, Task, executor_for
+from app.jobs.executor import Executor, LostTask, Task
 from app.system import data_paths
 
 FIRST = 8000  # seed; the tests and the samples use lower ones
@@ -194,7 +195,7 @@ def _all(executor: Executor, work: Any, tasks: Iterable[Task], unit: str) -> Ite
     listed = list(tasks)
     answers: dict[int, list[Labelled]] = {}
     for number, answer in bar(iterable=executor.run(work, listed), total=len(listed), unit=unit):
-        if isinstance(answer, Lost):
+        if isinstance(answer, LostTask):
             sys.stderr.write(f"left out: {unit} {number}: {answer.reason}\n")
         else:
             answers[number] = answer

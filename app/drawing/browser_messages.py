@@ -5,34 +5,20 @@ One message per ``flush``: everything that belongs together is seen together.
 
 from __future__ import annotations
 
-import json
 from abc import ABC, abstractmethod
 from threading import RLock
 from typing import Any
 
-import numpy as np
-import viser
-from viser._messages import RunJavascriptMessage
-
 from algorithms.common.pose import FloatArray, Pose2
-from app.drawing.palette import Palette, Rgb, css
+from app.drawing.draw_items import Item
+from app.drawing.palette import Palette, css
 from app.drawing.scene_layout import Rect
-from app.system.data_paths import asset
-
-# map_drawing.js first: map_viewer.js draws with it, and so does a saved replay; the others add to the page
-SCRIPTS = (
-    *("map_drawing.js", "map_viewer.js", "map_editing.js", "zoom_detail.js", "map_comparison.js"),
-    *("measure_tool.js", "lesson.js", "research.js", "upload.js", "keyboard_shortcuts.js"),
-)
-_SCRIPT = "\n".join(asset(name) for name in SCRIPTS)
-
-Item = dict[str, Any]
 
 
-class Stage(ABC):
+class BrowserMessages(ABC):
     """What is to be drawn, gathered until it is flushed; see map_drawing.js for what each item may hold.
 
-    Where it goes is up to the subclass: to a tab (TabStage), or into a recording.
+    Where it goes is up to the subclass: to a tab (TabMessages), or into a recording.
     """
 
     def __init__(self) -> None:
@@ -140,65 +126,3 @@ class Stage(ABC):
             message, self._pending = self._pending, {}
             # sent under the lock, too: an older word must not arrive after a newer one
             self.send(message)
-
-
-class TabStage(Stage):
-    """The browser's side of one tab."""
-
-    def __init__(self, client: viser.ClientHandle) -> None:
-        super().__init__()
-        self._client = client
-        self._run(_SCRIPT)
-
-    def send(self, message: dict[str, Any]) -> None:
-        """Have the tab draw it."""
-        self._run(f"window.mapmeld && window.mapmeld.apply({json.dumps(message, default=plain)})")
-
-    def _run(self, source: str) -> None:
-        # viser's own way to run a script in one tab; it keeps order with the scene's messages
-        self._client._websock_connection.queue_message(RunJavascriptMessage(source=source))
-
-
-def plain(value: Any) -> Any:
-    """Arrays and their numbers as JSON can hold them."""
-    if isinstance(value, np.ndarray):
-        return np.round(value.astype(float), 4).tolist()
-    if isinstance(value, np.generic):
-        return value.item()
-    raise TypeError(f"{type(value).__name__} cannot be sent to the page")
-
-
-def path(
-    points: FloatArray, colour: Rgb | None, frame: str = "scene", alpha: float = 1.0, **more: Any
-) -> Item:
-    """A line through (N, 2) or (N, 3) points; d dashes, w width, fill, close, t text, halo."""
-    return {"k": "path", "f": frame, "p": points, "c": css(colour, alpha) if colour else None, **more}
-
-
-def mark(
-    shape: str, point: FloatArray, colour: Rgb, frame: str = "scene", alpha: float = 1.0, **more: Any
-) -> Item:
-    """A sign of constant size: robot, cross, ring, dot, diamond or star; a angle, r size, t text.
-
-    alpha : opacity of the sign; its text is never faint
-    """
-    ink = {"c": css(colour, alpha), "tc": css(colour)}
-    return {"k": "mark", "s": shape, "f": frame, "p": point, **ink, **more}
-
-
-def cloud(points: FloatArray, colour: Rgb, **more: Any) -> Item:
-    """Particles: (N, 3) x, y, heading, or with n3=True x, y, z. They glide to their next place."""
-    flat = np.round(points, 3).ravel()
-    return {"k": "cloud", "f": "scene", "n": points.shape[1], "p": flat, "c": css(colour), **more}
-
-
-def rectangle(low: FloatArray, high: FloatArray) -> FloatArray:
-    """(4, 2) corners of an upright rectangle."""
-    return np.array([low, [high[0], low[1]], high, [low[0], high[1]]])
-
-
-def ellipse(centre: FloatArray, covariance: FloatArray, deviations: float) -> FloatArray:
-    """(64, 2) points at so many standard deviations of a (2, 2) covariance."""
-    turn = np.linspace(0, 2 * np.pi, 64, endpoint=False)
-    ring = np.stack([np.cos(turn), np.sin(turn)], axis=1) * deviations
-    return np.asarray(centre + ring @ np.linalg.cholesky(covariance).T, dtype=np.float64)

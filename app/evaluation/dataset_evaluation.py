@@ -33,7 +33,7 @@ from algorithms.methods import registry as methods
 from algorithms.methods.steps import MergeResult
 from algorithms.simulator.wrong_pairs import crossed
 from algorithms.verdict.calibration import brier_score, calibration_error, reliability
-from app.jobs.executor import Executor, Here, Lost, Task
+from app.jobs.executor import Executor, LostTask, SerialExecutor, Task
 from app.report.result_files import plain, report_of
 
 FINE_M = 0.15
@@ -78,7 +78,7 @@ def evaluate(
     folders  : the cases; all under ``order.root`` unless given
     raises   : InputFileError where there is no case
     """
-    executor = Here() if executor is None else executor
+    executor = SerialExecutor() if executor is None else executor
     found: Sequence[Path | Crossing] = case_folders(order.root) if folders is None else folders
     unread: list[Entry] = []
     taken: list[Path | Crossing] = []
@@ -93,7 +93,7 @@ def evaluate(
                 yield Task((read, order))
 
     for number, answer in executor.run(_work, tasks()):
-        if isinstance(answer, Lost):
+        if isinstance(answer, LostTask):
             answer = _entry(taken[number], order) | {"error": answer.reason, "seconds": 0.0, "truth": None}
         yield answer
         while unread:

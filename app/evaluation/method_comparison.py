@@ -14,7 +14,7 @@ from algorithms.files.case_folder import Case, case_folders, read_case
 from algorithms.methods.registry import METHODS
 from app.evaluation.dataset_evaluation import name_in
 from app.evaluation.method_run import Trial, attempt, true_fusion
-from app.jobs.executor import Executor, Lost, Shared, Task
+from app.jobs.executor import Executor, LostTask, Shared, Task
 
 Configs = Mapping[str, Any]
 """Settings by the name of their method, in the order they are to be shown."""
@@ -68,7 +68,7 @@ def contest(
                 yield Task((method, config, seed), shared)
 
     for number, answer in executor.run(_work, tasks(), stop):
-        yield Score(*asked[number], _not_run(answer.reason) if isinstance(answer, Lost) else answer)
+        yield Score(*asked[number], _not_run(answer.reason) if isinstance(answer, LostTask) else answer)
         while unread:
             yield unread.pop(0)
     yield from unread

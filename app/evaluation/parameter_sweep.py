@@ -17,7 +17,7 @@ from algorithms.methods.stage_runner import Memo
 from algorithms.verdict import performance_index as merit
 from app.evaluation.checkpoint import Journal
 from app.evaluation.method_run import Trial, attempt, true_fusion
-from app.jobs.executor import Executor, Lost, Shared, Task
+from app.jobs.executor import Executor, LostTask, Shared, Task
 from app.model.settings import Path as SettingPath
 from app.model.settings import Setting, settings_of, with_value
 from app.report.result_files import plain
@@ -145,7 +145,7 @@ def sweep(
     tasks = (Task((plan.method, plan.config_at(*place), plan.seeds), shared) for place in todo)
     for number, answer in executor.run(_work, tasks, stop):
         place = todo[number]
-        if isinstance(answer, Lost):
+        if isinstance(answer, LostTask):
             yield Point(*place, (Trial(None, False, answer.reason, *[None] * 5, 0.0, failed=True),))
             continue
         point = Point(*place, tuple(Trial.of(trial) for trial in answer))

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from algorithms.common.errors import MapMergeError
 from app.jobs.executor import Executor
-from app.jobs.process_executor import Processes, cores
+from app.jobs.process_executor import ProcessExecutor, cores
 
 log = logging.getLogger(__name__)
 
@@ -22,7 +22,7 @@ _turns = BoundedSemaphore(MOST_AT_ONCE)
 
 def beside_the_page(jobs: int) -> Executor:
     """Processes for work behind a page: one core is left to it, and what is left is not fought for."""
-    return Processes(max(1, min(jobs, cores() - 1)), gentle=True)
+    return ProcessExecutor(max(1, min(jobs, cores() - 1)), gentle=True)
 
 
 class Asking(Protocol):

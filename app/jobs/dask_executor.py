@@ -12,7 +12,7 @@ from threading import Event
 from typing import TYPE_CHECKING, Any
 
 from algorithms.common.errors import SettingError
-from app.jobs.executor import Executor, Lost, Task, Work, unpacked
+from app.jobs.executor import Executor, LostTask, Task, Work, unpacked
 from app.system.version import code, versions
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ KEPT = 2  # shared values that are kept on the cluster while no task at hand nee
 INSTALL = "install it: pip install 'mapmeld[dask]'"
 
 
-class Cluster(Executor):
+class DaskExecutor(Executor):
     """The workers of a Dask scheduler, each with the same mapmeld as this process."""
 
     far = True
@@ -80,7 +80,7 @@ class Cluster(Executor):
                     try:
                         answer = future.result()
                     except KilledWorker:
-                        answer = Lost("every worker that ran it has died; was there too little memory?")
+                        answer = LostTask("every worker that ran it has died; was there too little memory?")
                     except CancelledError:
                         raise self._gone() from None
                     yield running.pop(future), answer

@@ -46,7 +46,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Lost:
+class LostTask:
     """In place of an answer: whoever worked on the task died of it, each time that it was tried."""
 
     reason: str = "the process that ran it ended; was there too little memory?"
@@ -68,7 +68,7 @@ class Executor(ABC):
 
     @abstractmethod
     def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
-        """Yield (number of the task, answer or Lost) in the order of completion.
+        """Yield (number of the task, answer or LostTask) in the order of completion.
 
         Tasks are taken from the iterable only as workers become free. Whoever leaves the loop, or
         closes the generator, stops the work. What ``work`` raises is raised here.
@@ -78,7 +78,7 @@ class Executor(ABC):
         """
 
 
-class Here(Executor):
+class SerialExecutor(Executor):
     """This process, one task after the other."""
 
     @property
@@ -95,20 +95,3 @@ class Here(Executor):
             if task.shared is not None and task.shared.key != known[0]:
                 known = (task.shared.key, unpacked(task.shared.data))
             yield number, work(None if task.shared is None else known[1], task.order)
-
-
-def executor_for(jobs: int | None = None, scheduler: str | None = None) -> Executor:
-    """Whoever is asked for.
-
-    jobs      : processes on this machine; None: one per core
-    scheduler : address of a Dask scheduler, whose workers then do it all
-    raises    : SettingError where Dask is not installed or nobody answers there
-    """
-    if scheduler is not None:
-        from app.jobs.dask_executor import Cluster
-
-        return Cluster(scheduler)
-    from app.jobs.process_executor import Processes, cores
-
-    jobs = cores() if jobs is None else jobs
-    return Here() if jobs == 1 else Processes(jobs)

@@ -22,7 +22,7 @@ import cv2
 
 from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import OutputError
-from app.jobs.executor import Executor, Lost, Shared, Task, Work, unpacked
+from app.jobs.executor import Executor, LostTask, Shared, Task, Work, unpacked
 
 LOOK_S = 0.1  # how often it is looked whether all is to stop
 KEPT = 2  # shared values that a process holds on to; tasks that share one come one after the other
@@ -48,7 +48,7 @@ def cores() -> int:
     return kernels.cores()
 
 
-class Processes(Executor):
+class ProcessExecutor(Executor):
     """Processes of this machine, which share its cores evenly."""
 
     def __init__(self, jobs: int, gentle: bool = False) -> None:
@@ -73,7 +73,7 @@ class Processes(Executor):
                 while stopped := (yield from self._some(work, again, 1, folder, stop)):
                     again = chain(stopped.untouched, again)
                     for number, _ in stopped.suspects:
-                        yield number, Lost()
+                        yield number, LostTask()
 
     def _some(
         self, work: Work, left: Iterator[Numbered], jobs: int, folder: Path, stop: Event | None

@@ -21,7 +21,7 @@ from app.web.download import TAKEAWAY
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from app.drawing.browser_messages import Stage
+    from app.drawing.browser_messages import BrowserMessages
 
 OFTEN = 0.1  # seconds between two words of how far it is
 
@@ -38,7 +38,7 @@ class _Doing:
 class CancellableTask:
     """Of one tab: says what is done, and puts the words back where nothing is to be said of it."""
 
-    def __init__(self, stage: Stage, drawing: RLock, stoppable: Callable[[bool], None]) -> None:
+    def __init__(self, stage: BrowserMessages, drawing: RLock, stoppable: Callable[[bool], None]) -> None:
         """stoppable : is told whether there is anything to stop"""
         self._stage, self._drawing, self._stoppable = stage, drawing, stoppable
         self._lock = Lock()

@@ -9,7 +9,7 @@ import viser
 
 from algorithms.common.errors import MapMergeError
 from algorithms.methods.steps import AugmentDetail
-from app.drawing.browser_messages import Item
+from app.drawing.draw_items import Item
 from app.drawing.legend import legend
 from app.drawing.scene_layout import Layout
 from app.model.merge_inputs import Files, Inputs

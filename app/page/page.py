@@ -13,7 +13,7 @@ from algorithms.common.errors import InputFileError, MapMergeError, TooLargeErro
 from algorithms.files.case_folder import Case
 from algorithms.methods.steps import MergeResult
 from algorithms.verdict.contradictions import Conflicts
-from app.drawing.browser_messages import Stage, TabStage
+from app.drawing.browser_messages import BrowserMessages
 from app.drawing.legend import legend
 from app.drawing.palette import LIGHT, Palette
 from app.drawing.scene.height_view import HeightsView
@@ -50,6 +50,7 @@ from app.web.browser_events import Channel
 from app.web.cell_quota import Budget
 from app.web.download import TAKEAWAY
 from app.web.session_store import SessionStore
+from app.web.tab_messages import TabMessages
 from app.web.upload import Arrivals, Recipient
 
 log = logging.getLogger(__name__)
@@ -71,7 +72,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
     ) -> None:
         self._client = client
         self._palette: Palette = LIGHT
-        self._stage: Stage = TabStage(client)
+        self._stage: BrowserMessages = TabMessages(client)
         self._channel = Channel(client.gui, self._stage)
         self._maps = MapView(client, self._stage)
         self._heights = HeightsView(client, self._stage)

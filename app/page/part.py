@@ -13,7 +13,7 @@ from algorithms.common.pose import Pose2
 from algorithms.methods.manual_merge import Scales
 from algorithms.methods.steps import MergeResult
 from algorithms.verdict.contradictions import Conflicts
-from app.drawing.browser_messages import Stage
+from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import Palette
 from app.drawing.scene.height_view import HeightsView
 from app.drawing.scene.map_comparison import Comparison
@@ -45,7 +45,7 @@ class Part(ABC):
 
     session: Session
     _client: viser.ClientHandle
-    _stage: Stage
+    _stage: BrowserMessages
     _maps: MapView
     _heights: HeightsView
     _swarm: SwarmSpaceView

@@ -6,7 +6,7 @@ import numpy as np
 import viser
 
 from algorithms.methods.steps import MergeResult, RefineDetail
-from app.drawing.browser_messages import mark
+from app.drawing.draw_items import mark
 from app.drawing.palette import DARK, LIGHT
 from app.drawing.scene.map_layers import Mode
 from app.model import status_text as words

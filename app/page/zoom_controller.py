@@ -5,7 +5,7 @@ from __future__ import annotations
 from threading import RLock
 
 from algorithms.common.pose import Pose2
-from app.drawing.browser_messages import Stage
+from app.drawing.browser_messages import BrowserMessages
 from app.drawing.scene.map_layers import Ground
 from app.drawing.scene.zoom_crop import View
 from app.jobs.latest_request import Newest
@@ -15,7 +15,7 @@ from app.web.browser_events import Channel, Numbers
 class Closeness:
     """Of one tab: follows its camera. The page tells where it rests, and which part of map 2 is there."""
 
-    def __init__(self, channel: Channel, stage: Stage, ground: Ground, drawing: RLock) -> None:
+    def __init__(self, channel: Channel, stage: BrowserMessages, ground: Ground, drawing: RLock) -> None:
         self._stage, self._ground, self._drawing = stage, ground, drawing
         self._view: View | None = None
         self._work = Newest(self._sharpen, "mapmeld-closer")

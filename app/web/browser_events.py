@@ -18,7 +18,7 @@ from typing import Any
 
 import viser
 
-from app.drawing.browser_messages import Stage
+from app.drawing.browser_messages import BrowserMessages
 from app.web.callback_errors import words
 from app.web.security.message_filter import listen_unseen
 
@@ -74,7 +74,7 @@ def checked(value: Any, kind: Kind) -> Any:
 class Channel:
     """Calls back in the order of the messages, one at a time, in a thread of its own."""
 
-    def __init__(self, gui: viser.GuiApi, stage: Stage) -> None:
+    def __init__(self, gui: viser.GuiApi, stage: BrowserMessages) -> None:
         self._stage = stage
         self._events: dict[str, _Event] = {}
         self._last = 0  # number of the newest message

@@ -41,7 +41,8 @@ Exit status: 0 done, 1 no method could be run on some case, 2 bad input, 130 int
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     """Tell the parser what the command takes."""
     from algorithms.methods.registry import METHODS
-    from app.cli.setting_flags import add_seed, add_workers
+    from app.cli.executor_flags import add_workers
+    from app.cli.setting_flags import add_seed
 
     parser.add_argument(
         "cases", metavar="DIR|CASE|SAMPLE", help="folder of cases, one case, or a sample's name"
@@ -62,12 +63,12 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Run all, print the table, leave the files; 1 where no method could be run on a case."""
     from algorithms.files.atomic_write import check_folder
+    from app.cli.executor_flags import executor_for
     from app.cli.progress_bar import bar
     from app.cli.setting_flags import case_folder
     from app.evaluation.comparison_files import NOTES, remarks, table_rows
     from app.evaluation.csv_tables import aligned
     from app.evaluation.method_comparison import contest, defaults_of, pairs_in
-    from app.jobs.executor import executor_for
 
     if args.out is not None:
         check_folder(args.out)

@@ -51,7 +51,8 @@ COLUMNS = {
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     """Tell the parser what the command takes; flags of the settings depend on the method in ``words``."""
-    from app.cli.setting_flags import add_method, add_workers
+    from app.cli.executor_flags import add_workers
+    from app.cli.setting_flags import add_method
 
     parser.add_argument("folder", type=Path, metavar="DIR", help="folder of cases, or one case")
     which = parser.add_mutually_exclusive_group()
@@ -75,6 +76,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     """Run all cases, print the table; 1 where a case could not be run."""
     from algorithms.files.atomic_write import check_file, write_file
     from algorithms.files.case_folder import case_folders
+    from app.cli.executor_flags import executor_for
     from app.cli.progress_bar import bar
     from app.cli.setting_flags import config_from
     from app.evaluation.dataset_evaluation import (
@@ -88,7 +90,6 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         rough_folders,
         totals_of,
     )
-    from app.jobs.executor import executor_for
 
     if args.json is not None:
         check_file(args.json)

@@ -42,7 +42,8 @@ Exit status: 0 done, 1 some point could not be run, 2 bad input, 130 interrupted
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     """Tell the parser what the command takes; flags of the settings depend on the method in ``words``."""
-    from app.cli.setting_flags import add_method, add_workers
+    from app.cli.executor_flags import add_workers
+    from app.cli.setting_flags import add_method
 
     parser.add_argument("case", metavar="CASE", help="a sample's name, or the folder of a case")
     parser.add_argument("--x", metavar="RANGE", help="the setting that is swept")
@@ -59,11 +60,11 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Sweep, write, tell; the exit status."""
     from algorithms.files.atomic_write import check_folder, write_files
+    from app.cli.executor_flags import executor_for
     from app.cli.progress_bar import bar
     from app.evaluation.checkpoint import Journal
     from app.evaluation.parameter_sweep import done_before, sweep
     from app.evaluation.sweep_files import JOURNAL_FILE, name_of, sweep_files
-    from app.jobs.executor import executor_for
 
     if args.y is not None and args.x is None:
         parser.error("--y is a second setting; give --x, too")

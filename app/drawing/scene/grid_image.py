@@ -11,7 +11,7 @@ import viser
 
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import GridMap
-from app.drawing.browser_messages import Stage
+from app.drawing.browser_messages import BrowserMessages
 from app.drawing.grid_pixels import WHOLE, Part, Picture
 from app.drawing.png import png_base64
 from app.drawing.scene.zoom_crop import Excerpt, View, looked_at
@@ -61,7 +61,12 @@ class GridImage:
     """A picture of a grid that lies in the scene where the grid's cells are."""
 
     def __init__(
-        self, scene: viser.SceneApi, name: str, height: float, size: Size, stage: Stage | None = None
+        self,
+        scene: viser.SceneApi,
+        name: str,
+        height: float,
+        size: Size,
+        stage: BrowserMessages | None = None,
     ) -> None:
         """stage : where an excerpt of it would be seen"""
         self._scene, self.name, self._height, self._size, self._stage = scene, name, height, size, stage

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from algorithms.common.pose import FloatArray
 from algorithms.methods.steps import AugmentDetail
 from algorithms.spectra.augmented_map import AugmentedMap
-from app.drawing.browser_messages import Item, Stage, path
+from app.drawing.browser_messages import BrowserMessages
+from app.drawing.draw_items import Item, path
 from app.drawing.palette import Palette, css, viridis
 
 TALLEST = 0.3  # of the shown radius: height of a wall with the highest level there is
@@ -34,7 +35,7 @@ def linear(colours: NDArray[np.uint8]) -> NDArray[np.uint8]:
 class HeightsView:
     """Both maps, one behind the other, each around its meeting place; y is up here."""
 
-    def __init__(self, client: viser.ClientHandle, stage: Stage) -> None:
+    def __init__(self, client: viser.ClientHandle, stage: BrowserMessages) -> None:
         self._scene, self._stage = client.scene, stage
         self._handles: list[viser.SceneNodeHandle] = []
         self._drawn: AugmentDetail | None = None

@@ -6,7 +6,7 @@ from typing import Any, get_args
 
 from algorithms.common.pose import FloatArray
 from algorithms.verdict.contradictions import Conflicts, Place
-from app.drawing.browser_messages import Stage
+from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import Palette, css
 from app.drawing.scene.map_layers import Mode
 from app.drawing.scene.map_view import MapView
@@ -26,7 +26,7 @@ def rings(places: tuple[Place, ...], anchor: FloatArray) -> list[dict[str, Any]]
 class Comparison:
     """The mode a person has chosen, and what there is to compare."""
 
-    def __init__(self, stage: Stage, maps: MapView) -> None:
+    def __init__(self, stage: BrowserMessages, maps: MapView) -> None:
         self._stage, self._maps = stage, maps
         self._conflicts: Conflicts | None = None
         self._modes: tuple[Mode, ...] = ()

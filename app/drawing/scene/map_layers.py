@@ -16,7 +16,7 @@ from algorithms.methods.steps import AugmentDetail
 from algorithms.verdict.cell_agreement import Touch, Walls
 from algorithms.verdict.contradictions import Conflicts
 from app.drawing import grid_pixels as render
-from app.drawing.browser_messages import Stage
+from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import Palette
 from app.drawing.scene.grid_image import Closer, GridImage, Size
 from app.drawing.scene.zoom_crop import View
@@ -36,7 +36,9 @@ GHOSTLY = 60  # of 255; twice as much on the page, which makes thin walls darker
 class Ground:
     """Map 1 lies still; map 2 hangs on the frame /world/mov, which the page turns and slides."""
 
-    def __init__(self, scene: viser.SceneApi, size: Size = LAID_OVER, stage: Stage | None = None) -> None:
+    def __init__(
+        self, scene: viser.SceneApi, size: Size = LAID_OVER, stage: BrowserMessages | None = None
+    ) -> None:
         """stage : where excerpts of the pictures are seen."""
         self.changed: Callable[[], Any] = lambda: None  # is told of every change of what is shown
 

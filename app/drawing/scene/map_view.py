@@ -27,7 +27,8 @@ from algorithms.methods.steps import (
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.verdict.cell_agreement import Touch, Walls
 from algorithms.verdict.contradictions import Conflicts
-from app.drawing.browser_messages import Stage, cloud, mark
+from app.drawing.browser_messages import BrowserMessages
+from app.drawing.draw_items import cloud, mark
 from app.drawing.palette import LIGHT, Palette, css
 from app.drawing.scene import search_symbols as signs
 from app.drawing.scene.grid_image import Size
@@ -45,7 +46,7 @@ OF_A_RUN = ("aug", "window", "box", "swarm", "rival", "best", "matches")
 class MapView:
     """Draws a story over the ground, and says where the camera goes."""
 
-    def __init__(self, client: viser.ClientHandle, stage: Stage, size: Size = LAID_OVER) -> None:
+    def __init__(self, client: viser.ClientHandle, stage: BrowserMessages, size: Size = LAID_OVER) -> None:
         self._stage = stage
         self.ground = Ground(client.scene, size, stage)
         self._inputs = Inputs()

@@ -13,7 +13,7 @@ from algorithms.methods.steps import MatchesDetail, WindowDetail
 from algorithms.observations.observation import Encounter, Observation
 from algorithms.observations.search_window import Box, CoupledWindow, Window
 from algorithms.optimisation.branch_and_bound import ProofState
-from app.drawing.browser_messages import Item, ellipse, mark, path, rectangle
+from app.drawing.draw_items import Item, ellipse, mark, path, rectangle
 from app.drawing.palette import Palette, css
 from app.drawing.scene_layout import Layout, Rect
 from app.model.observation_draft import Draft

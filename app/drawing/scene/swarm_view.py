@@ -9,7 +9,8 @@ import numpy as np
 from algorithms.common.pose import FloatArray, Pose2, pose_error, wrap_angle
 from algorithms.methods.steps import ProvenDetail, RefineDetail
 from algorithms.observations.search_window import Box
-from app.drawing.browser_messages import Item, Stage, cloud, mark, path
+from app.drawing.browser_messages import BrowserMessages
+from app.drawing.draw_items import Item, cloud, mark, path
 from app.drawing.palette import Palette, css
 from app.model import status_text as words
 from app.model.run_state import Story
@@ -58,7 +59,7 @@ def proven_optimum(proven: ProvenDetail, detail: RefineDetail, palette: Palette)
 class SwarmSpaceView:
     """Particles, a few trails, the swarm's best, the proven optimum, and shadows on floor and walls."""
 
-    def __init__(self, stage: Stage) -> None:
+    def __init__(self, stage: BrowserMessages) -> None:
         self._stage = stage
         self._trail: list[FloatArray] = []
         self._of: tuple[Box, Palette] | None = None  # whose frame is drawn

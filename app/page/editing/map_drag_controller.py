@@ -16,7 +16,7 @@ from algorithms.methods.manual_merge import Scales
 from algorithms.methods.spectra_method import PipelineConfig
 from algorithms.methods.steps import MergeResult
 from algorithms.verdict.cell_agreement import Walls
-from app.drawing.browser_messages import Stage
+from app.drawing.browser_messages import BrowserMessages
 from app.drawing.scene.map_view import MapView
 from app.jobs.latest_request import Newest
 from app.model import status_text as words
@@ -74,7 +74,7 @@ class ByHand:
         self,
         gui: viser.GuiApi,
         channel: Channel,
-        stage: Stage,
+        stage: BrowserMessages,
         maps: MapView,
         turn: RLock,
         drawing: RLock,

@@ -12,7 +12,7 @@ from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.observation import Observation
-from app.drawing.browser_messages import Stage
+from app.drawing.browser_messages import BrowserMessages
 from app.drawing.scene import search_symbols as signs
 from app.drawing.scene.map_view import MapView
 from app.drawing.scene_layout import Layout, lay_out
@@ -51,7 +51,7 @@ class Placing:
         self,
         panel: ObservationPanel,
         channel: Channel,
-        stage: Stage,
+        stage: BrowserMessages,
         maps: MapView,
         turn: RLock,
         drawing: RLock,

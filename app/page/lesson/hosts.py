@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Protocol
 
 from algorithms.common.errors import MapMergeError
-from app.drawing.browser_messages import Item
+from app.drawing.draw_items import Item
 from app.drawing.scene_layout import Layout
 from app.jobs.job_thread import Session
 from app.model.merge_inputs import Inputs

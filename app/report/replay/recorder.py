@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from algorithms.methods.steps import AugmentDetail, MergeResult, ObservationDetail, RefineDetail, Step
-from app.drawing.browser_messages import Stage
+from app.drawing.browser_messages import BrowserMessages
 from app.drawing.legend import legend
 from app.drawing.palette import LIGHT
 from app.drawing.scene.grid_image import Size
@@ -39,7 +39,7 @@ PICTURE = 1024  # pixels of a side of a picture at most
 Recording = dict[str, Any]
 
 
-class Recorder(Stage):
+class Recorder(BrowserMessages):
     """Keeps what a tab would have been told; what has not changed since is left out."""
 
     def __init__(self, scene: PictureScene) -> None:

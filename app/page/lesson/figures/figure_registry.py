@@ -23,7 +23,7 @@ from algorithms.methods.steps import (
     WeighedDetail,
 )
 from algorithms.optimisation.optimiser import SearchState
-from app.drawing.browser_messages import Item, path
+from app.drawing.draw_items import Item, path
 from app.drawing.palette import Palette
 from app.drawing.scene_layout import Layout
 from app.model.run_state import Story

@@ -12,7 +12,7 @@ from algorithms.maps.grid_map import FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, CellArr
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.steps import AugmentDetail, HoughDetail, MergeResult
 from algorithms.observations.observation import Encounter
-from app.drawing.browser_messages import ellipse
+from app.drawing.draw_items import ellipse
 from app.drawing.palette import VIRIDIS, Palette
 from app.drawing.svg.map_plot import robot, scale_bar, scene, view_of
 from app.drawing.svg.map_raster import draw_levels, draw_map, under

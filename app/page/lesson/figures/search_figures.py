@@ -12,7 +12,7 @@ from algorithms.common.pose import FloatArray, Pose2
 from algorithms.methods.steps import AugmentDetail, ProofDetail, WindowDetail
 from algorithms.optimisation.objective import PAD, Objective
 from algorithms.optimisation.optimiser import SearchState
-from app.drawing.browser_messages import ellipse
+from app.drawing.draw_items import ellipse
 from app.drawing.palette import Palette, css, viridis
 from app.drawing.svg.svg_canvas import INK, Plot, Sheet, ticks
 from app.model import chart_data as charts

@@ -10,7 +10,7 @@ from scipy.ndimage import maximum_filter
 
 from algorithms.common.pose import FloatArray, Pose2, rotation, wrap_angle
 from algorithms.methods.steps import AugmentDetail, HoughDetail, ShiftDetail, WindowDetail
-from app.drawing.browser_messages import ellipse, rectangle
+from app.drawing.draw_items import ellipse, rectangle
 from app.drawing.palette import Palette, viridis
 from app.drawing.scene_layout import known_corners
 from app.drawing.svg.map_plot import scale_bar, scene
