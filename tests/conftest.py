@@ -29,7 +29,7 @@ from algorithms.files.map_file import map_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.methods.registry import merge
 from algorithms.methods.steps import MergeResult
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.web.security.access_control import Access
 from app.web.viser_server import guarded_server
 
@@ -79,9 +79,9 @@ def small_case() -> Case:
 
 
 @pytest.fixture(scope="session")
-def inputs(small_case: Case) -> Inputs:
+def inputs(small_case: Case) -> MergeInputs:
     """``small_case`` as the page holds it."""
-    return Inputs.of(small_case)
+    return MergeInputs.of(small_case)
 
 
 @pytest.fixture(scope="session")

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from math import degrees
 from typing import Literal
 
-from app.evaluation.method_comparison import Score, Tally, tally
-from app.evaluation.method_run import Trial
-from app.evaluation.parameter_sweep import Plan, Point, Spread, in_order
+from app.evaluation.method_comparison import ComparedRun, MethodTotals, tally
+from app.evaluation.method_run import MethodRun
+from app.evaluation.parameter_sweep import Spread, SweepPlan, SweepPoint, in_order
 
 NEXT_TO_NOTHING = 0.005  # of eq. (23): half a hundredth of the overlap
 FLAT = 0.01  # within so much of the best, a curve has come to its end
@@ -32,8 +32,8 @@ class Swept:
 
     name: str
     cell: float
-    plan: Plan
-    points: tuple[Point, ...]
+    plan: SweepPlan
+    points: tuple[SweepPoint, ...]
 
     def along_x(self) -> dict[float, float]:
         """Mean eq. (23) per value of x, over all of y."""
@@ -65,7 +65,7 @@ class Swept:
             least = x
         return least
 
-    def ends(self) -> tuple[Point, Point]:
+    def ends(self) -> tuple[SweepPoint, SweepPoint]:
         """The points of the least and of the greatest x."""
         first, *_, last = in_order(self.plan, self.points)
         return first, last
@@ -76,7 +76,7 @@ def _each(told: Sequence[str]) -> str:
     return "".join(f"<br>{line}" for line in told)
 
 
-def _known(point: Point) -> Spread:
+def _known(point: SweepPoint) -> Spread:
     assert point.index is not None
     return point.index
 
@@ -188,7 +188,7 @@ def time(sweeps: Sequence[Swept]) -> Finding:
     return Finding("More particles, more time (Fig. 14)", f"Median of a merge:{_each(told)}", held(oks))
 
 
-def best_index(rows: Mapping[str, Tally], ours: str, known_as: str, rivals: Sequence[str]) -> Finding:
+def best_index(rows: Mapping[str, MethodTotals], ours: str, known_as: str, rivals: Sequence[str]) -> Finding:
     """Fig. 17: the proposed method has a higher index than the others.
 
     known_as : which of the ways to read the paper this method is
@@ -204,7 +204,7 @@ def best_index(rows: Mapping[str, Tally], ours: str, known_as: str, rivals: Sequ
     )
 
 
-def slower(rows: Mapping[str, Tally], ours: str, rivals: Sequence[str]) -> Finding:
+def slower(rows: Mapping[str, MethodTotals], ours: str, rivals: Sequence[str]) -> Finding:
     """Section IV-C: the proposed method takes longer than the others."""
     mine = rows[ours].seconds or 0.0
     others = {name: rows[name].seconds or 0.0 for name in rivals if rows[name].seconds is not None}
@@ -219,7 +219,7 @@ def slower(rows: Mapping[str, Tally], ours: str, rivals: Sequence[str]) -> Findi
 # ---- sentences that need no claim of the paper
 
 
-def deceptive(scores: Sequence[Score]) -> str:
+def deceptive(scores: Sequence[ComparedRun]) -> str:
     """How high eq. (23) gets where the transform is wrong."""
     wrong = [score for score in scores if score.trial.wrong and score.trial.index is not None]
     if not wrong:
@@ -234,13 +234,13 @@ def deceptive(scores: Sequence[Score]) -> str:
     )
 
 
-def _off(trial: Trial) -> str:
+def _off(trial: MethodRun) -> str:
     if trial.distance is None or trial.angle is None:
         return "far"
     return f"{trial.distance:.1f} m and {degrees(trial.angle):.0f}°"
 
 
-def ranking(scores: Sequence[Score]) -> str:
+def ranking(scores: Sequence[ComparedRun]) -> str:
     """Who is right how often, best first."""
     rows = tally(scores)
     counts: dict[tuple[int, int], list[str]] = {}
@@ -252,7 +252,7 @@ def ranking(scores: Sequence[Score]) -> str:
     return f"Right transforms, {'; '.join(parts)}."
 
 
-def let_pass(scores: Sequence[Score]) -> str:
+def let_pass(scores: Sequence[ComparedRun]) -> str:
     """What the verdict made of the wrong transforms."""
     wrong = [score for score in scores if score.trial.wrong]
     passed = [score for score in wrong if score.trial.accepted]

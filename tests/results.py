@@ -24,11 +24,11 @@ from algorithms.verdict.probability_model import shipped_model  # noqa: E402
 from app.cli.executor_flags import executor_for  # noqa: E402
 from app.cli.progress_bar import bar  # noqa: E402
 from app.evaluation import sweep_axes as axes  # noqa: E402
-from app.evaluation.checkpoint import Journal  # noqa: E402
+from app.evaluation.checkpoint import Checkpoint  # noqa: E402
 from app.evaluation.comparison_files import case_files, contest_files, remarks, table_rows  # noqa: E402
 from app.evaluation.csv_tables import markdown  # noqa: E402
-from app.evaluation.method_comparison import Score, contest, defaults_of, pairs_in, tally  # noqa: E402
-from app.evaluation.parameter_sweep import Plan, in_order, point_keys, sweep  # noqa: E402
+from app.evaluation.method_comparison import ComparedRun, compare_methods, defaults_of, pairs_in, tally  # noqa: E402
+from app.evaluation.parameter_sweep import SweepPlan, in_order, point_keys, sweep  # noqa: E402
 from app.evaluation.sweep_figure import sweep_figure  # noqa: E402
 from app.evaluation.sweep_files import points_csv, runs_csv, times_csv  # noqa: E402
 from app.jobs.executor import Executor  # noqa: E402
@@ -55,7 +55,7 @@ def main() -> None:
     for name in SHOWN:
         pictures = case_files(name, cases[name], good)
         files |= {key: data for key, data in pictures.items() if key.endswith(".png")}
-    journal = Journal(ROOT / "out" / "results" / "journal.jsonl")
+    journal = Checkpoint(ROOT / "out" / "results" / "journal.jsonl")
     planned = [(case, plan_13(case), "fig13") for case in cases.values() if case.name in SHOWN]
     planned += [(case, plan_14(case), "fig14") for case in cases.values()]
     before = sum(known_s(case, plan, journal) for case, plan, _ in planned)
@@ -69,11 +69,11 @@ def main() -> None:
     print(f"written: RESULTS.md and {len(files)} files in static/results; {minutes:.1f} minutes")  # noqa: T201
 
 
-def compared(executor: Executor, files: dict[str, bytes], rough: bool) -> list[Score]:
+def compared(executor: Executor, files: dict[str, bytes], rough: bool) -> list[ComparedRun]:
     """All methods on all samples."""
     configs = defaults_of(METHODS)
     n, pairs = pairs_in(SAMPLES, rough)
-    told = contest(pairs, configs, executor, SEED)
+    told = compare_methods(pairs, configs, executor, SEED)
     scores = list(bar(iterable=told, total=n * len(configs), desc="rough" if rough else "good", unit="merge"))
     made = contest_files(scores, configs, SEED)
     if rough:
@@ -82,27 +82,27 @@ def compared(executor: Executor, files: dict[str, bytes], rough: bool) -> list[S
     return scores
 
 
-def plan_13(case: Case) -> Plan:
+def plan_13(case: Case) -> SweepPlan:
     """Intensity and spread."""
     config = with_value(METHODS[METHOD].defaults, axes.PARTICLES, axes.PAPER_PARTICLES)
     return axes.intensity_and_spread(METHOD, config, case.ref.resolution)
 
 
-def plan_14(case: Case) -> Plan:
+def plan_14(case: Case) -> SweepPlan:
     """Particles."""
     config = with_value(METHODS[METHOD].defaults, axes.INTENSITY, axes.PAPER_INTENSITY)
     spread = axes.in_metres(axes.PAPER_SQUARED_CELLS, case.ref.resolution)
     return axes.particles(METHOD, with_value(config, axes.SPREAD, spread))
 
 
-def known_s(case: Case, plan: Plan, journal: Journal) -> float:
+def known_s(case: Case, plan: SweepPlan, journal: Checkpoint) -> float:
     """What those points took that an interrupted run has left: seconds of all merges."""
     records = map(journal.get, point_keys(case, plan).values())
     return sum(trial["seconds"] for record in records if record for trial in record["trials"])
 
 
 def swept(
-    case: Case, plan: Plan, executor: Executor, journal: Journal, files: dict[str, bytes], figure: str
+    case: Case, plan: SweepPlan, executor: Executor, journal: Checkpoint, files: dict[str, bytes], figure: str
 ) -> Swept:
     """A sweep of one pair, its tables and its figure."""
     told = sweep(case, plan, executor, journal)
@@ -117,7 +117,11 @@ def swept(
 
 
 def page(
-    good: list[Score], rough: list[Score], thirteen: list[Swept], fourteen: list[Swept], minutes: float
+    good: list[ComparedRun],
+    rough: list[ComparedRun],
+    thirteen: list[Swept],
+    fourteen: list[Swept],
+    minutes: float,
 ) -> str:
     """RESULTS.md."""
     rows = tally(good)
@@ -171,7 +175,7 @@ def page(
     )
 
 
-def _blind(good: list[Score], rough: list[Score]) -> str:
+def _blind(good: list[ComparedRun], rough: list[ComparedRun]) -> str:
     """Which methods make nothing of the sighting; checked."""
     names = [name for name, method in METHODS.items() if not method.uses_observation]
     found = [

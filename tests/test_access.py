@@ -12,14 +12,16 @@ from hypothesis import strategies as st
 
 from algorithms.common.errors import InputFileError, MapMergeError, SettingError
 from app.cli.commands.serve import address, reach
-from app.web.security.access_control import LEAST_TOKEN, Access, Asked, access_for, is_local, same
-from app.web.security.message_filter import Gate
+from app.web.security.access_control import LEAST_TOKEN, Access, HttpRequest, access_for, is_local, same
+from app.web.security.message_filter import MessageFilter
 
 TOKEN = "a-token-that-nobody-guesses"
 
 
 def ask(access: Access, path: str = "/", **headers: str) -> int | None:
-    answer = access.answer(Asked(path, {key.replace("_", "-"): value for key, value in headers.items()}))
+    answer = access.answer(
+        HttpRequest(path, {key.replace("_", "-"): value for key, value in headers.items()})
+    )
     return answer and answer.status
 
 
@@ -97,13 +99,13 @@ def test_whatever_a_stranger_sends_is_answered_and_never_with_the_page(query, co
 @given(st.text(HALVES, max_size=40))
 def test_no_words_around_the_origin_make_it_the_pages_own(words):
     for origin in (f"http://{words}127.0.0.1:8080", f"http://127.0.0.1:8080{words}"):
-        asked = Asked("/", {"host": "127.0.0.1:8080", "origin": origin, "upgrade": "websocket"})
+        asked = HttpRequest("/", {"host": "127.0.0.1:8080", "origin": origin, "upgrade": "websocket"})
         assert (Access().answer(asked) is None) is (words == "")
 
 
 def test_what_is_said_twice_is_said_as_a_list():
     headers = [("Host", "a"), ("hOST", "b"), ("Cookie", "a=1"), ("Cookie", "b=2"), ("X", "y")]
-    asked = Asked.of("/", headers)
+    asked = HttpRequest.of("/", headers)
     assert asked.headers == {"host": "a, b", "cookie": "a=1; b=2", "x": "y"}
 
 
@@ -149,7 +151,7 @@ def test_a_token_file_that_holds_more_than_a_token_is_refused_not_cut(tmp_path):
 
 
 def test_who_tries_again_and_again_is_in_the_log_a_few_times_not_each_time(caplog):
-    gate = Gate()
+    gate = MessageFilter()
     for _ in range(20_000):
         gate.drop("request, 401")
     said = [record.getMessage() for record in caplog.records if record.levelname == "WARNING"]

@@ -19,7 +19,7 @@ from strangers import PATIENCE, Stand, Visitor
 from websockets.frames import Frame, Opcode
 from wire import CAMERA, WireFile, until
 
-from app.web.security.frame_limit import EARNS, MOST, Allowance
+from app.web.security.frame_limit import EARNS, MOST, FrameLimit
 from app.web.security.message_schema import MAX_PARTS, MAX_WORDS, fault
 from app.web.upload import MAX_UPLOAD, MAX_UPLOADS_OF_ALL, Recipient
 from app.web.upload import MOST as MAX_FRAME
@@ -330,7 +330,7 @@ def test_a_message_may_come_in_pieces(ours):
 
 
 def test_pieces_as_browsers_send_them_may_be_any_number_at_any_speed():
-    allowance = Allowance(clock=lambda: 0.0)  # no time goes by
+    allowance = FrameLimit(clock=lambda: 0.0)  # no time goes by
     for _ in range(200):
         pieces = [Frame(Opcode.BINARY, bytes(4 * EARNS), fin=False)]
         pieces += [Frame(Opcode.CONT, bytes(size), fin=False) for size in (1, 2 * EARNS) * 400]
@@ -339,7 +339,7 @@ def test_pieces_as_browsers_send_them_may_be_any_number_at_any_speed():
 
 def test_who_sends_few_empty_ones_may_go_on_and_no_message_has_more_than_enough():
     now = [0.0]
-    allowance = Allowance(clock=lambda: now[0])
+    allowance = FrameLimit(clock=lambda: now[0])
     borne = 0
     while allowance.bears(Frame(Opcode.CONT, b"", fin=False)):
         now[0] += 1.0

@@ -12,8 +12,8 @@ from wire import WireTab, until
 
 from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import Case
-from app.drawing.scene_layout import Layout, lay_out
-from app.model.merge_inputs import Inputs
+from app.drawing.scene_layout import SceneLayout, lay_out
+from app.model.merge_inputs import MergeInputs
 from app.page.application import make_server
 
 X, Y, TURN = "T: Δx (m)", "T: Δy (m)", "T: Δθ (°)"
@@ -41,7 +41,7 @@ def shown(tab: WireTab) -> tuple[float, float, float]:
     return x, y, turn
 
 
-def numbers(layout: Layout, at: Pose2) -> Any:
+def numbers(layout: SceneLayout, at: Pose2) -> Any:
     """What the numbers are for map 2 at a place of the scene."""
     T = layout.transform(at)
     return pytest.approx((T.x, T.y, T.theta / radians(1)), abs=2e-3)
@@ -54,8 +54,8 @@ def told(tab: WireTab) -> Pose2:
 
 
 @pytest.fixture
-def layout(small_case) -> Layout:
-    return lay_out(small_case.ref, small_case.mov, Inputs.of(small_case).at)
+def layout(small_case) -> SceneLayout:
+    return lay_out(small_case.ref, small_case.mov, MergeInputs.of(small_case).at)
 
 
 def test_a_step_by_a_key_goes_from_where_the_page_shows_map_2_and_no_word_comes_back(tab, layout):

@@ -12,7 +12,7 @@ import viser
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.web.browser_events import LONGEST, MOST_WAITING, Channel, Numbers, checked
+from app.web.browser_events import LONGEST, MOST_WAITING, BrowserEvents, Numbers, checked
 from app.web.security.message_filter import acceptable, usable
 
 PATIENCE = 20
@@ -27,7 +27,7 @@ def server():
 
 @pytest.fixture
 def channel(server):
-    channel = Channel(
+    channel = BrowserEvents(
         server.gui, SimpleNamespace(listen=lambda uuid: None, hud=lambda **said: None, flush=lambda: None)
     )
     yield channel

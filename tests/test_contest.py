@@ -11,15 +11,22 @@ from test_sweep import trials
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import Pose2
 from algorithms.methods.registry import METHODS
-from app.evaluation.method_comparison import Score, Unread, contest, defaults_of, pairs_in, tally
-from app.evaluation.method_run import attempt, true_fusion
+from app.evaluation.method_comparison import (
+    ComparedRun,
+    UnreadableCase,
+    compare_methods,
+    defaults_of,
+    pairs_in,
+    tally,
+)
+from app.evaluation.method_run import run_method, true_fusion
 from app.jobs.executor import Executor, LostTask, SerialExecutor
 
 QUICK = "spectra-swarm"
 
 
 def outcomes(pairs, names=(QUICK,)):
-    return {(s.case, s.method): s.trial for s in contest(pairs, defaults_of(names), SerialExecutor())}
+    return {(s.case, s.method): s.trial for s in compare_methods(pairs, defaults_of(names), SerialExecutor())}
 
 
 @given(st.lists(trials))
@@ -27,7 +34,7 @@ def test_what_is_judged_is_right_or_wrong_or_no_answer(found):
     kept = [
         replace(trial, right=False) if trial.T_ref_mov is None and trial.right else trial for trial in found
     ]
-    for row in tally([Score("case", QUICK, trial) for trial in kept]).values():
+    for row in tally([ComparedRun("case", QUICK, trial) for trial in kept]).values():
         assert row.n + row.failed == len(found)
         assert row.right + row.wrong + row.no_answer == row.judged <= row.n
         assert row.wrong_accepted <= row.wrong
@@ -47,7 +54,7 @@ def test_of_maps_that_share_no_place_every_transform_is_wrong_also_a_refused_one
     assert trial.wrong
     assert not trial.accepted
     assert trial.index is None
-    row = tally([Score("neg", QUICK, trial)])[QUICK]
+    row = tally([ComparedRun("neg", QUICK, trial)])[QUICK]
     assert (row.right, row.wrong, row.refused, row.wrong_accepted) == (0, 1, 1, 0)
 
 
@@ -57,26 +64,26 @@ def test_a_method_without_an_answer_is_refused_and_merged_nothing(small_case, st
         yield
 
     monkeypatch.setitem(METHODS, QUICK, replace(METHODS[QUICK], run=lost))
-    trial = attempt(small_case, QUICK, None, 0, true_fusion(small_case))
+    trial = run_method(small_case, QUICK, None, 0, true_fusion(small_case))
     assert (trial.T_ref_mov, trial.accepted, trial.right, trial.index) == (None, False, False, 0.0)
     assert "no corner" in trial.reason
     assert not trial.wrong
-    assert attempt(strangers, QUICK, None, 0, None).right  # there is no transform to be found
-    row = tally([Score("flat", QUICK, trial)])[QUICK]
+    assert run_method(strangers, QUICK, None, 0, None).right  # there is no transform to be found
+    row = tally([ComparedRun("flat", QUICK, trial)])[QUICK]
     assert (row.no_answer, row.wrong, row.refused, row.index) == (1, 0, 1, 0.0)
 
 
 def test_what_cannot_be_run_or_read_costs_no_other(small_case):
     seen = replace(small_case.observations[0], bearing_back=None)
     told = outcomes(
-        [("bad", Unread("map2.pgm: is torn")), ("flat", replace(small_case, observations=(seen,)))],
+        [("bad", UnreadableCase("map2.pgm: is torn")), ("flat", replace(small_case, observations=(seen,)))],
         (QUICK, "bilateral"),
     )
     assert told["bad", QUICK].reason == "map2.pgm: is torn"
     assert told["flat", "bilateral"].failed
     assert "bearing_back" in told["flat", "bilateral"].reason
     assert told["flat", QUICK].right
-    rows = tally([Score(case, method, trial) for (case, method), trial in told.items()])
+    rows = tally([ComparedRun(case, method, trial) for (case, method), trial in told.items()])
     assert (rows["bilateral"].n, rows["bilateral"].failed, rows["bilateral"].seconds) == (0, 2, None)
     assert (rows[QUICK].n, rows[QUICK].failed) == (1, 1)
 
@@ -108,7 +115,7 @@ def test_a_method_whose_process_dies_is_told_as_failed(small_case):
         def run(self, work, tasks, stop=None):
             yield from ((number, LostTask()) for number, _ in enumerate(tasks))
 
-    (score,) = contest([("flat", small_case)], defaults_of([QUICK]), Deadly())
+    (score,) = compare_methods([("flat", small_case)], defaults_of([QUICK]), Deadly())
     assert score.trial.failed
     assert "too little memory" in score.trial.reason
 
@@ -122,7 +129,7 @@ def test_pairs_of_a_folder_are_read_when_it_is_their_turn_and_a_broken_one_is_to
     assert n == 2
     found = dict(pairs)
     assert list(found) == ["bad/flat_2", "flat_1"]
-    assert isinstance(found["bad/flat_2"], Unread)
+    assert isinstance(found["bad/flat_2"], UnreadableCase)
     assert "map1.pgm" in found["bad/flat_2"].reason
     (_, rough), *_ = pairs_in(tmp_path / "cases" / "flat_1", rough=True)[1]
     assert rough.observation_file == "observation_rough.yaml"

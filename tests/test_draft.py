@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import observations_from_bytes, observations_to_bytes
 from algorithms.observations.observation import Observation, encounter
-from app.model.observation_draft import Draft
+from app.model.observation_draft import ObservationDraft
 
 metres, angles = st.floats(-50, 50), st.floats(-3.1, 3.1)
 poses = st.builds(Pose2, metres, metres, angles)
@@ -29,7 +29,7 @@ observations = st.builds(
 
 @given(observations)
 def test_a_draft_that_nobody_touches_is_the_observation_itself(observation):
-    draft = Draft.of(observation)
+    draft = ObservationDraft.of(observation)
     assert draft.observation == observation
     assert draft.missing is None
     assert draft.seen == pytest.approx(encounter(observation).x_ref)
@@ -37,7 +37,7 @@ def test_a_draft_that_nobody_touches_is_the_observation_itself(observation):
 
 @given(poses, st.tuples(metres, metres), st.tuples(metres, metres), st.none() | angles)
 def test_three_places_make_an_observation_that_sees_robot_2_where_it_was_put(observer, seen, was, heading):
-    draft = Draft()
+    draft = ObservationDraft()
     assert draft.missing == "observer"
     draft = draft.stood(observer)
     assert draft.missing == "seen"
@@ -53,7 +53,7 @@ def test_three_places_make_an_observation_that_sees_robot_2_where_it_was_put(obs
 
 @given(observations, poses)
 def test_robot_1_moves_and_what_it_saw_stays(observation, elsewhere):
-    before = Draft.of(observation)
+    before = ObservationDraft.of(observation)
     after = before.stood(elsewhere)
     assert after.seen == pytest.approx(before.seen, abs=1e-6)
     assert after.observer == elsewhere
@@ -61,5 +61,5 @@ def test_robot_1_moves_and_what_it_saw_stays(observation, elsewhere):
 
 @given(st.lists(observations, min_size=1, max_size=4), poses)
 def test_what_is_saved_loads_back_to_the_same(several, elsewhere):
-    made = [Draft.of(o).stood(elsewhere).observation for o in several]
+    made = [ObservationDraft.of(o).stood(elsewhere).observation for o in several]
     assert observations_from_bytes("observation.yaml", observations_to_bytes(made)) == tuple(made)

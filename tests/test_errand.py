@@ -18,7 +18,7 @@ from app.page.cancellable_task import CancellableTask
 from app.page.panels.files_panel import FilesPanel, Upload
 from app.page.panels.replay import ReplayButton
 from app.system.cancellation import CancellableReader, Cancelled
-from app.web.download import TAKEAWAY
+from app.web.download import DOWNLOADS
 
 YAML = b"image: a\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
 BEFORE = {"state": "Ready. Press Merge.", "mood": "idle", "progress": None}
@@ -144,7 +144,7 @@ def test_a_replay_whose_recording_is_stopped_is_not_sent_and_can_be_made_after_a
         check(0.5)
         return b"<html>"
 
-    monkeypatch.setattr(TAKEAWAY, "_sent", [])
+    monkeypatch.setattr(DOWNLOADS, "_sent", [])
     button.offer("a pair", make)
     person.impatient = True
     button._save()

@@ -14,7 +14,7 @@ from algorithms.files.case_folder import Truth
 from algorithms.methods import registry as methods
 from app.cli.main import main
 from app.evaluation import dataset_evaluation as evaluate
-from app.evaluation.dataset_evaluation import Order, judge_case, run_case, totals_of
+from app.evaluation.dataset_evaluation import EvaluationTask, judge_case, run_case, totals_of
 from app.jobs.executor import SerialExecutor
 from app.jobs.process_executor import ProcessExecutor
 
@@ -23,7 +23,7 @@ DEFAULTS = methods.METHODS[METHOD].defaults
 
 
 def order(root, **more):
-    return Order(Path(root), METHOD, DEFAULTS, **more)
+    return EvaluationTask(Path(root), METHOD, DEFAULTS, **more)
 
 
 def off_by(case, result, metres=0.0, angle=0.0, **truth):

@@ -22,9 +22,9 @@ from app.drawing import grid_pixels as render
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import LIGHT
 from app.drawing.scene.grid_image import Size
-from app.drawing.scene.map_layers import Ground
-from app.drawing.scene.zoom_crop import MOST_EXCERPT, Excerpt, View, looked_at
-from app.drawing.scene_layout import Layout
+from app.drawing.scene.map_layers import MapLayers
+from app.drawing.scene.zoom_crop import MOST_EXCERPT, CameraView, ZoomCrop, looked_at
+from app.drawing.scene_layout import SceneLayout
 from app.report.replay.image_recorder import PictureScene
 
 SIDES = st.integers(1, 20_000)
@@ -137,16 +137,16 @@ def maps():
 
 @pytest.fixture
 def ground(page, maps):
-    ground = Ground(PictureScene(), SIZE, page)
-    layout = Layout(np.array([2.0, 3.0]), np.array([4.0, 1.0]), None, None, Pose2(30.0, 0.0))
+    ground = MapLayers(PictureScene(), SIZE, page)
+    layout = SceneLayout(np.array([2.0, 3.0]), np.array([4.0, 1.0]), None, None, Pose2(30.0, 0.0))
     ground.load(*maps, layout, LIGHT)
     return ground
 
 
-def look(ground: Ground, page: Page, at, mov: Pose2 = Pose2(30.0, 0.0), half: float = 0.6) -> None:  # noqa: B008
+def look(ground: MapLayers, page: Page, at, mov: Pose2 = Pose2(30.0, 0.0), half: float = 0.6) -> None:  # noqa: B008
     """Have a view of 20 px per cell about a place of the scene sharpened."""
     x, y = at
-    for closer in ground.closer(View((x - half, y - half, x + half, y + half), mov, 20 / CELL)):
+    for closer in ground.closer(CameraView((x - half, y - half, x + half, y + half), mov, 20 / CELL)):
         closer.image.lay(closer, closer.picture())
     page.flush()
 
@@ -175,8 +175,8 @@ def test_the_excerpt_of_map_2_is_the_same_wherever_map_2_lies(ground, page, maps
 
 def test_nothing_is_sent_twice_nor_from_afar_and_a_far_look_lays_the_picture_bare(ground, page, maps):
     at = maps[0].origin.apply(np.array([50, 40]) * CELL) - (2.0, 3.0)
-    view = View((*(at - 0.6).tolist(), *(at + 0.6).tolist()), Pose2(30.0), 20 / CELL)
-    far = View((*(at - 9.0).tolist(), *(at + 9.0).tolist()), Pose2(30.0), 0.1 / CELL)
+    view = CameraView((*(at - 0.6).tolist(), *(at + 0.6).tolist()), Pose2(30.0), 20 / CELL)
+    far = CameraView((*(at - 9.0).tolist(), *(at + 9.0).tolist()), Pose2(30.0), 0.1 / CELL)
     assert ground.closer(far) == []
     look(ground, page, at)
     assert ground.closer(view) == []
@@ -189,11 +189,11 @@ def test_nothing_is_sent_twice_nor_from_afar_and_a_far_look_lays_the_picture_bar
 
 def test_other_maps_lay_the_page_bare_and_an_excerpt_of_the_last_ones_comes_too_late(ground, page, maps):
     at = maps[0].origin.apply(np.array([50, 40]) * CELL) - (2.0, 3.0)
-    view = View((*(at - 0.6).tolist(), *(at + 0.6).tolist()), Pose2(30.0), 20 / CELL)
+    view = CameraView((*(at - 0.6).tolist(), *(at + 0.6).tolist()), Pose2(30.0), 20 / CELL)
     late = ground.closer(view)
     assert late
     look(ground, page, at)
-    ground.load(maps[1], maps[0], Layout(np.zeros(2), np.zeros(2), None, None, Pose2()), LIGHT)
+    ground.load(maps[1], maps[0], SceneLayout(np.zeros(2), np.zeros(2), None, None, Pose2()), LIGHT)
     page.flush()
     assert page.laid == {}
     for closer in late:
@@ -203,13 +203,13 @@ def test_other_maps_lay_the_page_bare_and_an_excerpt_of_the_last_ones_comes_too_
 
 
 def test_a_map_that_is_sent_whole_has_no_excerpts(page, maps):
-    ground = Ground(PictureScene(), Size(whole=200, pooled=20), page)
-    ground.load(*maps, Layout(np.zeros(2), np.zeros(2), None, None, Pose2()), LIGHT)
-    assert ground.closer(View((-5.0, -5.0, 5.0, 5.0), Pose2(), 1000.0)) == []
+    ground = MapLayers(PictureScene(), Size(whole=200, pooled=20), page)
+    ground.load(*maps, SceneLayout(np.zeros(2), np.zeros(2), None, None, Pose2()), LIGHT)
+    assert ground.closer(CameraView((-5.0, -5.0, 5.0, 5.0), Pose2(), 1000.0)) == []
 
 
 def test_one_excerpt_serves_another_only_if_it_is_as_fine_and_as_large():
-    excerpt = Excerpt(10, 10, 50, 50, 2)
-    assert excerpt.serves(Excerpt(10, 20, 50, 40, 3))
-    assert not excerpt.serves(Excerpt(20, 20, 40, 40, 1))
-    assert not excerpt.serves(Excerpt(9, 20, 40, 40, 2))
+    excerpt = ZoomCrop(10, 10, 50, 50, 2)
+    assert excerpt.serves(ZoomCrop(10, 20, 50, 40, 3))
+    assert not excerpt.serves(ZoomCrop(20, 20, 40, 40, 1))
+    assert not excerpt.serves(ZoomCrop(9, 20, 40, 40, 2))

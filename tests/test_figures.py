@@ -12,26 +12,26 @@ import pytest
 
 from algorithms.methods.registry import METHODS
 from app.evaluation.comparison_figure import bars_figure, maps_figure
-from app.evaluation.method_comparison import Score
-from app.evaluation.method_run import Trial
-from app.evaluation.parameter_sweep import Plan, Point
+from app.evaluation.method_comparison import ComparedRun
+from app.evaluation.method_run import MethodRun
+from app.evaluation.parameter_sweep import SweepPlan, SweepPoint
 from app.evaluation.sweep_axes import axis_from
 from app.evaluation.sweep_figure import sweep_figure
 
 ROOT = Path(__file__).parent.parent
 CONFIG = METHODS["spectra-swarm"].defaults
-TRIAL = Trial((0.0, 0.0, 0.0), True, "Merged.", 0.9, 0.1, 0.01, True, True, 0.5)
+TRIAL = MethodRun((0.0, 0.0, 0.0), True, "Merged.", 0.9, 0.1, 0.01, True, True, 0.5)
 
 
 def plan(x, y=None):
-    return Plan(
+    return SweepPlan(
         "spectra-swarm", CONFIG, axis_from(x, CONFIG), None if y is None else axis_from(y, CONFIG), (0, 1)
     )
 
 
 def points(asked, trial=TRIAL):
     places = enumerate(asked.places())
-    return [Point(*place, (replace(trial, index=n / 100), trial)) for n, place in places]
+    return [SweepPoint(*place, (replace(trial, index=n / 100), trial)) for n, place in places]
 
 
 def opened(files):
@@ -63,7 +63,7 @@ def test_a_sweep_over_anything_has_a_figure(asked):
 )
 def test_a_sweep_without_a_truth_or_without_any_result_has_a_figure_too(trial):
     for asked in (PLANS[0], PLANS[-1]):
-        told = [Point(*place, (trial, trial)) for place in asked.places()]
+        told = [SweepPoint(*place, (trial, trial)) for place in asked.places()]
         opened(sweep_figure(asked, told, "flat", 0.05))
 
 
@@ -86,10 +86,10 @@ def scores(small_case):
         replace(
             TRIAL, T_ref_mov=None, right=False, accepted=False, index=0.0, reason="Refused: too few corners."
         ),
-        Trial(None, False, "needs a bearing back", None, None, None, None, None, 0.0, failed=True),
+        MethodRun(None, False, "needs a bearing back", None, None, None, None, None, 0.0, failed=True),
         replace(TRIAL, T_ref_mov=(1e6, 1e6, 0.0), right=None),  # a merged map of that size is none
     ]
-    return [Score("flat", name, trial) for name, trial in zip(names, trials, strict=False)]
+    return [ComparedRun("flat", name, trial) for name, trial in zip(names, trials, strict=False)]
 
 
 def test_whatever_became_of_a_method_it_has_its_panel_and_its_bar(small_case, scores):

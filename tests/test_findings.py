@@ -12,20 +12,20 @@ from hypothesis import strategies as st
 
 from algorithms.methods.registry import METHODS
 from app.evaluation import sweep_axes as axes
-from app.evaluation.method_comparison import Score, tally
-from app.evaluation.method_run import Trial
-from app.evaluation.parameter_sweep import Axis, Plan, Point
+from app.evaluation.method_comparison import ComparedRun, tally
+from app.evaluation.method_run import MethodRun
+from app.evaluation.parameter_sweep import Axis, SweepPlan, SweepPoint
 
 ROOT = Path(__file__).parents[1]
 CONFIG = METHODS["spectra-swarm"].defaults
-TRIAL = Trial((0.0, 0.0, 0.0), True, "Merged.", 0.9, 0.1, 0.01, True, True, 0.5)
+TRIAL = MethodRun((0.0, 0.0, 0.0), True, "Merged.", 0.9, 0.1, 0.01, True, True, 0.5)
 
 
 def swept(index, x=axes.PARTICLES, xs=(10, 100, 400), y=None, ys=(None,), seconds=None):
     """A sweep whose trials have the index (x, y, seed) tells."""
-    plan = Plan("spectra-swarm", CONFIG, Axis(x, xs), None if y is None else Axis(y, ys), (0, 1))
+    plan = SweepPlan("spectra-swarm", CONFIG, Axis(x, xs), None if y is None else Axis(y, ys), (0, 1))
     points = [
-        Point(
+        SweepPoint(
             *place,
             tuple(
                 replace(TRIAL, index=index(*place, seed), seconds=seconds(place[0]) if seconds else 0.1)
@@ -91,7 +91,7 @@ def test_from_there_on_every_value_is_near_the_best_and_the_one_before_is_not(va
 
 def scored(**trials):
     return [
-        Score(f"case_{number}", method.replace("_", "-"), trial)
+        ComparedRun(f"case_{number}", method.replace("_", "-"), trial)
         for method, found in trials.items()
         for number, trial in enumerate(found)
     ]

@@ -7,9 +7,9 @@ import pytest
 
 from algorithms.files.case_folder import Case
 from app.drawing.palette import DARK, LIGHT
-from app.drawing.scene.map_layers import Ground
+from app.drawing.scene.map_layers import MapLayers
 from app.drawing.scene_layout import lay_out
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.report.replay.image_recorder import PictureScene
 
 
@@ -23,8 +23,8 @@ def sent(scene: PictureScene) -> int:
 
 
 def test_a_map_that_is_there_already_is_moved_and_not_sent_again(scene, small_case: Case):
-    inputs = Inputs.of(small_case)
-    ground = Ground(scene)
+    inputs = MergeInputs.of(small_case)
+    ground = MapLayers(scene)
     ground.load(inputs.ref, inputs.mov, lay_out(inputs.ref, inputs.mov, None), LIGHT)
     before, seen = sent(scene), scene.seen
     layout = lay_out(inputs.ref, inputs.mov, inputs.at)  # the observation has come: other anchors
@@ -37,9 +37,9 @@ def test_a_map_that_is_there_already_is_moved_and_not_sent_again(scene, small_ca
 
 
 def test_another_map_or_other_colours_are_sent(scene, small_case: Case):
-    inputs = Inputs.of(small_case)
+    inputs = MergeInputs.of(small_case)
     layout = lay_out(inputs.ref, inputs.mov, inputs.at)
-    ground = Ground(scene)
+    ground = MapLayers(scene)
     ground.load(inputs.ref, inputs.mov, layout, LIGHT)
     first = sent(scene)
     ground.load(inputs.ref, inputs.ref, layout, LIGHT)

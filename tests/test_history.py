@@ -19,27 +19,31 @@ from algorithms.maps.map_fusion import fuse
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from algorithms.methods.steps import Step
 from algorithms.observations.observation import Observation
-from app.model.merge_inputs import Files, Inputs, Upload
-from app.model.run_state import Story
+from app.model.merge_inputs import Files, MergeInputs, Upload
+from app.model.run_state import RunState
 from app.model.settings import with_value
-from app.page.page_snapshot import Desk, change
+from app.page.page_snapshot import PageSnapshot, change
 from app.page.panels.history_panel import history_html, steps_html
-from app.page.undo_history import MOST, PAUSE, Entry, History, SavedTab
+from app.page.undo_history import MOST, PAUSE, SavedTab, UndoHistory, UndoStep
 from app.web.session_store import SessionStore
 
 ROOM = GridMap(np.full((40, 40), FREE, dtype=np.int8), 0.1)
 SEEN = Observation(Pose2(), 0.1, 0.1, 0.1, 0.0)
-START = Desk(
-    Inputs(ROOM, ROOM, (SEEN,), "rooms"), Files("rooms"), DEFAULT_METHOD, METHODS[DEFAULT_METHOD].defaults, 0
+START = PageSnapshot(
+    MergeInputs(ROOM, ROOM, (SEEN,), "rooms"),
+    Files("rooms"),
+    DEFAULT_METHOD,
+    METHODS[DEFAULT_METHOD].defaults,
+    0,
 )
 
 
-def seeded(seed: int) -> Desk:
+def seeded(seed: int) -> PageSnapshot:
     return replace(START, seed=seed)
 
 
-def history(*desks: Desk, **how: int) -> History:
-    told = History(Entry("start", START), **how)
+def history(*desks: PageSnapshot, **how: int) -> UndoHistory:
+    told = UndoHistory(UndoStep("start", START), **how)
     for number, desk in enumerate(desks):
         told.record(f"{number}", desk, now=100.0 * number)
     return told
@@ -103,9 +107,9 @@ def test_it_is_bounded_and_the_newest_stays(count, most):
 
 
 @pytest.fixture
-def outcome(result) -> Story:
+def outcome(result) -> RunState:
     """Of a merge of the room with itself."""
-    story = Story(START.config)
+    story = RunState(START.config)
     story.tell(Step("verdict", replace(result, fusion=fuse(ROOM, ROOM, Pose2())), 0.0))
     return story
 
@@ -138,7 +142,7 @@ def test_what_comes_out_belongs_to_the_entry_it_was_asked_at(outcome):
 def test_every_wish_has_a_name():
     config = with_value(START.config, ("augment", "spread"), 4.5)
     two = with_value(config, ("box", "sigma_x"), 2.0)
-    other = Inputs(ROOM, ROOM, (SEEN, SEEN), "rooms")
+    other = MergeInputs(ROOM, ROOM, (SEEN, SEEN), "rooms")
     grid = GridMap(ROOM.cells, 0.2)
     assert change(START, START)[0] == ""
     assert change(START, replace(START, config=config)) == (
@@ -149,8 +153,8 @@ def test_every_wish_has_a_name():
     assert change(START, seeded(3))[0] == "seed 0 → 3"
     assert change(START, replace(START, method="spectra-swarm"))[0].startswith("method: ")
     assert change(START, replace(START, inputs=other))[0] == "2 observations by hand"
-    assert change(START, replace(START, inputs=Inputs(grid, ROOM, (), "b")))[0] == "load b"
-    assert change(START, replace(START, inputs=Inputs()))[0] == "forget the files"
+    assert change(START, replace(START, inputs=MergeInputs(grid, ROOM, (), "b")))[0] == "load b"
+    assert change(START, replace(START, inputs=MergeInputs()))[0] == "forget the files"
     assert change(START, replace(START, hand=Pose2(1, 2, 3)))[0] == "map 2 by hand"
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, UNKNOWN, GridMap
 from algorithms.observations.observation import Observation, encounter
-from app.drawing.scene_layout import Layout, known_corners, lay_out, rect_of
+from app.drawing.scene_layout import SceneLayout, known_corners, lay_out, rect_of
 
 
 def grid(rows: int, cols: int, origin: Pose2 = Pose2()) -> GridMap:  # noqa: B008 - frozen
@@ -60,7 +60,7 @@ def test_missing_maps_leave_a_view_all_the_same(ref, mov):
 
 @given(st.floats(-30, 30), st.floats(-30, 30), st.floats(-3, 3))
 def test_where_a_transform_puts_map_2_gives_the_transform_back(x, y, theta):
-    at = Layout(np.array([3.0, -2.0]), np.array([-7.0, 11.0]), None, None, Pose2())
+    at = SceneLayout(np.array([3.0, -2.0]), np.array([-7.0, 11.0]), None, None, Pose2())
     T = at.transform(at.placed(Pose2(x, y, theta)))
     assert T.array() == pytest.approx([x, y, theta], abs=1e-9)
 

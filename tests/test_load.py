@@ -25,12 +25,12 @@ import app.page.application
 from algorithms.common.errors import TooLargeError
 from algorithms.files.case_folder import Case, read_case
 from algorithms.methods.registry import merge
-from app.jobs.fair_semaphore import Turns
-from app.model.merge_job import Job
+from app.jobs.fair_semaphore import FairSemaphore
+from app.model.merge_job import MergeJob
 from app.page.application import make_server
 from app.page.page import Page
-from app.web.cell_quota import Budget
-from app.web.download import Takeaway
+from app.web.cell_quota import CellQuota
+from app.web.download import Downloads
 
 ROOT = Path(__file__).parent.parent
 
@@ -78,7 +78,7 @@ def test_merge_pressed_between_two_loads_gives_no_pair_the_answer_of_another(ser
 
     make = Page._job
 
-    def late(page: Page, **how: Any) -> Job | None:
+    def late(page: Page, **how: Any) -> MergeJob | None:
         job = make(page, **how)
         sleep(0.5)  # in which others get their turn where they can
         return job
@@ -220,7 +220,7 @@ def test_a_server_that_is_told_to_end_finishes_the_files_that_it_is_making():
 
 
 def test_turns_are_taken_in_their_order_and_so_many_at_a_time():
-    turns, order, go = Turns(2), [], Event()
+    turns, order, go = FairSemaphore(2), [], Event()
 
     def work(number: int) -> None:
         with turns.take(lambda: True, lambda before: None) as mine:
@@ -243,7 +243,7 @@ def test_turns_are_taken_in_their_order_and_so_many_at_a_time():
 
 def test_who_wants_no_turn_any_more_leaves_the_queue_and_is_told_how_long_it_was(monkeypatch):
     monkeypatch.setattr("app.jobs.fair_semaphore.PATIENCE", 0.0)
-    turns, before, wanted = Turns(1), [], [True]
+    turns, before, wanted = FairSemaphore(1), [], [True]
 
     def give_up(number: int) -> None:
         before.append(number)
@@ -260,7 +260,7 @@ def test_who_wants_no_turn_any_more_leaves_the_queue_and_is_told_how_long_it_was
 
 
 def test_what_fails_in_its_turn_gives_the_turn_back():
-    turns = Turns(1)
+    turns = FairSemaphore(1)
     with pytest.raises(MemoryError), turns.take(lambda: True, lambda before: None):
         raise MemoryError
     with turns.take(lambda: True, lambda before: None) as mine:
@@ -269,7 +269,7 @@ def test_what_fails_in_its_turn_gives_the_turn_back():
 
 def test_one_tab_may_hold_as_much_as_a_map_may_have_and_a_second_one_what_is_left():
     room = []
-    budget = Budget(100, make_room=lambda: room.append(1))
+    budget = CellQuota(100, make_room=lambda: room.append(1))
     budget.claim("a", 150)  # alone: a single map is bounded elsewhere
     with pytest.raises(TooLargeError, match="close one of them, or make the maps coarser"):
         budget.claim("b", 1)
@@ -284,7 +284,7 @@ def test_one_tab_may_hold_as_much_as_a_map_may_have_and_a_second_one_what_is_lef
 
 
 def test_a_server_waits_for_what_is_being_made_and_begins_nothing_more():
-    takeaway, begun, go = Takeaway(), Event(), Event()
+    takeaway, begun, go = Downloads(), Event(), Event()
     buffer = SimpleNamespace(message_from_id={1: "part"}, done=False)
     client = SimpleNamespace(
         _websock_connection=SimpleNamespace(get_message_buffer=lambda: buffer),
@@ -313,7 +313,7 @@ def test_a_server_waits_for_what_is_being_made_and_begins_nothing_more():
 
 
 def test_who_never_ends_is_not_waited_for_for_ever():
-    takeaway = Takeaway()
+    takeaway = Downloads()
     with takeaway.making() as begun:
         takeaway.finish(0.05)
         assert begun

@@ -46,7 +46,7 @@ def test_a_request_that_is_none_leaves_nothing_in_the_log(locked, request_, capl
         assert get(locked.port)[0] == 401  # and with this the one before has been dealt with
     finally:
         lines.filters = ours
-    assert any(TOKEN in logs.Lines().format(record) or record.exc_info for record in told)
+    assert any(TOKEN in logs.JsonFormatter().format(record) or record.exc_info for record in told)
     caplog.clear()
     sent(locked, request_)
     assert get(locked.port)[0] == 401
@@ -68,7 +68,7 @@ def test_a_handler_of_ours_that_fails_is_told_of_with_its_trace():
 
 def line(*what: object) -> str:
     record = logging.LogRecord("app", logging.WARNING, "", 0, str(what[0]), what[1:], None)
-    return str(json.loads(logs.Lines().format(record))["what"])
+    return str(json.loads(logs.JsonFormatter().format(record))["what"])
 
 
 def test_no_line_holds_a_token_whatever_it_came_with(monkeypatch):
@@ -84,7 +84,7 @@ def test_no_line_holds_a_token_whatever_it_came_with(monkeypatch):
 
 def test_the_same_words_again_and_again_are_counted_not_written():
     now = [0.0]
-    seldom = logs.Seldom(lambda: now[0])
+    seldom = logs.RepeatFilter(lambda: now[0])
 
     def passes(words: str, level: int = logging.ERROR) -> logging.LogRecord | None:
         record = logging.LogRecord("asyncio", level, "", 0, words, (), None)
@@ -101,7 +101,7 @@ def test_the_same_words_again_and_again_are_counted_not_written():
 
 
 def test_different_words_without_end_take_no_memory_without_end():
-    seldom = logs.Seldom()
+    seldom = logs.RepeatFilter()
     for k in range(3 * logs.MOST_WORDS):
         seldom.filter(logging.LogRecord("app", logging.ERROR, "", 0, f"words {k}", (), None))
     assert len(seldom._since) <= logs.MOST_WORDS
@@ -112,5 +112,5 @@ def test_a_server_writes_lines_that_hide_and_count(monkeypatch):
     logs.start(verbose=False)
     logging.getLogger("app").setLevel(logging.NOTSET)
     (handler,) = logging.root.handlers
-    assert isinstance(handler.formatter, logs.Lines)
-    assert any(isinstance(one, logs.Seldom) for one in handler.filters)
+    assert isinstance(handler.formatter, logs.JsonFormatter)
+    assert any(isinstance(one, logs.RepeatFilter) for one in handler.filters)

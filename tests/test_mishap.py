@@ -19,12 +19,12 @@ from algorithms.spectra.candidates import CandidateConfig
 from app.drawing.scene.map_view import MapView
 from app.jobs import worker_pool as workers
 from app.model import status_text as words_of_the_page
-from app.model.run_state import Story
+from app.model.run_state import RunState
 from app.page.application import make_server
 from app.page.page import Page
 from app.page.panels.files_panel import read_case as real_read_case
-from app.report.export import Harvest
-from app.system.logging_setup import Lines, facts
+from app.report.export import ResultFiles
+from app.system.logging_setup import JsonFormatter, facts
 from app.web.callback_errors import OUT_OF_MEMORY, words
 
 
@@ -107,7 +107,7 @@ def test_a_recording_whose_process_hangs_can_be_stopped_and_the_next_merge_works
     assert merge(tab) == "accepted"
     said, progress = tab.state, words_of_the_page.progress
 
-    def hung(story: Story) -> float:
+    def hung(story: RunState) -> float:
         send_all(signal.SIGSTOP)
         return progress(story)
 
@@ -131,7 +131,7 @@ def test_a_recording_whose_process_is_killed_is_told_and_is_no_bug(tab, monkeypa
     assert merge(tab) == "accepted"
     said, progress = tab.state, words_of_the_page.progress
 
-    def killed(story: Story) -> float:
+    def killed(story: RunState) -> float:
         send_all(signal.SIGKILL)
         return progress(story)
 
@@ -148,7 +148,7 @@ def test_a_recording_whose_process_is_killed_is_told_and_is_no_bug(tab, monkeypa
 def test_a_click_that_meets_no_map_reads_nothing_out(tab, monkeypatch, along):
     asked, read_out = [], MapView.read_out
 
-    def spy(view: MapView, place: np.ndarray, story: Story) -> str:
+    def spy(view: MapView, place: np.ndarray, story: RunState) -> str:
         asked.append(place)
         return read_out(view, place, story)
 
@@ -168,7 +168,7 @@ def test_files_that_cannot_be_made_are_told_of_and_can_be_asked_for_again(tab, m
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patch:
-        patch.setattr(Harvest, "archive", full)
+        patch.setattr(ResultFiles, "archive", full)
         tab.press("Download everything")
         until(lambda: tab.notices("This did not work"), "a word of it")
     assert not tab.files
@@ -198,7 +198,7 @@ def test_what_went_wrong_is_said_without_a_trace():
 def test_a_line_of_the_log_is_one_line_that_programs_read():
     record = logging.LogRecord("app.page.application", logging.INFO, __file__, 1, "a tab\ncame", (), None)
     record.__dict__.update(facts(tab=3))
-    line = Lines().format(record)
+    line = JsonFormatter().format(record)
     assert "\n" not in line
     told = json.loads(line)
     assert told["what"] == "a tab\ncame"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from queue import Queue
 from threading import Event
 
-from app.jobs.latest_request import Newest
+from app.jobs.latest_request import LatestRequest
 
 PATIENCE = 20
 
@@ -23,7 +23,7 @@ def test_what_was_asked_before_the_newest_is_passed_over_and_a_bug_ends_nothing(
             raise ZeroDivisionError
         done.put(number)
 
-    newest = Newest(work, "test")
+    newest = LatestRequest(work, "test")
     newest.ask(0)
     assert busy.wait(PATIENCE)
     for number in (1, 2, 3):
@@ -47,7 +47,7 @@ def test_what_was_dropped_is_not_worked_on():
             assert go_on.wait(PATIENCE)
         done.put(number)
 
-    newest = Newest(work, "test")
+    newest = LatestRequest(work, "test")
     newest.ask(0)
     assert busy.wait(PATIENCE)
     newest.ask(1)

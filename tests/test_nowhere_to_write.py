@@ -25,7 +25,7 @@ from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import OutputError
 from algorithms.files import atomic_write as atomic
 from app.cli.main import main
-from app.evaluation.checkpoint import Journal
+from app.evaluation.checkpoint import Checkpoint
 from app.jobs.executor import Shared, Task
 from app.jobs.process_executor import ProcessExecutor
 
@@ -60,7 +60,7 @@ COMMANDS = {
 }
 WORK = (
     "algorithms.methods.registry.run",
-    "app.evaluation.method_comparison.contest",
+    "app.evaluation.method_comparison.compare_methods",
     "app.evaluation.parameter_sweep.sweep",
     "app.evaluation.dataset_evaluation.evaluate",
     "algorithms.simulator.samples.generate_cases",
@@ -218,12 +218,12 @@ def test_files_and_folders_of_a_write_that_ended_half_way_are_gone(tmp_path):
 
 def test_a_half_written_line_of_a_journal_costs_neither_the_lines_before_nor_those_after(tmp_path):
     path = tmp_path / "journal.jsonl"
-    journal = Journal(path)
+    journal = Checkpoint(path)
     journal.add("one", {"a": 1})
     with files_of_at_most(path.stat().st_size + 10), pytest.raises(OutputError, match="another --out"):
         journal.add("two", {"a": "2" * 50})
     journal.add("three", {"a": 3})
-    again = Journal(path)
+    again = Checkpoint(path)
     assert [again.get(key) for key in ("one", "two", "three")] == [{"a": 1}, None, {"a": 3}]
 
 

@@ -16,8 +16,8 @@ from algorithms.files.map_file import map_to_bytes
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge, run
 from algorithms.methods.steps import CandidatesDetail, HoughDetail
 from app.model import chart_data as charts
-from app.model.merge_inputs import Inputs
-from app.model.run_state import Story
+from app.model.merge_inputs import MergeInputs
+from app.model.run_state import RunState
 from app.model.status_text import progress, sentence, typeset
 from app.page.editing.observation_panel import observations_html
 from app.page.panels.files_panel import Upload, inputs_from
@@ -29,11 +29,11 @@ DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 
 
 def test_what_is_missing_is_said_in_the_order_of_the_work(inputs):
-    assert Inputs().missing().startswith("Choose a sample")
-    assert "Load map 2" in Inputs(ref=inputs.ref).missing()
-    assert "Load map 1" in Inputs(mov=inputs.mov).missing()
-    assert "Load the observation" in Inputs(inputs.ref, inputs.mov).missing()
-    assert "two maps" in Inputs(observations=inputs.observations).missing()
+    assert MergeInputs().missing().startswith("Choose a sample")
+    assert "Load map 2" in MergeInputs(ref=inputs.ref).missing()
+    assert "Load map 1" in MergeInputs(mov=inputs.mov).missing()
+    assert "Load the observation" in MergeInputs(inputs.ref, inputs.mov).missing()
+    assert "two maps" in MergeInputs(observations=inputs.observations).missing()
     assert inputs.missing() == ""
     assert inputs.complete
 
@@ -56,7 +56,7 @@ def test_of_several_sightings_each_odd_one_is_told_with_its_number(inputs):
 
 
 def test_the_panel_has_a_table_per_sighting_and_counts_them_where_there_are_several(inputs):
-    assert "No observation yet." in observations_html(Inputs())
+    assert "No observation yet." in observations_html(MergeInputs())
     assert "Observation 1" not in observations_html(inputs)
     near, far = (replace(inputs.observations[0], range=metres) for metres in (1.25, 3.75))
     page = observations_html(replace(inputs, observations=(near, far)))
@@ -137,7 +137,7 @@ def test_words_in_tables_are_never_html():
 
 
 def test_every_step_of_a_run_has_a_sentence_and_progress_never_falls(inputs):
-    story, shares = Story(), []
+    story, shares = RunState(), []
     for step in run("spectra-swarm", inputs.ref, inputs.mov, inputs.observations):
         story.tell(step)
         assert sentence(story) != "Starting."
@@ -148,13 +148,13 @@ def test_every_step_of_a_run_has_a_sentence_and_progress_never_falls(inputs):
 
 def test_a_run_with_several_sightings_says_how_many(inputs):
     several = inputs.observations * 3
-    story = Story()
+    story = RunState()
     story.tell(next(run("spectra-swarm", inputs.ref, inputs.mov, several)))
     assert sentence(story) == "Robot 1 saw robot 2 at 3 places: they are in both maps."
 
 
 def test_the_curves_share_one_axis_and_mark_what_was_chosen(inputs):
-    story = Story()
+    story = RunState()
     for step in run("spectra-swarm", inputs.ref, inputs.mov, inputs.observations):
         story.tell(step)
     match, best = story.get(HoughDetail).match, story.get(CandidatesDetail).candidates[0]

@@ -19,14 +19,14 @@ from algorithms.spectra.augmented_map import augment
 from algorithms.spectra.hough_spectra import hough_transform
 from app.drawing.palette import DARK, LIGHT, css
 from app.drawing.scene_layout import lay_out
-from app.drawing.svg.map_raster import View, around, walls
-from app.drawing.svg.svg_canvas import WIDE, Plot, Sheet, ticks
+from app.drawing.svg.map_raster import RasterView, around, walls
+from app.drawing.svg.svg_canvas import WIDE, Plot, SvgCanvas, ticks
 from app.drawing.svg.verdict_bars import FULL, bars, values
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.page.lesson import equations
-from app.page.lesson.figures.figure_registry import PICTURES, Dial, place_of, shown
+from app.page.lesson.figures.figure_registry import PICTURES, FigureSlider, place_of, shown
 from app.page.lesson.figures.spectra_figures import strongest
-from app.page.lesson.lesson_run import FEW, Study, keep
+from app.page.lesson.lesson_run import FEW, LessonRun, keep
 from app.page.lesson.lesson_texts import PLACEHOLDER, files, filled, lesson_folder, read_step
 from app.page.lesson.placeholders import NUMBERS, numbers_of
 
@@ -34,25 +34,25 @@ CONFIG = METHODS["spectra-proven"].defaults
 SVG = "{http://www.w3.org/2000/svg}"
 
 
-def study_of(case: Case) -> Study:
+def study_of(case: Case) -> LessonRun:
     steps: list[Step] = []
     for step in run("spectra-proven", case.ref, case.mov, case.observations, CONFIG):
         keep(steps, step)
-    return Study(Inputs.of(case), CONFIG, 0, tuple(steps))
+    return LessonRun(MergeInputs.of(case), CONFIG, 0, tuple(steps))
 
 
 @pytest.fixture(scope="module")
-def study(small_case) -> Study:
+def study(small_case) -> LessonRun:
     return study_of(small_case)
 
 
 @pytest.fixture(scope="module")
-def refused(strangers) -> Study:
+def refused(strangers) -> LessonRun:
     """Maps of two buildings: nothing fits, and every picture has to stand that."""
     return study_of(strangers)
 
 
-def corners(dials: tuple[Dial, ...]) -> list[tuple[int, ...]]:
+def corners(dials: tuple[FigureSlider, ...]) -> list[tuple[int, ...]]:
     """Where every dial stands at its start, and at its ends."""
     return list(product(*(sorted({dial.start, 0, dial.count - 1}) for dial in dials)))
 
@@ -103,7 +103,7 @@ def test_every_number_is_known_at_the_end_of_a_run_and_none_before_its_stage(stu
     numbers = numbers_of(study)
     assert set(numbers) == set(NUMBERS)
     assert not [words for words in numbers.values() if "nan" in words]
-    early = numbers_of(Study(Inputs.of(small_case), CONFIG))
+    early = numbers_of(LessonRun(MergeInputs.of(small_case), CONFIG))
     assert "range_m" in early
     assert "verdict" not in early
 
@@ -147,7 +147,7 @@ def test_the_same_line_is_not_found_twice_across_the_end_of_the_circle():
 def test_no_wall_is_lost_however_small_the_picture(pixels, study):
     grid = study.inputs.ref
     low, high = grid.corners().min(axis=0), grid.corners().max(axis=0)
-    view = View(around((low + high) / 2, float((high - low).max()) / 2), pixels, pixels)
+    view = RasterView(around((low + high) / 2, float((high - low).max()) / 2), pixels, pixels)
     mask = walls(grid, view)
     row, col, seen = view.pixels_of(grid.points)
     assert seen.all()
@@ -157,7 +157,7 @@ def test_no_wall_is_lost_however_small_the_picture(pixels, study):
 def test_up_is_up_in_a_picture():
     cells = np.full((10, 10), FREE, np.int8)
     cells[8, 2] = OCCUPIED  # high up, at the left
-    mask = walls(GridMap(cells, 1.0), View((0, 0, 10, 10), 10, 10))
+    mask = walls(GridMap(cells, 1.0), RasterView((0, 0, 10, 10), 10, 10))
     assert np.argwhere(mask).tolist() == [[1, 2]]
 
 
@@ -201,7 +201,7 @@ def test_every_bar_of_the_verdict_says_its_value_and_all_add_up(study, refused):
 
 
 def test_words_in_a_picture_are_never_markup():
-    sheet = Sheet(20)
+    sheet = SvgCanvas(20)
     sheet.text(0, 10, "<img src=x onerror=1> & Δθ")
     (text,) = ElementTree.fromstring(sheet.svg('a "title" <b>')).iter(f"{SVG}text")
     assert text.text == "<img src=x onerror=1> & Δθ"
@@ -216,13 +216,13 @@ def test_ticks_are_few_round_and_inside(low, width, most):
 
 
 def test_a_plot_puts_its_corners_on_its_corners():
-    plot = Plot(Sheet(100), 10, 20, 200, 50, (-1, 1), (0, 5))
+    plot = Plot(SvgCanvas(100), 10, 20, 200, 50, (-1, 1), (0, 5))
     assert plot.at([(-1, 0), (1, 5)]).tolist() == [[10, 70], [210, 20]]
 
 
 @given(count=st.integers(1, 50), place=st.integers(0, 49), step=st.sampled_from([0.5, 1.0]))
 def test_a_dial_knows_its_place_by_its_number(count, place, step):
-    dial = Dial("", count, 0, -3.0, step)
+    dial = FigureSlider("", count, 0, -3.0, step)
     assert place_of(dial, shown(dial, place)) == min(place, count - 1)
 
 

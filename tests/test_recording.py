@@ -24,25 +24,27 @@ from app.cli.main import main
 from app.drawing.grid_pixels import upright
 from app.drawing.png import data_uri
 from app.model import status_text as words
-from app.model.merge_inputs import Inputs
-from app.model.run_state import Story
+from app.model.merge_inputs import MergeInputs
+from app.model.run_state import RunState
 from app.page.panels.replay import file_name
 from app.report.replay.chart_recorder import thinned
 from app.report.replay.html_page import as_script, replay_html
-from app.report.replay.metadata import About
+from app.report.replay.metadata import ReplayMetadata
 from app.report.replay.recorder import PICTURE, record
 
 
 def recorded(case: Case, method: str = "spectra-proven"):
     config = METHODS[method].defaults
     steps = run(method, case.ref, case.mov, case.observations, config)
-    return record(steps, Inputs.of(case), config)
+    return record(steps, MergeInputs.of(case), config)
 
 
 def page_of(case: Case, recording, name: str | None = None) -> str:
-    inputs = replace(Inputs.of(case), name=case.name if name is None else name)
+    inputs = replace(MergeInputs.of(case), name=case.name if name is None else name)
     config = METHODS["spectra-proven"].defaults
-    return replay_html(recording, About(inputs, "spectra-proven", config, 0, {"mapmeld": "1"})).decode()
+    return replay_html(
+        recording, ReplayMetadata(inputs, "spectra-proven", config, 0, {"mapmeld": "1"})
+    ).decode()
 
 
 def told(page: str):
@@ -78,7 +80,7 @@ def test_every_method_is_recorded_from_the_maps_to_the_verdict(small_case, metho
 
 def test_its_captions_are_the_sentences_of_the_page(small_case, recording):
     config, said = METHODS["spectra-proven"].defaults, {words.SIDE_BY_SIDE, recording["verdict"]}
-    story = Story(config)
+    story = RunState(config)
     for step in run("spectra-proven", small_case.ref, small_case.mov, small_case.observations, config):
         story.tell(step)
         said.add(words.sentence(story))
@@ -127,7 +129,7 @@ def test_a_replay_says_that_it_is_one_and_of_what(small_case, recording):
 def test_a_changed_setting_is_told_beside_what_it_usually_is(small_case):
     usual = METHODS["spectra-proven"].defaults
     config = replace(usual, swarm=replace(usual.swarm, particles=120))
-    about = About(Inputs.of(small_case), "spectra-proven", config, 0)
+    about = ReplayMetadata(MergeInputs.of(small_case), "spectra-proven", config, 0)
     changed = [row for row in about.settings() if row[2]]
     assert changed == [["swarm: N_p particles", "120", "instead of 400"]]
 
@@ -241,6 +243,6 @@ def test_what_cannot_be_recorded_is_refused_with_a_remedy(more, finding, tmp_pat
 
 def test_pictures_lie_where_the_cells_are(small_case, recording):
     floor = next(picture for picture in recording["pictures"] if picture["frame"] == "scene")
-    grid, anchor = small_case.ref, Inputs.of(small_case).at.x_ref
+    grid, anchor = small_case.ref, MergeInputs.of(small_case).at.x_ref
     middle = grid.origin.apply(np.array([grid.width, grid.height]) * grid.resolution / 2) - anchor
     assert floor["at"] == pytest.approx([*middle.tolist(), grid.origin.theta], abs=1e-3)

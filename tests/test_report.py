@@ -15,7 +15,7 @@ from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN
 from algorithms.methods.registry import METHODS, merge
 from app.drawing.palette import LIGHT
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.report import result_files as report
 
 
@@ -127,7 +127,7 @@ def test_the_overlay_shows_the_merged_map_upright_in_the_colours_of_the_legend(r
 
 
 def test_what_a_robot_would_act_upon_is_left_out_of_a_refused_result(result, small_case):
-    told, inputs = report.report_of(result), Inputs.of(small_case)
+    told, inputs = report.report_of(result), MergeInputs.of(small_case)
     files = report.result_files(result, inputs, None, told, with_merged=False)
     assert set(files) == {"overlay.png", "report.html", "report.json"}
     files = report.result_files(result, inputs, None, told, with_merged=True)

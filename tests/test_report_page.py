@@ -18,9 +18,9 @@ from algorithms.files.map_file import read_map
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
 from algorithms.methods.steps import MergeResult
 from algorithms.verdict.decision import Outcome
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.page.panels.html_widgets import box
-from app.report.export import ACTED_UPON, ALONE, Harvest
+from app.report.export import ACTED_UPON, ALONE, ResultFiles
 from app.report.html_report import report_page
 from app.report.result_files import report_of
 from app.report.ros_transform import publish_command
@@ -29,7 +29,7 @@ DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 VOID = {"meta"}
 
 
-def page_of(result: MergeResult, inputs: Inputs, config=DEFAULTS, **named: str) -> str:
+def page_of(result: MergeResult, inputs: MergeInputs, config=DEFAULTS, **named: str) -> str:
     return report_page(result, inputs, config, report_of(result, config, inputs=named)).decode()
 
 
@@ -155,7 +155,7 @@ def test_the_page_is_the_same_for_the_same_result(result, inputs):
 
 
 def test_the_archive_reads_back_to_what_was_merged(result, inputs, tmp_path):
-    harvest = Harvest(result, inputs, DEFAULTS)
+    harvest = ResultFiles(result, inputs, DEFAULTS)
     with zipfile.ZipFile(io.BytesIO(harvest.archive())) as packed:
         assert set(packed.namelist()) == set(ALONE)
         assert set(ACTED_UPON) < set(ALONE)

@@ -19,24 +19,24 @@ from algorithms.methods.registry import METHODS
 from app.drawing.palette import DARK, LIGHT
 from app.drawing.svg.thumbnail import thumbnail
 from app.evaluation.evaluation_archive import contest_archive
-from app.evaluation.method_run import Trial
-from app.evaluation.parameter_sweep import Axis, Plan, Point
+from app.evaluation.method_run import MethodRun
+from app.evaluation.parameter_sweep import Axis, SweepPlan, SweepPoint
 from app.jobs import background_job as background
-from app.jobs.background_job import Background, beside_the_page
+from app.jobs.background_job import BackgroundJob, beside_the_page
 from app.jobs.executor import Task
-from app.model.run_state import Story
+from app.model.run_state import RunState
 from app.model.settings import settings_of, with_value
 from app.page.research import sweep_curves as curves
 from app.page.research.comparison_panel import Card, card_html
 from app.page.research.heatmap import heat_svg
-from app.page.research.other_result import Guest
+from app.page.research.other_result import OtherResult
 from app.page.research.run_summary import outcome_of
 from app.page.research.sweep_request import MOST_POINTS, Wanted, labelled, planned, suggestion
 
 METHOD = "spectra-swarm"
 DEFAULTS = METHODS[METHOD].defaults
 SPREAD, PARTICLES = ("augment", "spread"), ("swarm", "particles")
-FOUND = Trial((1.0, 2.0, 0.1), True, "Merged: fine.", 0.9, 0.04, 0.01, True, True, 1.5)
+FOUND = MethodRun((1.0, 2.0, 0.1), True, "Merged: fine.", 0.9, 0.04, 0.01, True, True, 1.5)
 APART = replace(FOUND, distance=None, angle=None)  # nobody knows, or nobody can, how far off
 
 
@@ -70,7 +70,7 @@ class Listener:
 @pytest.fixture
 def work():
     listener = Listener()
-    found = Background(listener, RLock(), "test")
+    found = BackgroundJob(listener, RLock(), "test")
     yield found, listener.heard
     found.stop()
 
@@ -183,8 +183,8 @@ def test_only_a_card_with_a_merge_can_be_pressed_and_its_words_are_no_html():
 
 def test_a_guest_lies_where_its_method_put_it_and_says_the_verdict(small_case):
     trial = replace(FOUND, right=False, accepted=False, reason="Refused: it does not fit.")
-    guest = Guest(METHOD, DEFAULTS, 0, trial)
-    story = guest.story(small_case.ref, small_case.mov, small_case.observations, Story())
+    guest = OtherResult(METHOD, DEFAULTS, 0, trial)
+    story = guest.story(small_case.ref, small_case.mov, small_case.observations, RunState())
     assert story.answer == Pose2(1.0, 2.0, 0.1)
     for words in (guest.sentence(), guest.html()):
         assert "Wrong" in words
@@ -208,9 +208,9 @@ def test_a_thumbnail_is_mostly_agreement_where_the_maps_fit_and_not_where_they_d
 
 
 def test_what_is_taken_away_is_what_the_command_leaves(small_case):
-    from app.evaluation.method_comparison import Score
+    from app.evaluation.method_comparison import ComparedRun
 
-    packed = contest_archive(small_case, [Score("flat_1", METHOD, FOUND)], {METHOD: DEFAULTS}, 0)
+    packed = contest_archive(small_case, [ComparedRun("flat_1", METHOD, FOUND)], {METHOD: DEFAULTS}, 0)
     for name in (b"methods.csv", b"scores.csv", b"compare.json", b"maps_flat_1.png"):
         assert name in packed
 
@@ -265,11 +265,11 @@ def test_what_cannot_be_swept_is_said_before_it_begins(x, y, says):
 
 
 def point(x, y=None, index=0.5, seconds=1.0):
-    return Point(x, y, (replace(FOUND, index=index, seconds=seconds),))
+    return SweepPoint(x, y, (replace(FOUND, index=index, seconds=seconds),))
 
 
 def swept(values, y=None):
-    return Plan(METHOD, SMALL, Axis(SPREAD, tuple(values)), y, (0,))
+    return SweepPlan(METHOD, SMALL, Axis(SPREAD, tuple(values)), y, (0,))
 
 
 spreads = st.lists(st.floats(0.2, 20.0).map(lambda v: round(v, 2)), min_size=1, max_size=9, unique=True)

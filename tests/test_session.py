@@ -17,10 +17,10 @@ from algorithms.methods.steps import AnswersDetail, ObservationDetail, ProofDeta
 from algorithms.observations.observation import Encounter, Observation
 from algorithms.observations.search_window import Box, WindowConfig, coupled_window
 from algorithms.optimisation.optimiser import SearchState
-from app.jobs.job_thread import Session
-from app.jobs.runner import Bench
-from app.model.merge_job import Job
-from app.model.playback import DWELL, FRAME, Waiting, dwell
+from app.jobs.job_thread import JobThread
+from app.jobs.runner import Runner
+from app.model.merge_job import MergeJob
+from app.model.playback import DWELL, FRAME, InterruptibleWait, dwell
 
 PATIENCE = 10.0  # seconds until a test gives up
 ROOM = GridMap(np.full((4, 4), FREE, dtype=np.int8), 0.1)
@@ -31,8 +31,8 @@ def detail(number: float = 0.0) -> ObservationDetail:
     return ObservationDetail((Encounter(np.full(2, number), np.zeros(2), np.eye(2)),))
 
 
-def job(config: object = None, **how) -> Job:
-    return Job(ROOM, ROOM, (SEEN,), config, **how)
+def job(config: object = None, **how) -> MergeJob:
+    return MergeJob(ROOM, ROOM, (SEEN,), config, **how)
 
 
 class Ear:
@@ -66,7 +66,7 @@ class Ear:
         self.done.set()
 
 
-class Scripted(Bench):
+class Scripted(Runner):
     """Tells what it is given."""
 
     def __init__(self, run) -> None:
@@ -88,8 +88,8 @@ def ear():
 def start(ear):
     sessions = []
 
-    def make(run, **more) -> Session:
-        sessions.append(Session(ear, Scripted(run), **more))
+    def make(run, **more) -> JobThread:
+        sessions.append(JobThread(ear, Scripted(run), **more))
         return sessions[-1]
 
     yield make
@@ -122,7 +122,7 @@ def test_at_no_pace_the_pictures_come_at_most_once_a_frame_and_the_newest_is_kep
 
 def test_at_a_pace_every_step_that_is_meant_to_be_seen_is_shown(start, ear, monkeypatch):
     waited = []
-    waiting = Waiting()
+    waiting = InterruptibleWait()
     monkeypatch.setattr(waiting, "wait", lambda seconds, mark: waited.append(seconds))
     start(steps(1, 2, 3), waiting=waiting, clock=lambda: 0.0).request(job(pace=2.0))
     assert ear.done.wait(PATIENCE)
@@ -252,7 +252,7 @@ def test_known_steps_are_played_again_only_when_asked_for():
 
 
 def test_a_cut_before_the_wait_is_not_missed():
-    waiting = Waiting()
+    waiting = InterruptibleWait()
     mark = waiting.mark
     waiting.cut()
     waiting.wait(1e6, mark)  # returns at once, or this test never ends

@@ -17,8 +17,8 @@ from algorithms.optimisation.optimiser import SearchState
 from algorithms.optimisation.subcell_peak import Peak
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import DARK, LIGHT
-from app.drawing.scene.swarm_view import SwarmSpaceView, in_box, proven_optimum
-from app.model.run_state import Story
+from app.drawing.scene.swarm_view import SwarmView, in_box, proven_optimum
+from app.model.run_state import RunState
 
 BOX = Box(np.array([2.0, 3.0, 1.0]), np.array([4.0, 5.0, 1.2]), np.array([30.0, -7.0]))
 inner = st.tuples(st.floats(2.0, 4.0), st.floats(3.0, 5.0), st.floats(1.0, 1.2))
@@ -76,7 +76,7 @@ class Drawn(BrowserMessages):
 
 def test_who_comes_back_finds_the_box_and_its_numbers_again_in_the_colours_of_now():
     stage = Drawn()
-    view, story = SwarmSpaceView(stage), Story()
+    view, story = SwarmView(stage), RunState()
     one = BOX.centre[None]
     state = SearchState(0, one, np.zeros(1), one, np.zeros(1), BOX.centre, 0.0)
     story.tell(Step("refine", RefineDetail(0, 1, BOX, state), 0.0))

@@ -13,9 +13,9 @@ from algorithms.common.errors import OutputError, SettingError
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import METHODS
 from app.evaluation import parameter_sweep as sweeping
-from app.evaluation.checkpoint import Journal
-from app.evaluation.method_run import Trial, attempt, true_fusion
-from app.evaluation.parameter_sweep import Axis, Plan, Spread, in_order, point_keys, sweep
+from app.evaluation.checkpoint import Checkpoint
+from app.evaluation.method_run import MethodRun, run_method, true_fusion
+from app.evaluation.parameter_sweep import Axis, Spread, SweepPlan, in_order, point_keys, sweep
 from app.jobs.executor import Executor, SerialExecutor
 from app.system import version
 
@@ -30,7 +30,7 @@ SPREAD, INTENSITY = ("augment", "spread"), ("augment", "intensity")
 
 def plan(**more):
     both = {"x": Axis(SPREAD, (0.5, 1.0, 3.0)), "y": Axis(INTENSITY, (10.0, 100.0)), "seeds": (0, 1)}
-    return Plan(METHOD, SMALL, **{**both, **more})
+    return SweepPlan(METHOD, SMALL, **{**both, **more})
 
 
 def untimed(points):
@@ -48,7 +48,7 @@ class Nobody(Executor):
 
 numbers = st.floats(allow_nan=False, allow_infinity=False)
 trials = st.builds(
-    Trial,
+    MethodRun,
     T_ref_mov=st.none() | st.tuples(numbers, numbers, numbers),
     accepted=st.booleans(),
     reason=st.text(),
@@ -64,7 +64,7 @@ trials = st.builds(
 
 @given(trials)
 def test_a_trial_comes_back_from_json_as_it_was(trial):
-    assert Trial.of(json.loads(json.dumps(trial.plain()))) == trial
+    assert MethodRun.of(json.loads(json.dumps(trial.plain()))) == trial
 
 
 @given(st.integers(0, 300))
@@ -100,7 +100,7 @@ def test_every_place_is_swept_with_every_seed_and_told_in_order_of_the_table(sma
 
 def test_a_trial_within_a_sweep_is_the_merge_alone_with_that_seed_and_those_settings(small_case):
     (point,) = (p for p in sweep(small_case, plan(), SerialExecutor()) if (p.x, p.y) == (1.0, 100.0))
-    alone = attempt(small_case, METHOD, plan().config_at(1.0, 100.0), 1, true_fusion(small_case))
+    alone = run_method(small_case, METHOD, plan().config_at(1.0, 100.0), 1, true_fusion(small_case))
     assert replace(point.trials[1], seconds=0.0) == replace(alone, seconds=0.0)
 
 
@@ -113,18 +113,18 @@ def test_the_intensity_moves_no_answer(small_case):
 def test_an_interrupted_sweep_goes_on_where_it_was_and_ends_as_if_it_had_not_been(small_case, tmp_path):
     whole = untimed(in_order(plan(), list(sweep(small_case, plan(), SerialExecutor()))))
     path = tmp_path / "new" / "journal.jsonl"
-    with closing(sweep(small_case, plan(), SerialExecutor(), Journal(path))) as running:
+    with closing(sweep(small_case, plan(), SerialExecutor(), Checkpoint(path))) as running:
         before = list(islice(running, 3))
     with path.open("ab") as stream:
         stream.write(b'{"key": "half a li')  # what a process leaves that is killed as it writes
-    points = list(sweep(small_case, plan(), SerialExecutor(), Journal(path)))
+    points = list(sweep(small_case, plan(), SerialExecutor(), Checkpoint(path)))
     assert points[:3] == before  # times and all
     assert untimed(in_order(plan(), points)) == whole
-    assert list(sweep(small_case, plan(), Nobody(), Journal(path))) != []
+    assert list(sweep(small_case, plan(), Nobody(), Checkpoint(path))) != []
 
 
 def test_points_of_an_earlier_sweep_serve_a_wider_one(small_case):
-    journal = Journal()
+    journal = Checkpoint()
     narrow = plan(x=Axis(SPREAD, (0.5, 1.0)), y=None)
     first = list(sweep(small_case, narrow, SerialExecutor(), journal))
     wide = list(sweep(small_case, plan(y=None), SerialExecutor(), journal))
@@ -181,8 +181,8 @@ def test_without_a_truth_the_index_is_that_of_the_estimate_and_nothing_is_called
 
 def test_a_method_that_cannot_be_run_says_so_and_is_tried_again_next_time(small_case):
     seen = replace(small_case.observations[0], bearing_back=None)
-    case, journal = replace(small_case, observations=(seen,)), Journal()
-    asked = Plan(
+    case, journal = replace(small_case, observations=(seen,)), Checkpoint()
+    asked = SweepPlan(
         "bilateral", METHODS["bilateral"].defaults, Axis(("verdict", "bent_from"), (0.2,)), seeds=(0,)
     )
     (point,) = sweep(case, asked, SerialExecutor(), journal)
@@ -194,4 +194,4 @@ def test_a_method_that_cannot_be_run_says_so_and_is_tried_again_next_time(small_
 def test_a_journal_that_cannot_be_written_names_the_remedy(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(OutputError, match="choose another --out"):
-        Journal(tmp_path / "file" / "journal.jsonl").add("key", {})
+        Checkpoint(tmp_path / "file" / "journal.jsonl").add("key", {})

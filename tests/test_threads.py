@@ -14,9 +14,9 @@ import pytest
 import viser
 
 from algorithms.methods.registry import METHODS
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.page.panels.files_panel import FilesPanel
-from app.page.panels.settings_panel import TuningPanel
+from app.page.panels.settings_panel import SettingsPanel
 from app.web.tab_messages import TabMessages
 
 
@@ -67,7 +67,7 @@ def server():
 def test_files_that_arrive_together_are_taken_one_after_the_other(server, tmp_path: Path):
     here, loaded, reports = Lock(), [], []
 
-    def load(inputs: Inputs) -> None:
+    def load(inputs: MergeInputs) -> None:
         assert here.acquire(blocking=False), "two files are being shown at once"
         sleep(0.02)
         loaded.append(inputs)
@@ -118,7 +118,7 @@ def test_a_yaml_file_that_names_another_image_is_taken_with_a_doubt(server):
 
 def test_a_reset_that_was_pressed_for_a_method_that_has_given_way_does_nothing(server):
     changes = []
-    panel = TuningPanel(server.gui, lambda: changes.append(panel.method), changes.append)
+    panel = SettingsPanel(server.gui, lambda: changes.append(panel.method), changes.append)
     buttons = [
         handle
         for handle in server.gui._gui_input_handle_from_uuid.values()

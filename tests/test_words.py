@@ -16,15 +16,15 @@ from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.verdict.decision import Outcome
 from app.model import status_text as words
 from app.model.objective_label import AGREEMENT, GAMMA, measure_of
-from app.model.run_state import Story
+from app.model.run_state import RunState
 
 PROVEN = METHODS["spectra-proven"].defaults
 
 
 @pytest.fixture(scope="module")
-def told(small_case) -> Story:
+def told(small_case) -> RunState:
     """A whole run of the method with the proof."""
-    story = Story(PROVEN)
+    story = RunState(PROVEN)
     for step in run("spectra-proven", small_case.ref, small_case.mov, small_case.observations, PROVEN):
         story.tell(step)
     return story
@@ -35,14 +35,14 @@ def result(told) -> MergeResult:
     return told.get(MergeResult)
 
 
-def proving(told: Story, **changes) -> str:
-    story = Story(PROVEN)
+def proving(told: RunState, **changes) -> str:
+    story = RunState(PROVEN)
     window = told.get(ProofDetail).window
     story.tell(Step("prove", ProofDetail(proof_state(**changes), window), 0.0))
     return words.sentence(story)
 
 
-def ended(told: Story, found_it: bool, T: Pose2 | None = None, **changes) -> str:
+def ended(told: RunState, found_it: bool, T: Pose2 | None = None, **changes) -> str:
     """The sentence at the end of a proof whose optimum is T."""
     story = replace(told, _newest=dict(told._newest))
     proven = told.get(ProvenDetail)
@@ -116,7 +116,7 @@ def test_the_line_above_the_proof_is_a_sentence_without_infinities(state):
 
 
 def test_a_run_with_a_proof_never_speaks_of_gamma_where_it_means_the_agreement(small_case):
-    story, said, shares = Story(PROVEN), [], []
+    story, said, shares = RunState(PROVEN), [], []
     for step in run("spectra-proven", small_case.ref, small_case.mov, small_case.observations, PROVEN):
         story.tell(step)
         said.append(words.sentence(story))

@@ -25,16 +25,16 @@ from algorithms.maps.grid_map import FREE, GridMap
 from algorithms.methods.manual_merge import Scales, refine
 from algorithms.methods.registry import METHODS
 from algorithms.methods.steps import MergeResult, ObservationDetail, Step
-from app.jobs.incremental_pickle import Parcels
-from app.jobs.runner import Asker
-from app.jobs.worker_pool import WorkerDiedError, Workers
-from app.model.merge_job import Job
+from app.jobs.incremental_pickle import IncrementalPickle
+from app.jobs.runner import RunCallbacks
+from app.jobs.worker_pool import WorkerDiedError, WorkerPool
+from app.model.merge_job import MergeJob
 from app.system.memory import whole
 
 
 @pytest.fixture(scope="module")
-def workers() -> Iterator[Workers]:
-    workers = Workers(most=1)
+def workers() -> Iterator[WorkerPool]:
+    workers = WorkerPool(most=1)
     yield workers
     workers.close()
 
@@ -47,12 +47,12 @@ def bench(workers):
 
 
 @pytest.fixture
-def job(small_case) -> Job:
-    return Job(small_case.ref, small_case.mov, small_case.observations, None)
+def job(small_case) -> MergeJob:
+    return MergeJob(small_case.ref, small_case.mov, small_case.observations, None)
 
 
-def told(bench, job: Job, **how) -> list[Step]:
-    return list(bench.steps(job, Asker(), **how))
+def told(bench, job: MergeJob, **how) -> list[Step]:
+    return list(bench.steps(job, RunCallbacks(), **how))
 
 
 def end(steps: list[Step]) -> MergeResult:
@@ -68,11 +68,11 @@ class Thing:
     worked_out: list[int] = field(default_factory=list)
 
 
-def line() -> tuple[Parcels, Parcels]:
-    return Parcels("one"), Parcels("other")
+def line() -> tuple[IncrementalPickle, IncrementalPickle]:
+    return IncrementalPickle("one"), IncrementalPickle("other")
 
 
-def sent(value, start: Parcels, goal: Parcels):
+def sent(value, start: IncrementalPickle, goal: IncrementalPickle):
     return goal.unpack(start.pack(value))
 
 
@@ -170,7 +170,7 @@ def test_a_refinement_by_hand_runs_there_too(bench, job):
 
 
 def test_a_run_that_is_left_half_way_hinders_no_other(bench, job):
-    steps = bench.steps(job, Asker())
+    steps = bench.steps(job, RunCallbacks())
     assert isinstance(next(steps).detail, ObservationDetail)
     between = told(bench, replace(job, method="smm-window"))
     steps.close()
@@ -180,7 +180,7 @@ def test_a_run_that_is_left_half_way_hinders_no_other(bench, job):
 
 def test_two_tabs_at_one_worker_go_on_side_by_side(workers, bench, job):
     other = workers.bench()
-    one, two = bench.steps(job, Asker()), other.steps(job, Asker())
+    one, two = bench.steps(job, RunCallbacks()), other.steps(job, RunCallbacks())
     both = [step for pair in zip(one, two, strict=True) for step in pair]
     assert end(both[::2]).T_ref_mov == end(both[1::2]).T_ref_mov
     assert len(workers.pids) == 1
@@ -210,7 +210,7 @@ def maps_held() -> Iterator[Step]:
 def test_a_process_that_is_killed_is_told_of_and_the_next_run_has_another(workers, bench, job, caplog):
     before = end(told(bench, job))
     neighbour = workers.bench()
-    steps, beside = bench.steps(job, Asker()), neighbour.steps(job, Asker())
+    steps, beside = bench.steps(job, RunCallbacks()), neighbour.steps(job, RunCallbacks())
     next(steps), next(beside)
     (pid,) = workers.pids
     os.kill(pid, signal.SIGKILL)
@@ -235,7 +235,7 @@ def test_one_that_died_with_nothing_to_do_is_missed_by_nobody(workers, bench, jo
     assert "a process that merges has ended" in caplog.text
 
 
-def alive(workers: Workers) -> bool:
+def alive(workers: WorkerPool) -> bool:
     return any(worker._process.is_alive() for worker in workers._workers)
 
 
@@ -262,7 +262,7 @@ def test_one_that_hangs_is_ended_once_nobody_wants_what_it_is_at(workers, bench,
     monkeypatch.setattr("app.jobs.worker_pool.HANGS", 0.0)
     wanted = Event()
     wanted.set()
-    steps = bench.steps(job, Asker(wanted.is_set))
+    steps = bench.steps(job, RunCallbacks(wanted.is_set))
     next(steps)
     (pid,) = workers.pids
     os.kill(pid, signal.SIGSTOP)
@@ -375,9 +375,9 @@ def test_a_sighting_far_off_its_map_is_refused_as_it_is_here(bench, job):
 
 
 def test_closed_workers_die_in_silence(job, caplog):
-    workers = Workers(most=1)
+    workers = WorkerPool(most=1)
     bench = workers.bench()
-    steps = bench.steps(job, Asker())
+    steps = bench.steps(job, RunCallbacks())
     next(steps)
     workers.close()
     with pytest.raises(WorkerDiedError):

@@ -9,7 +9,7 @@ from tqdm import tqdm
 
 from algorithms.methods.steps import MergeResult, Step
 from app.model import status_text as words
-from app.model.run_state import Story
+from app.model.run_state import RunState
 
 STEPS_FORMAT = "{desc:<9}|{bar}| {percentage:3.0f}% {elapsed}"
 
@@ -23,7 +23,7 @@ def result_of(steps: Iterator[Step]) -> MergeResult:
 
 def with_bar(steps: Iterator[Step]) -> Iterator[Step]:
     """The same steps, with that bar while they are taken."""
-    story, stage = Story(), ""
+    story, stage = RunState(), ""
     with bar(total=1.0, bar_format=STEPS_FORMAT) as shown:
         for step in steps:
             story.tell(step)

@@ -24,12 +24,12 @@ Places = NDArray[np.intp]
 FAINT = 70  # opacity of walls that are not the point of a picture; of 255
 MOST_PIXELS = 2048  # a side of a picture that is sent; a finer map is pooled down to it
 
-Part = tuple[slice, slice]  # rows and columns of a grid
-WHOLE: Part = (slice(None), slice(None))
+CellRegion = tuple[slice, slice]  # rows and columns of a grid
+WHOLE: CellRegion = (slice(None), slice(None))
 
 
 @dataclass(frozen=True)
-class Picture:
+class GridPixels:
     """Pixels and how many cells one of them stands for.
 
     pixels : (H, W, 4) uint8, row 0 at the bottom
@@ -70,27 +70,27 @@ def _tinted(mask: NDArray[np.bool_], colour: Rgb, alpha: int = 255) -> Pixels:
 
 
 def walls(
-    cells: CellArray, colour: Rgb, alpha: int = 255, most: int = MOST_PIXELS, part: Part = WHOLE
-) -> Picture:
+    cells: CellArray, colour: Rgb, alpha: int = 255, most: int = MOST_PIXELS, part: CellRegion = WHOLE
+) -> GridPixels:
     """The walls in one colour, everything else transparent.
 
     Here and below: at the most ``most`` pixels on a side, of the cells of ``part`` alone.
     """
     cells = cells[part]
     factor = pooling(cells.shape, most)
-    return Picture(_tinted(pool(cells, factor) >= OCCUPIED_FROM, colour, alpha), factor)
+    return GridPixels(_tinted(pool(cells, factor) >= OCCUPIED_FROM, colour, alpha), factor)
 
 
 def floor(
-    cells: CellArray, palette: Palette, alpha: int = 255, most: int = MOST_PIXELS, part: Part = WHOLE
-) -> Picture:
+    cells: CellArray, palette: Palette, alpha: int = 255, most: int = MOST_PIXELS, part: CellRegion = WHOLE
+) -> GridPixels:
     """What is known and no wall, in the colour of free space; unknown is transparent."""
     cells = cells[part]
     factor = pooling(cells.shape, most)
-    return Picture(_tinted(pool(cells, factor) != UNKNOWN, palette.free, alpha), factor)
+    return GridPixels(_tinted(pool(cells, factor) != UNKNOWN, palette.free, alpha), factor)
 
 
-def sheet(cells: CellArray, colour: Rgb, palette: Palette, most: int = MOST_PIXELS) -> Picture:
+def sheet(cells: CellArray, colour: Rgb, palette: Palette, most: int = MOST_PIXELS) -> GridPixels:
     """A whole map by itself: walls in a colour, floor, and what is neither."""
     factor = pooling(cells.shape, most)
     pooled = pool(cells, factor)
@@ -98,12 +98,12 @@ def sheet(cells: CellArray, colour: Rgb, palette: Palette, most: int = MOST_PIXE
     pixels[..., :3] = palette.unknown
     pixels[(pooled >= FREE) & (pooled <= FREE_UP_TO), :3] = palette.free
     pixels[pooled >= OCCUPIED_FROM, :3] = colour
-    return Picture(pixels, factor)
+    return GridPixels(pixels, factor)
 
 
 def touches(
-    walls: Walls, told: Touch, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE
-) -> Picture:
+    walls: Walls, told: Touch, palette: Palette, most: int = MOST_PIXELS, part: CellRegion = WHOLE
+) -> GridPixels:
     """The walls of one map that the other one agrees with or denies; the rest transparent.
 
     told : (N,) for every wall cell, as ``Walls.told`` gives it
@@ -116,10 +116,12 @@ def touches(
     for kind, colour in ((AGREES, palette.agreed), (CONTRADICTS, palette.conflict)):
         at = told == kind
         pixels[rows[at] // factor, cols[at] // factor] = (*colour, 255)
-    return Picture(pixels, factor)
+    return GridPixels(pixels, factor)
 
 
-def levels(augmented: AugmentedMap, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE) -> Picture:
+def levels(
+    augmented: AugmentedMap, palette: Palette, most: int = MOST_PIXELS, part: CellRegion = WHOLE
+) -> GridPixels:
     """The walls in the colours of their levels, eq. (4); walls too far to count keep a faint grey."""
     cells = augmented.grid.cells[part]
     factor = pooling(cells.shape, most)
@@ -131,15 +133,19 @@ def levels(augmented: AugmentedMap, palette: Palette, most: int = MOST_PIXELS, p
         rows, cols = np.nonzero(share > 0.004)  # one step of the colour scale
         pixels[rows, cols, :3] = viridis(share[rows, cols])
         pixels[rows, cols, 3] = 255
-    return Picture(pixels, factor)
+    return GridPixels(pixels, factor)
 
 
-def merged_floor(fusion: Fusion, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE) -> Picture:
+def merged_floor(
+    fusion: Fusion, palette: Palette, most: int = MOST_PIXELS, part: CellRegion = WHOLE
+) -> GridPixels:
     """What either map knows, in the colour of free space."""
     return floor(fusion.merged.cells, palette, most=most, part=part)
 
 
-def merged_walls(fusion: Fusion, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE) -> Picture:
+def merged_walls(
+    fusion: Fusion, palette: Palette, most: int = MOST_PIXELS, part: CellRegion = WHOLE
+) -> GridPixels:
     """Whose wall it is, where both agree on a wall, and where they contradict; the rest transparent."""
     factor = pooling(fusion.merged.cells[part].shape, most)
     ref, mov = pool(fusion.ref_cells[part], factor), pool(fusion.mov_cells[part], factor)
@@ -154,23 +160,23 @@ def merged_walls(fusion: Fusion, palette: Palette, most: int = MOST_PIXELS, part
         ((ref_wall & mov_free) | (ref_free & mov_wall), palette.conflict),
     ):
         pixels[mask, :3] = colour
-    return Picture(pixels, factor)
+    return GridPixels(pixels, factor)
 
 
 def denied_walls(
-    fusion: Fusion, found: Conflicts, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE
-) -> Picture:
+    fusion: Fusion, found: Conflicts, palette: Palette, most: int = MOST_PIXELS, part: CellRegion = WHOLE
+) -> GridPixels:
     """Walls that the other map denies, in the colour of the map they are of; all other walls faint."""
     ref, mov = fusion.ref_cells[part], fusion.mov_cells[part]
     factor = pooling(ref.shape, most)
     pixels = _tinted(np.maximum(pool(ref, factor), pool(mov, factor)) >= OCCUPIED_FROM, palette.margin, FAINT)
     for mask, colour in ((found.ref_only, palette.ref), (found.mov_only, palette.mov)):
         pixels[_pool_mask(mask[part], factor)] = (*colour, 255)
-    return Picture(pixels, factor)
+    return GridPixels(pixels, factor)
 
 
 def _within(
-    part: Part, shape: tuple[int, ...], rows: Places, cols: Places
+    part: CellRegion, shape: tuple[int, ...], rows: Places, cols: Places
 ) -> tuple[BoolArray, Places, Places]:
     """Which of these cells lie in a part of a grid; rows and columns of those, counted from its corner."""
     (top, bottom, _), (left, right, _) = (cut.indices(n) for cut, n in zip(part, shape, strict=True))

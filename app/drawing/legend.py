@@ -18,7 +18,7 @@ from algorithms.methods.steps import (
     WindowDetail,
 )
 from app.drawing.palette import VIRIDIS, Palette, Rgb, css
-from app.model.run_state import Story
+from app.model.run_state import RunState
 
 Entry = dict[str, Any]
 _FAINT: Rgb = (156, 163, 175)  # walls of the difference that are not denied, light or dark
@@ -45,7 +45,7 @@ def in_hand(palette: Palette) -> list[Entry]:
 
 
 def legend(
-    palette: Palette, view: str, story: Story, preview: bool = False, mode: str = "overlay"
+    palette: Palette, view: str, story: RunState, preview: bool = False, mode: str = "overlay"
 ) -> list[Entry]:
     """Entries for the view and for what the run has come to.
 

@@ -53,7 +53,7 @@ def union(*rects: Rect) -> Rect:
 
 
 @dataclass(frozen=True, eq=False)
-class Layout:
+class SceneLayout:
     """The scene's coordinates: metres, map 1's axes, the meeting place (or map 1's middle) at zero.
 
     anchor_ref : (2,) point of the ref frame that lies at the scene's origin
@@ -109,7 +109,9 @@ class Layout:
         return union(*rects) if rects else self.view()
 
 
-def lay_out(ref: GridMap | None, mov: GridMap | None, at: Encounter | None, aspect: float = 0.9) -> Layout:
+def lay_out(
+    ref: GridMap | None, mov: GridMap | None, at: Encounter | None, aspect: float = 0.9
+) -> SceneLayout:
     """Choose anchors and the place of map 2 beside map 1.
 
     aspect : width over height of the free part of the page; the maps lie side by side or one above
@@ -133,7 +135,7 @@ def lay_out(ref: GridMap | None, mov: GridMap | None, at: Encounter | None, aspe
         else:
             y = r[1] - GAP * (rh + mh) - m[3]
             apart = Pose2((r[0] + r[2]) / 2 - (m[0] + m[2]) / 2, y)
-    return Layout(anchor_ref, anchor_mov, ref_corners, mov_corners, apart)
+    return SceneLayout(anchor_ref, anchor_mov, ref_corners, mov_corners, apart)
 
 
 def _anchor(x_hat: FloatArray | None, corners: FloatArray | None) -> FloatArray:

@@ -13,7 +13,7 @@ from algorithms.common.errors import OutputError, unreadable
 Record = dict[str, Any]
 
 
-class Journal:
+class Checkpoint:
     """Records by their key, a line of JSON each; a record is on the disk before ``add`` returns.
 
     A line that a killed process left half-written is passed over: its work is done again.

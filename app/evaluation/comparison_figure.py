@@ -18,8 +18,8 @@ from algorithms.methods.registry import METHODS
 from app.drawing.grid_pixels import Pixels
 from app.drawing.palette import LIGHT
 from app.evaluation.figure_style import colour, figure_files
-from app.evaluation.method_comparison import Score, tally
-from app.evaluation.method_run import Trial
+from app.evaluation.method_comparison import ComparedRun, tally
+from app.evaluation.method_run import MethodRun
 from app.report.result_files import overlay
 
 COLUMNS = 4
@@ -30,7 +30,7 @@ MOST_CASES = 8  # with bars of their own
 RIGHT, WRONG, NOTHING = colour(LIGHT.ref), colour(LIGHT.conflict), colour(LIGHT.margin)
 
 
-def maps_figure(case: Case, scores: Sequence[Score], title: str) -> dict[str, bytes]:
+def maps_figure(case: Case, scores: Sequence[ComparedRun], title: str) -> dict[str, bytes]:
     """The files of the merged maps of one case, a panel per method, by suffix."""
     in_order = [score for name in METHODS for score in scores if score.method == name]
     columns = min(COLUMNS, len(in_order))
@@ -59,7 +59,7 @@ def maps_figure(case: Case, scores: Sequence[Score], title: str) -> dict[str, by
     return figure_files(draw, 2.6 * columns, 2.9 * rows + 0.6)
 
 
-def _panel(axes: Axes, case: Case, score: Score) -> None:
+def _panel(axes: Axes, case: Case, score: ComparedRun) -> None:
     axes.set_box_aspect(1)
     axes.set_xticks([])
     axes.set_yticks([])
@@ -98,7 +98,7 @@ def _square(pixels: Pixels) -> Pixels:
     return square
 
 
-def _said(trial: Trial) -> tuple[str, str]:
+def _said(trial: MethodRun) -> tuple[str, str]:
     """What became of it, and the colour of that."""
     if trial.failed:
         return "could not be run", NOTHING
@@ -115,7 +115,7 @@ def _said(trial: Trial) -> tuple[str, str]:
     return f"{word}{off}\n{verdict}{index.replace(chr(10), ' · ')}", hue
 
 
-def bars_figure(scores: Sequence[Score]) -> dict[str, bytes]:
+def bars_figure(scores: Sequence[ComparedRun]) -> dict[str, bytes]:
     """The files of the bars of eq. (23), by suffix: a group per case, or the means of many cases."""
     cases = list(dict.fromkeys(score.case for score in sorted(scores, key=lambda score: score.case)))
     methods = [name for name in METHODS if any(score.method == name for score in scores)]
@@ -141,7 +141,7 @@ def bars_figure(scores: Sequence[Score]) -> dict[str, bytes]:
     return figure_files(draw, 2.0 + 2.1 * columns, 0.9 + rows * (0.5 + 0.2 * len(methods)))
 
 
-def _bars(axes: Axes, trials: Sequence[Trial | None], title: str) -> None:
+def _bars(axes: Axes, trials: Sequence[MethodRun | None], title: str) -> None:
     axes.set(xlim=(0, 1.14), title=title)
     axes.set_xticks([0, 0.5, 1])
     axes.grid(visible=False, axis="y")
@@ -162,7 +162,7 @@ def _bar(axes: Axes, row: int, index: float, right: bool | None) -> None:
     axes.text(index + 0.015, row, f"{index:.2f}", va="center", fontsize=7)
 
 
-def _means(figure: Figure, scores: Sequence[Score], methods: Sequence[str]) -> None:
+def _means(figure: Figure, scores: Sequence[ComparedRun], methods: Sequence[str]) -> None:
     axes = figure.subplots()
     rows = tally(scores)
     for row, name in enumerate(methods):

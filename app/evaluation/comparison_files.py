@@ -11,7 +11,7 @@ from typing import Any
 from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS
 from app.evaluation.csv_tables import JUDGED, PLACED, csv_bytes, judged_cells, placed_cells, share_text
-from app.evaluation.method_comparison import Configs, Score, Tally, tally
+from app.evaluation.method_comparison import ComparedRun, Configs, MethodTotals, tally
 from app.report.result_files import plain
 from app.system.hardware import machine
 
@@ -40,13 +40,13 @@ NOTES = (
 )
 
 
-def sorted_scores(scores: Iterable[Score]) -> list[Score]:
+def sorted_scores(scores: Iterable[ComparedRun]) -> list[ComparedRun]:
     """By case, then in the order of the table of methods: however they came."""
     order = list(METHODS)
     return sorted(scores, key=lambda score: (score.case, order.index(score.method)))
 
 
-def table_rows(scores: Sequence[Score]) -> list[list[str]]:
+def table_rows(scores: Sequence[ComparedRun]) -> list[list[str]]:
     """Header and a row per method, as a person reads them."""
     rows = [[TITLES.get(name, name) for name in TABLE]]
     for method, row in tally(scores).items():
@@ -59,7 +59,7 @@ def table_rows(scores: Sequence[Score]) -> list[list[str]]:
     return rows
 
 
-def contest_files(scores: Sequence[Score], configs: Configs, seed: int) -> dict[str, bytes]:
+def contest_files(scores: Sequence[ComparedRun], configs: Configs, seed: int) -> dict[str, bytes]:
     """Tables, JSON and bars by name; the pictures of each case come from ``case_files``."""
     from app.evaluation.comparison_figure import bars_figure
 
@@ -72,7 +72,7 @@ def contest_files(scores: Sequence[Score], configs: Configs, seed: int) -> dict[
     }
 
 
-def case_files(name: str, case: Case, scores: Sequence[Score]) -> dict[str, bytes]:
+def case_files(name: str, case: Case, scores: Sequence[ComparedRun]) -> dict[str, bytes]:
     """The merged maps of one case side by side, by name."""
     from app.evaluation.comparison_figure import maps_figure
 
@@ -81,8 +81,8 @@ def case_files(name: str, case: Case, scores: Sequence[Score]) -> dict[str, byte
     return {f"maps_{name.replace('/', '_')}{suffix}": data for suffix, data in figure.items()}
 
 
-def _methods_csv(rows: dict[str, Tally]) -> bytes:
-    names = list(Tally.__dataclass_fields__)
+def _methods_csv(rows: dict[str, MethodTotals]) -> bytes:
+    names = list(MethodTotals.__dataclass_fields__)
     return csv_bytes(
         ("method", *names),
         (
@@ -92,7 +92,7 @@ def _methods_csv(rows: dict[str, Tally]) -> bytes:
     )
 
 
-def _scores_csv(scores: Sequence[Score]) -> bytes:
+def _scores_csv(scores: Sequence[ComparedRun]) -> bytes:
     rows = [
         (score.case, score.method, *judged_cells(score.trial), share_text(score.trial.index))
         + placed_cells(score.trial)
@@ -102,7 +102,7 @@ def _scores_csv(scores: Sequence[Score]) -> bytes:
     return csv_bytes(("case", "method", *JUDGED, "index", *PLACED, "seconds", "said"), rows)
 
 
-def _json(scores: Sequence[Score], configs: Configs, seed: int) -> bytes:
+def _json(scores: Sequence[ComparedRun], configs: Configs, seed: int) -> bytes:
     told = {
         "scores": [{"case": s.case, "method": s.method, **s.trial.plain()} for s in scores],
         "methods": {name: asdict(row) for name, row in tally(scores).items()},
@@ -113,7 +113,7 @@ def _json(scores: Sequence[Score], configs: Configs, seed: int) -> bytes:
     return (json.dumps(plain(told), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
-def remarks(scores: Sequence[Score]) -> list[str]:
+def remarks(scores: Sequence[ComparedRun]) -> list[str]:
     """A line for each wrong merge that was accepted, and for each reason why something could not be run."""
     lines = []
     for score in sorted_scores(scores):

@@ -9,7 +9,7 @@ from math import degrees
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from app.evaluation.method_run import Trial
+    from app.evaluation.method_run import MethodRun
 
 
 def csv_bytes(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
@@ -45,7 +45,7 @@ JUDGED = ("right", "fine", "accepted")
 """Columns of what is to be said of a run."""
 
 
-def judged_cells(trial: Trial) -> tuple[str, ...]:
+def judged_cells(trial: MethodRun) -> tuple[str, ...]:
     """Cells of JUDGED."""
     return tuple(map(yes_text, (trial.right, trial.fine, trial.accepted)))
 
@@ -54,7 +54,7 @@ PLACED = ("distance_m", "angle_deg", "x_m", "y_m", "theta_deg")
 """Columns of a run's transform: how far off it is, and what it is."""
 
 
-def placed_cells(trial: Trial) -> tuple[str, ...]:
+def placed_cells(trial: MethodRun) -> tuple[str, ...]:
     """Cells of PLACED."""
     x, y, theta = trial.T_ref_mov or (None, None, None)
     off = metres_text(trial.distance), angle_text(trial.angle)

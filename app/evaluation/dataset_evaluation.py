@@ -53,7 +53,7 @@ class Crossing:
 
 
 @dataclass(frozen=True)
-class Order:
+class EvaluationTask:
     """What is to be run on every case; travels to other processes.
 
     config : settings of the method
@@ -68,7 +68,7 @@ class Order:
 
 
 def evaluate(
-    order: Order, executor: Executor | None = None, folders: Sequence[Path | Crossing] | None = None
+    order: EvaluationTask, executor: Executor | None = None, folders: Sequence[Path | Crossing] | None = None
 ) -> Iterator[Entry]:
     """Yield an entry per case folder, in the order of their completion.
 
@@ -101,7 +101,7 @@ def evaluate(
     yield from unread
 
 
-def evaluate_both(order: Order, executor: Executor | None = None) -> Iterator[Entry]:
+def evaluate_both(order: EvaluationTask, executor: Executor | None = None) -> Iterator[Entry]:
     """Yield an entry per case with its observation, then one per case that also has a rough one."""
     yield from evaluate(replace(order, rough=False), executor)
     folders = rough_folders(order.root)
@@ -144,7 +144,7 @@ def rough_folders(root: Path) -> list[Path]:
 
 
 @dataclass(frozen=True, eq=False)
-class Reading:
+class LoadedCase:
     """A case that was read for somebody who can't read our files.
 
     entry   : what its entry begins with
@@ -156,14 +156,14 @@ class Reading:
     seconds: float
 
 
-def _work(_: None, given: tuple[Path | Crossing | Reading, Order]) -> Entry:
+def _work(_: None, given: tuple[Path | Crossing | LoadedCase, EvaluationTask]) -> Entry:
     return run_case(*given)
 
 
-def run_case(what: Path | Crossing | Reading, order: Order) -> Entry:
+def run_case(what: Path | Crossing | LoadedCase, order: EvaluationTask) -> Entry:
     """Merge one case and judge it. A case that fails says why; it raises nothing but an interrupt."""
-    read = what if isinstance(what, Reading) else _read(what, order)
-    if not isinstance(read, Reading):
+    read = what if isinstance(what, LoadedCase) else _read(what, order)
+    if not isinstance(read, LoadedCase):
         return read
     case, entry, began = read.case, dict(read.entry), perf_counter()
     try:
@@ -177,7 +177,7 @@ def run_case(what: Path | Crossing | Reading, order: Order) -> Entry:
     return entry
 
 
-def _read(what: Path | Crossing, order: Order) -> Reading | Entry:
+def _read(what: Path | Crossing, order: EvaluationTask) -> LoadedCase | Entry:
     """The case in a folder, or the one that two make; its entry where it can't be read."""
     entry, began = _entry(what, order), perf_counter()
     try:
@@ -185,7 +185,7 @@ def _read(what: Path | Crossing, order: Order) -> Reading | Entry:
             case = read_case(what, order.rough)
         else:
             case = crossed_case(read_case(what.observer, order.rough), read_case(what.observed, order.rough))
-        return Reading(entry, case, perf_counter() - began)
+        return LoadedCase(entry, case, perf_counter() - began)
     except Exception as error:
         return entry | _failed(error) | {"seconds": perf_counter() - began}
 
@@ -208,7 +208,7 @@ def _failed(error: Exception) -> Entry:
     return {"error": str(error) if known else f"bug: {type(error).__name__}: {error}", "truth": None}
 
 
-def _entry(what: Path | Crossing, order: Order) -> Entry:
+def _entry(what: Path | Crossing, order: EvaluationTask) -> Entry:
     names = [what] if isinstance(what, Path) else [what.observer, what.observed]
     return {
         "case": " x ".join(name_in(order.root, folder) for folder in names),

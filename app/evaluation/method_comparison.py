@@ -13,7 +13,7 @@ from algorithms.common.errors import MapMergeError
 from algorithms.files.case_folder import Case, case_folders, read_case
 from algorithms.methods.registry import METHODS
 from app.evaluation.dataset_evaluation import name_in
-from app.evaluation.method_run import Trial, attempt, true_fusion
+from app.evaluation.method_run import MethodRun, run_method, true_fusion
 from app.jobs.executor import Executor, LostTask, Shared, Task
 
 Configs = Mapping[str, Any]
@@ -21,22 +21,22 @@ Configs = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
-class Score:
+class ComparedRun:
     """What came of one method on one pair."""
 
     case: str
     method: str
-    trial: Trial
+    trial: MethodRun
 
 
 @dataclass(frozen=True)
-class Unread:
+class UnreadableCase:
     """A case that can't be read, and why."""
 
     reason: str
 
 
-Pairs = Iterable[tuple[str, Case | Unread]]
+Pairs = Iterable[tuple[str, Case | UnreadableCase]]
 """Pairs by a name that is theirs alone."""
 
 
@@ -46,21 +46,21 @@ def defaults_of(names: Iterable[str]) -> dict[str, Any]:
     return {name: method.defaults for name, method in METHODS.items() if name in wanted}
 
 
-def contest(
+def compare_methods(
     pairs: Pairs, configs: Configs, executor: Executor, seed: int = 0, stop: Event | None = None
-) -> Iterator[Score]:
+) -> Iterator[ComparedRun]:
     """Yield a score per pair and method, as they are done. Close the generator to stop, or set ``stop``
     in another thread.
 
     A method that can't be run on a pair, and a pair that can't be read, cost no other.
     """
     asked: list[tuple[str, str]] = []
-    unread: list[Score] = []
+    unread: list[ComparedRun] = []
 
     def tasks() -> Iterator[Task]:
         for name, case in pairs:
-            if isinstance(case, Unread):
-                unread.extend(Score(name, method, _not_run(case.reason)) for method in configs)
+            if isinstance(case, UnreadableCase):
+                unread.extend(ComparedRun(name, method, _not_run(case.reason)) for method in configs)
                 continue
             shared = Shared.of(case)
             for method, config in configs.items():
@@ -68,7 +68,7 @@ def contest(
                 yield Task((method, config, seed), shared)
 
     for number, answer in executor.run(_work, tasks(), stop):
-        yield Score(*asked[number], _not_run(answer.reason) if isinstance(answer, LostTask) else answer)
+        yield ComparedRun(*asked[number], _not_run(answer.reason) if isinstance(answer, LostTask) else answer)
         while unread:
             yield unread.pop(0)
     yield from unread
@@ -82,31 +82,31 @@ def pairs_in(root: Path, rough: bool = False) -> tuple[int, Pairs]:
     """
     folders = case_folders(root)
 
-    def read() -> Iterator[tuple[str, Case | Unread]]:
+    def read() -> Iterator[tuple[str, Case | UnreadableCase]]:
         for folder in folders:
             try:
                 yield name_in(root, folder), read_case(folder, rough)
             except MapMergeError as error:
-                yield name_in(root, folder), Unread(str(error))
+                yield name_in(root, folder), UnreadableCase(str(error))
 
     return len(folders), read()
 
 
-def _work(case: Case, order: tuple[str, Any, int]) -> Trial:
+def _work(case: Case, order: tuple[str, Any, int]) -> MethodRun:
     method, config, seed = order
     try:
         true = true_fusion(case)
     except MapMergeError as error:
         return _not_run(str(error))
-    return attempt(case, method, config, seed, true)
+    return run_method(case, method, config, seed, true)
 
 
-def _not_run(reason: str) -> Trial:
-    return Trial(None, False, reason, None, None, None, None, None, 0.0, failed=True)
+def _not_run(reason: str) -> MethodRun:
+    return MethodRun(None, False, reason, None, None, None, None, None, 0.0, failed=True)
 
 
 @dataclass(frozen=True)
-class Tally:
+class MethodTotals:
     """A method's row in the table.
 
     n         : pairs that it could be run on
@@ -134,7 +134,7 @@ class Tally:
     seconds: float | None
 
 
-def tally(scores: Sequence[Score]) -> dict[str, Tally]:
+def tally(scores: Sequence[ComparedRun]) -> dict[str, MethodTotals]:
     """A row per method, in the order of the table of methods."""
     found = {score.method for score in scores}
     return {
@@ -144,11 +144,11 @@ def tally(scores: Sequence[Score]) -> dict[str, Tally]:
     }
 
 
-def _tally(trials: Sequence[Trial]) -> Tally:
+def _tally(trials: Sequence[MethodRun]) -> MethodTotals:
     ran = [trial for trial in trials if not trial.failed]
     judged = [trial for trial in ran if trial.right is not None]
     indices = [trial.index for trial in judged if trial.index is not None]
-    return Tally(
+    return MethodTotals(
         n=len(ran),
         failed=len(trials) - len(ran),
         judged=len(judged),

@@ -26,7 +26,7 @@ from app.model.settings import settings_of, value_at
 
 
 @dataclass(frozen=True)
-class Trial:
+class MethodRun:
     """What came of one run; everything in it can be written as JSON.
 
     T_ref_mov : (x, y, theta); metres, metres, radians; None where the method found no transform
@@ -71,10 +71,10 @@ class Trial:
         return asdict(self)
 
     @staticmethod
-    def of(plain: Mapping[str, Any]) -> Trial:
+    def of(plain: Mapping[str, Any]) -> MethodRun:
         """The trial of ``plain``."""
         T = plain["T_ref_mov"]
-        return Trial(**{**plain, "T_ref_mov": None if T is None else tuple(T)})
+        return MethodRun(**{**plain, "T_ref_mov": None if T is None else tuple(T)})
 
 
 def true_fusion(case: Case) -> Fusion | None:
@@ -85,9 +85,9 @@ def true_fusion(case: Case) -> Fusion | None:
     return fuse(case.ref, case.mov, truth.T_ref_mov)
 
 
-def attempt(
+def run_method(
     case: Case, method: str, config: Any, seed: int, true: Fusion | None, memo: Memo | None = None
-) -> Trial:
+) -> MethodRun:
     """Run a method and judge it; what goes wrong with it is in the answer.
 
     config : its settings; None: its defaults
@@ -112,7 +112,7 @@ def attempt(
 
 def _judged(
     case: Case, result: MergeResult | None, reason: str, seconds: float, true: Fusion | None
-) -> Trial:
+) -> MethodRun:
     told = judge_case(case, result)
     lost = case.truth is not None and case.truth.expected == "refuse"  # maps that share no place
     right = fine = None
@@ -122,7 +122,7 @@ def _judged(
     index = None if lost else 0.0
     if result is not None and not lost:
         index = performance_index(result.fusion, true) or 0.0
-    return Trial(
+    return MethodRun(
         T_ref_mov=None
         if result is None
         else (result.T_ref_mov.x, result.T_ref_mov.y, result.T_ref_mov.theta),
@@ -138,8 +138,8 @@ def _judged(
     )
 
 
-def _failed(reason: str) -> Trial:
-    return Trial(None, False, reason, None, None, None, None, None, 0.0, failed=True)
+def _failed(reason: str) -> MethodRun:
+    return MethodRun(None, False, reason, None, None, None, None, None, 0.0, failed=True)
 
 
 # ---- the first run of a method loads its code: seconds that are not the method's

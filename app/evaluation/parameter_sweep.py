@@ -15,8 +15,8 @@ from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import METHODS
 from algorithms.methods.stage_runner import Memo
 from algorithms.verdict import performance_index as merit
-from app.evaluation.checkpoint import Journal
-from app.evaluation.method_run import Trial, attempt, true_fusion
+from app.evaluation.checkpoint import Checkpoint
+from app.evaluation.method_run import MethodRun, run_method, true_fusion
 from app.jobs.executor import Executor, LostTask, Shared, Task
 from app.model.settings import Path as SettingPath
 from app.model.settings import Setting, settings_of, with_value
@@ -40,7 +40,7 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Plan:
+class SweepPlan:
     """What is swept; all else stays as in ``config``.
 
     y : a second setting, every value of it with every one of x
@@ -87,12 +87,12 @@ class Spread:
 
 
 @dataclass(frozen=True)
-class Point:
+class SweepPoint:
     """One place of a sweep: a trial per seed, in the order of the seeds."""
 
     x: Any
     y: Any
-    trials: tuple[Trial, ...]
+    trials: tuple[MethodRun, ...]
 
     @property
     def index(self) -> Spread | None:
@@ -123,22 +123,26 @@ class Point:
 
 
 def sweep(
-    case: Case, plan: Plan, executor: Executor, journal: Journal | None = None, stop: Event | None = None
-) -> Iterator[Point]:
+    case: Case,
+    plan: SweepPlan,
+    executor: Executor,
+    journal: Checkpoint | None = None,
+    stop: Event | None = None,
+) -> Iterator[SweepPoint]:
     """Yield every point as it is done; those that the journal knows first.
 
     Points come coarse to fine, so that a curve shows its shape early and what is left can be estimated.
     Each is in the journal before it is told. Close the generator to stop, or set ``stop`` in another
     thread.
     """
-    journal = Journal() if journal is None else journal
+    journal = Checkpoint() if journal is None else journal
     keys, todo = point_keys(case, plan), []
     for place in _coarse_first(plan.places()):
         record = journal.get(keys[place])
         if record is None:
             todo.append(place)
         else:
-            yield Point(*place, tuple(Trial.of(trial) for trial in record["trials"]))
+            yield SweepPoint(*place, tuple(MethodRun.of(trial) for trial in record["trials"]))
     if not todo:
         return
     shared = Shared.of(case)
@@ -146,20 +150,20 @@ def sweep(
     for number, answer in executor.run(_work, tasks, stop):
         place = todo[number]
         if isinstance(answer, LostTask):
-            yield Point(*place, (Trial(None, False, answer.reason, *[None] * 5, 0.0, failed=True),))
+            yield SweepPoint(*place, (MethodRun(None, False, answer.reason, *[None] * 5, 0.0, failed=True),))
             continue
-        point = Point(*place, tuple(Trial.of(trial) for trial in answer))
+        point = SweepPoint(*place, tuple(MethodRun.of(trial) for trial in answer))
         if not point.failed:
             journal.add(keys[place], {"x": plain(place[0]), "y": plain(place[1]), "trials": answer})
         yield point
 
 
-def done_before(case: Case, plan: Plan, journal: Journal) -> int:
+def done_before(case: Case, plan: SweepPlan, journal: Checkpoint) -> int:
     """How many points of a sweep the journal knows."""
     return sum(journal.get(key) is not None for key in point_keys(case, plan).values())
 
 
-def in_order(plan: Plan, points: Sequence[Point]) -> list[Point]:
+def in_order(plan: SweepPlan, points: Sequence[SweepPoint]) -> list[SweepPoint]:
     """The points as they stand in a table, however they came."""
     at = {(point.x, point.y): point for point in points}
     return [at[place] for place in plan.places() if place in at]
@@ -169,7 +173,7 @@ def _work(case: Case, order: tuple[str, Any, tuple[int, ...]]) -> list[dict[str,
     """All seeds of one point: what does not depend on luck is done once for all of them."""
     method, config, seeds = order
     true, memo = true_fusion(case), Memo()
-    return [attempt(case, method, config, seed, true, memo).plain() for seed in seeds]
+    return [run_method(case, method, config, seed, true, memo).plain() for seed in seeds]
 
 
 def _coarse_first(places: list[tuple[Any, Any]]) -> list[tuple[Any, Any]]:
@@ -185,7 +189,7 @@ def _coarse_first(places: list[tuple[Any, Any]]) -> list[tuple[Any, Any]]:
 # ---- what a point's numbers rest on
 
 
-def point_keys(case: Case, plan: Plan) -> dict[tuple[Any, Any], str]:
+def point_keys(case: Case, plan: SweepPlan) -> dict[tuple[Any, Any], str]:
     """A key per place: equal where maps, sightings, truth, method, settings, seeds and code are equal."""
     common = {
         "maps": [_digest(case.ref), _digest(case.mov)],

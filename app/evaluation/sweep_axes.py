@@ -7,7 +7,7 @@ from math import isfinite, log, sqrt
 from typing import Any
 
 from algorithms.common.errors import SettingError
-from app.evaluation.parameter_sweep import SEEDS, Axis, Plan
+from app.evaluation.parameter_sweep import SEEDS, SweepAxis, SweepPlan
 from app.model.settings import Path, Setting, settings_of, what_became_of, with_value
 
 MOST_VALUES = 200  # of one setting
@@ -24,7 +24,7 @@ INTENSITIES = (1.0, 10.0, 100.0, 1000.0)
 PARTICLE_COUNTS = (10, 20, 50, 100, 200, 300, 400, 600, 800, 1200, 2000)
 
 
-def axis_from(text: str, config: Any) -> Axis:
+def axis_from(text: str, config: Any) -> SweepAxis:
     """The axis that a person wrote, e.g. ``augment.spread=1:8:8``; raises SettingError.
 
     config : of the method that is swept; a value out of the setting's bounds is refused
@@ -33,7 +33,7 @@ def axis_from(text: str, config: Any) -> Axis:
     if not equals or not values:
         raise SettingError(f"{text} is no range of a setting; write {GRAMMAR}")
     setting = setting_named(name, config)
-    axis = Axis(setting.path, _values(values, setting, name))
+    axis = SweepAxis(setting.path, _values(values, setting, name))
     for value in axis.values:
         with_value(config, axis.path, value)
     return axis
@@ -83,18 +83,18 @@ def looks_even_by_factor(values: tuple[Any, ...]) -> bool:
     return low > 0 and log(high / low) > log(20)
 
 
-def intensity_and_spread(method: str, config: Any, cell: float, seeds: tuple[int, ...] = SEEDS) -> Plan:
+def intensity_and_spread(method: str, config: Any, cell: float, seeds: tuple[int, ...] = SEEDS) -> SweepPlan:
     """Fig. 13: eq. (23) over I_a × Σ_a.
 
     cell : edge of a cell, by which the paper's squared cells become metres
     """
     spreads = _legal(config, SPREAD, [in_metres(squared, cell) for squared in SQUARED_CELLS])
-    return Plan(method, config, Axis(SPREAD, spreads), Axis(INTENSITY, INTENSITIES), seeds)
+    return SweepPlan(method, config, SweepAxis(SPREAD, spreads), SweepAxis(INTENSITY, INTENSITIES), seeds)
 
 
-def particles(method: str, config: Any, seeds: tuple[int, ...] = SEEDS) -> Plan:
+def particles(method: str, config: Any, seeds: tuple[int, ...] = SEEDS) -> SweepPlan:
     """Fig. 14: eq. (23) and time over the number of particles."""
-    return Plan(method, config, Axis(PARTICLES, PARTICLE_COUNTS), None, seeds)
+    return SweepPlan(method, config, SweepAxis(PARTICLES, PARTICLE_COUNTS), None, seeds)
 
 
 def in_metres(squared_cells: float, cell: float) -> float:

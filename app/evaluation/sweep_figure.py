@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from app.drawing.palette import LIGHT
 from app.evaluation.figure_style import COLOURS, MARKERS, colour, figure_files
-from app.evaluation.parameter_sweep import Axis, Plan, Point, Spread, in_order
+from app.evaluation.parameter_sweep import Axis, Spread, SweepPlan, SweepPoint, in_order
 from app.evaluation.sweep_axes import SPREAD, looks_even_by_factor
 
 INDEX = "agreeing share of the overlap, eq. (23)"
@@ -21,7 +21,7 @@ LEAST_SPAN = 0.05  # of an axis of eq. (23)
 MOST_WRITTEN = 14  # columns of a heat map whose cells are written into
 
 
-def sweep_figure(plan: Plan, points: Sequence[Point], title: str, cell: float) -> dict[str, bytes]:
+def sweep_figure(plan: SweepPlan, points: Sequence[SweepPoint], title: str, cell: float) -> dict[str, bytes]:
     """The files of the figure, by suffix.
 
     title : which maps, by which method
@@ -36,7 +36,7 @@ def sweep_figure(plan: Plan, points: Sequence[Point], title: str, cell: float) -
     return figure_files(lambda figure: _both(figure, plan, told, title, cell), 10, 4.2)
 
 
-def _curves(figure: Figure, plan: Plan, points: list[Point], title: str, cell: float) -> None:
+def _curves(figure: Figure, plan: SweepPlan, points: list[SweepPoint], title: str, cell: float) -> None:
     judged = [point for point in points if point.right is not None]
     panels = figure.subplots(1, 3 if judged else 2)
     figure.suptitle(title, x=0.01, ha="left")
@@ -72,7 +72,7 @@ def _curves(figure: Figure, plan: Plan, points: list[Point], title: str, cell: f
         _name_x(panel, plan, plan.x, cell)
 
 
-def _both(figure: Figure, plan: Plan, points: list[Point], title: str, cell: float) -> None:
+def _both(figure: Figure, plan: SweepPlan, points: list[SweepPoint], title: str, cell: float) -> None:
     assert plan.y is not None
     heat, lines = figure.subplots(1, 2, width_ratios=[1.25, 1])
     figure.suptitle(title, x=0.01, ha="left")
@@ -92,7 +92,9 @@ def _both(figure: Figure, plan: Plan, points: list[Point], title: str, cell: flo
     _name_x(lines, plan, plan.x, cell)
 
 
-def _heat(figure: Figure, axes: Axes, plan: Plan, y: Axis, points: list[Point], cell: float) -> None:
+def _heat(
+    figure: Figure, axes: Axes, plan: SweepPlan, y: Axis, points: list[SweepPoint], cell: float
+) -> None:
     means = np.full((len(y.values), len(plan.x.values)), np.nan)
     for point in points:
         if point.index is not None:
@@ -160,7 +162,7 @@ def _no_closer(axes: Axes) -> None:
         axes.set_ylim(high - LEAST_SPAN, high)
 
 
-def _places(axis: Axis, points: Sequence[Point], beside: int = 0) -> list[float]:
+def _places(axis: Axis, points: Sequence[SweepPoint], beside: int = 0) -> list[float]:
     """Where points stand: at their number, or in a row where the setting is a choice, a little beside
     those of another curve.
     """
@@ -173,7 +175,7 @@ def _is_number(axis: Axis) -> bool:
     return all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in axis.values)
 
 
-def _name_x(axes: Axes, plan: Plan, axis: Axis, cell: float) -> None:
+def _name_x(axes: Axes, plan: SweepPlan, axis: Axis, cell: float) -> None:
     axes.set_xlabel(_label(plan, axis))
     if not _is_number(axis):
         _ticks(axes.xaxis, axis.values)
@@ -186,7 +188,7 @@ def _name_x(axes: Axes, plan: Plan, axis: Axis, cell: float) -> None:
         axes.xaxis.set_minor_locator(NullLocator())
 
 
-def _label(plan: Plan, axis: Axis) -> str:
+def _label(plan: SweepPlan, axis: Axis) -> str:
     return plan.setting(axis).label
 
 

@@ -8,19 +8,19 @@ from collections.abc import Iterable, Sequence
 from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS
 from app.evaluation.csv_tables import JUDGED, PLACED, csv_bytes, judged_cells, placed_cells, share_text
-from app.evaluation.parameter_sweep import Plan, Point, in_order
+from app.evaluation.parameter_sweep import SweepPlan, SweepPoint, in_order
 from app.report.result_files import plain
 from app.system.hardware import machine
 
 JOURNAL_FILE = "journal.jsonl"
 
 
-def name_of(plan: Plan) -> str:
+def name_of(plan: SweepPlan) -> str:
     """What the files of a sweep are called: by the settings that are swept."""
     return plan.x.name if plan.y is None else f"{plan.y.name}_by_{plan.x.name}"
 
 
-def sweep_files(case: Case, plan: Plan, points: Sequence[Point]) -> dict[str, bytes]:
+def sweep_files(case: Case, plan: SweepPlan, points: Sequence[SweepPoint]) -> dict[str, bytes]:
     """The files of a finished sweep by name.
 
     NAME.csv       a row per point: eq. (23) over the seeds, and how many were right and accepted
@@ -43,7 +43,7 @@ def sweep_files(case: Case, plan: Plan, points: Sequence[Point]) -> dict[str, by
     }
 
 
-def points_csv(plan: Plan, points: Iterable[Point]) -> bytes:
+def points_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
     """A row per point, without anything that was measured with a clock."""
     rows = []
     for point in points:
@@ -57,7 +57,7 @@ def points_csv(plan: Plan, points: Iterable[Point]) -> bytes:
     return csv_bytes((*_names(plan), "seeds", *index, "right", "accepted", "failed"), rows)
 
 
-def runs_csv(plan: Plan, points: Iterable[Point]) -> bytes:
+def runs_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
     """A row per merge: metres and degrees."""
     rows = [
         (*_at(plan, point), seed, share_text(trial.index), *judged_cells(trial), *placed_cells(trial))
@@ -67,7 +67,7 @@ def runs_csv(plan: Plan, points: Iterable[Point]) -> bytes:
     return csv_bytes((*_names(plan), "seed", "index", *JUDGED, *PLACED), rows)
 
 
-def times_csv(plan: Plan, points: Iterable[Point]) -> bytes:
+def times_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
     """A row per point: seconds of a merge, over the seeds."""
     header = ("seconds_mean", "seconds_median", "seconds_min", "seconds_max")
     rows = [
@@ -81,7 +81,7 @@ def times_csv(plan: Plan, points: Iterable[Point]) -> bytes:
     return csv_bytes((*_names(plan), *header), rows)
 
 
-def _about(case: Case, plan: Plan) -> bytes:
+def _about(case: Case, plan: SweepPlan) -> bytes:
     about = {
         "case": case.name,
         "observation": case.observation_file,
@@ -95,10 +95,10 @@ def _about(case: Case, plan: Plan) -> bytes:
     return (json.dumps(plain(about), indent=1, ensure_ascii=False) + "\n").encode()
 
 
-def _names(plan: Plan) -> tuple[str, ...]:
+def _names(plan: SweepPlan) -> tuple[str, ...]:
     return tuple(axis.name for axis in (plan.y, plan.x) if axis is not None)
 
 
-def _at(plan: Plan, point: Point) -> tuple[str, ...]:
+def _at(plan: SweepPlan, point: SweepPoint) -> tuple[str, ...]:
     values = (point.x,) if plan.y is None else (point.y, point.x)
     return tuple(str(plain(value)) for value in values)

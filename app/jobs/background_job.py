@@ -41,7 +41,7 @@ class Asking(Protocol):
         """It has come to its end; ``why`` it could not, as a sentence, empty where it could."""
 
 
-class Background:
+class BackgroundJob:
     """One piece of work at a time, in a thread of its own. Nothing is told once ``stop`` has returned."""
 
     def __init__(self, asking: Asking, drawing: RLock, name: str) -> None:

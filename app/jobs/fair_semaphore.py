@@ -14,7 +14,7 @@ from time import monotonic
 PATIENCE = 1.0  # seconds of waiting that need no words
 
 
-class Turns:
+class FairSemaphore:
     """So many at a time, first come, first served."""
 
     def __init__(self, places: int) -> None:

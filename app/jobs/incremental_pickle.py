@@ -21,7 +21,7 @@ Number = tuple[str, int]  # of a thing: which end had it first, and its how many
 FLEETING = (Step, RefineDetail, SearchState)  # there are thousands, and nobody asks for one of them again
 
 
-class Parcels:
+class IncrementalPickle:
     """One end of a line between two processes.
 
     What one end packs the other has to unpack, in that order; both turn over at the same places. Where
@@ -92,7 +92,7 @@ def _lasting(kind: type) -> tuple[str, ...]:
 
 
 class _Packer(pickle.Pickler):
-    def __init__(self, file: io.BytesIO, parcels: Parcels) -> None:
+    def __init__(self, file: io.BytesIO, parcels: IncrementalPickle) -> None:
         super().__init__(file, pickle.HIGHEST_PROTOCOL)
         self._parcels = parcels
 
@@ -108,7 +108,7 @@ class _Packer(pickle.Pickler):
 
 
 class _Unpacker(pickle.Unpickler):
-    def __init__(self, file: io.BytesIO, parcels: Parcels) -> None:
+    def __init__(self, file: io.BytesIO, parcels: IncrementalPickle) -> None:
         super().__init__(file)
         self._parcels = parcels
 

@@ -14,10 +14,10 @@ from typing import Protocol
 
 from algorithms.common.errors import MapMergeError
 from algorithms.methods.steps import AnswersDetail, CandidatesDetail, MergeResult, Step
-from app.jobs.runner import Asker, Bench
-from app.model.merge_job import Job
-from app.model.playback import FRAME, Waiting, dwell
-from app.model.run_state import Story
+from app.jobs.runner import RunCallbacks, Runner
+from app.model.merge_job import MergeJob
+from app.model.playback import FRAME, InterruptibleWait, dwell
+from app.model.run_state import RunState
 from app.system.logging_setup import facts
 
 log = logging.getLogger(__name__)
@@ -26,31 +26,31 @@ log = logging.getLogger(__name__)
 class Listener(Protocol):
     """Who draws. All calls come one at a time; all but ``ending`` while nobody else draws."""
 
-    def begun(self, job: Job) -> None:
+    def begun(self, job: MergeJob) -> None:
         """A run starts; what is on the screen is out of date from the first changed stage on."""
 
-    def show(self, job: Job, story: Story) -> None:
+    def show(self, job: MergeJob, story: RunState) -> None:
         """Draw the newest state."""
 
-    def ending(self, job: Job, story: Story) -> None:
+    def ending(self, job: MergeJob, story: RunState) -> None:
         """The run is at its goal: work out what takes long to tell of it. It can still be stopped."""
 
-    def waits(self, job: Job, before: int) -> None:
+    def waits(self, job: MergeJob, before: int) -> None:
         """Other tabs' runs have the processors; so many of them are before this one."""
 
-    def ended(self, job: Job, story: Story) -> None:
+    def ended(self, job: MergeJob, story: RunState) -> None:
         """The run came to its goal."""
 
-    def stopped(self, job: Job, story: Story) -> None:
+    def stopped(self, job: MergeJob, story: RunState) -> None:
         """Someone pressed Stop."""
 
-    def failed(self, job: Job, story: Story, error: Exception) -> None:
+    def failed(self, job: MergeJob, story: RunState, error: Exception) -> None:
         """The run could not go on: a NoAnswerError where the method found no transform, another
         MapMergeError to be told, or a bug to be logged.
         """
 
 
-class Session:
+class JobThread:
     """A thread and the request it works on.
 
     One that works ``beside`` another draws on the same page.
@@ -59,19 +59,19 @@ class Session:
     def __init__(
         self,
         listener: Listener,
-        bench: Bench,
+        bench: Runner,
         clock: Callable[[], float] = perf_counter,
-        waiting: Waiting | None = None,
-        beside: Session | None = None,
+        waiting: InterruptibleWait | None = None,
+        beside: JobThread | None = None,
     ) -> None:
         """bench : where it is worked out; closed with the session"""
         self._listener, self.bench, self._clock = listener, bench, clock
-        self._waiting = waiting or Waiting()
+        self._waiting = waiting or InterruptibleWait()
         self._wake = Condition()
-        self._wanted: Job | None = None
-        self._running: Job | None = None
-        self._ended: Job | None = None  # the last that came to its end
-        self._story = Story()
+        self._wanted: MergeJob | None = None
+        self._running: MergeJob | None = None
+        self._ended: MergeJob | None = None  # the last that came to its end
+        self._story = RunState()
         self._pace = 0.0
         self._closed = False
         # held while a picture is drawn, so that nothing of a run is drawn after Stop has returned
@@ -90,7 +90,7 @@ class Session:
         job = self._wanted or self._running
         return job is not None and job.goal != "cause"
 
-    def request(self, job: Job) -> None:
+    def request(self, job: MergeJob) -> None:
         """Run this next; a run that is going on is left where it is."""
         with self._wake:
             if self._closed:
@@ -115,9 +115,9 @@ class Session:
             if job is not None and job is not self._ended:  # it may have come to its end just now
                 self._listener.stopped(job, self._story)
 
-    def told_again(self, job: Job, wanted: Callable[[], bool]) -> Iterator[Step]:
+    def told_again(self, job: MergeJob, wanted: Callable[[], bool]) -> Iterator[Step]:
         """The steps of a run once more, for a recording: those that are known are not computed again."""
-        return self.bench.steps(job, Asker(wanted), aside=True)
+        return self.bench.steps(job, RunCallbacks(wanted), aside=True)
 
     def close(self) -> None:
         """End the worker; the tab is gone."""
@@ -140,7 +140,7 @@ class Session:
                     return
                 job, self._wanted = self._wanted, None
                 assert job is not None
-                self._running, self._story, self._pace = job, Story(job.config), job.pace
+                self._running, self._story, self._pace = job, RunState(job.config), job.pace
             began = self._clock()
             try:
                 self._tell(job)
@@ -154,10 +154,10 @@ class Session:
                 if self._running is job:
                     self._running = None
 
-    def _fail(self, job: Job, error: Exception) -> None:
+    def _fail(self, job: MergeJob, error: Exception) -> None:
         self._deliver(job, lambda: self._listener.failed(job, self._story, error))
 
-    def _tell(self, job: Job) -> None:
+    def _tell(self, job: MergeJob) -> None:
         """Iterate the method; draw at most every FRAME, except where a step is meant to be seen."""
         story = self._story
         if not self._deliver(job, lambda: self._listener.begun(job)):
@@ -185,20 +185,20 @@ class Session:
         self._listener.ending(job, story)
         self._deliver(job, lambda: self._end(job, story))
 
-    def _end(self, job: Job, story: Story) -> None:
+    def _end(self, job: MergeJob, story: RunState) -> None:
         self._ended = job
         self._listener.ended(job, story)
 
-    def _asker(self, job: Job) -> Asker:
+    def _asker(self, job: MergeJob) -> RunCallbacks:
         def waits(before: int) -> None:
             self._deliver(job, lambda: self._listener.waits(job, before))
 
-        return Asker(lambda: self._wants(job), waits)
+        return RunCallbacks(lambda: self._wants(job), waits)
 
-    def _wants(self, job: Job) -> bool:
+    def _wants(self, job: MergeJob) -> bool:
         return self._running is job and self._wanted is None and not self._closed
 
-    def _deliver(self, job: Job, tell: Callable[[], None]) -> bool:
+    def _deliver(self, job: MergeJob, tell: Callable[[], None]) -> bool:
         """Tell the listener, unless the run has been stopped or overtaken; whether it was told."""
         with self.drawing:
             if not self._wants(job):

@@ -12,7 +12,7 @@ T = TypeVar("T")
 log = logging.getLogger(__name__)
 
 
-class Newest(Generic[T]):
+class LatestRequest(Generic[T]):
     """One thread that works on what was asked last; what was asked before it began is passed over."""
 
     def __init__(self, work: Callable[[T], None], name: str) -> None:

@@ -8,11 +8,11 @@ from contextlib import closing
 from dataclasses import dataclass
 
 from algorithms.methods.steps import Step
-from app.model.merge_job import Job
+from app.model.merge_job import MergeJob
 
 
 @dataclass(frozen=True)
-class Asker:
+class RunCallbacks:
     """Who wants a run.
 
     wanted : whether they still do; asked now and then
@@ -23,11 +23,11 @@ class Asker:
     waits: Callable[[int], None] = lambda before: None
 
 
-class Bench(ABC):
+class Runner(ABC):
     """Of one tab. It remembers the stages of one run for the next."""
 
     @abstractmethod
-    def steps(self, job: Job, asker: Asker, aside: bool = False) -> Generator[Step, None, None]:
+    def steps(self, job: MergeJob, asker: RunCallbacks, aside: bool = False) -> Generator[Step, None, None]:
         """The steps of a run, each worked out when it is asked for and it is this run's turn.
 
         They end early where nobody wants them any more.
@@ -41,14 +41,14 @@ class Bench(ABC):
         """Nobody wants anything of it any more."""
 
 
-class Overheard(Bench):
+class TappedRunner(Runner):
     """Another's bench; its steps go through somebody's hands on their way."""
 
-    def __init__(self, bench: Bench, through: Callable[[Iterator[Step]], Iterator[Step]]) -> None:
+    def __init__(self, bench: Runner, through: Callable[[Iterator[Step]], Iterator[Step]]) -> None:
         self._bench, self._through = bench, through
 
-    def steps(self, job: Job, asker: Asker, aside: bool = False) -> Generator[Step, None, None]:
-        """As in Bench."""
+    def steps(self, job: MergeJob, asker: RunCallbacks, aside: bool = False) -> Generator[Step, None, None]:
+        """As in Runner."""
         with closing(self._bench.steps(job, asker, aside)) as steps:
             yield from self._through(steps)
 

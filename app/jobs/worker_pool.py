@@ -26,11 +26,11 @@ from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import MapMergeError
 from algorithms.methods.stage_runner import Memo
 from algorithms.methods.steps import Step
-from app.jobs.fair_semaphore import Turns
-from app.jobs.incremental_pickle import Parcels
+from app.jobs.fair_semaphore import FairSemaphore
+from app.jobs.incremental_pickle import IncrementalPickle
 from app.jobs.process_executor import SPAWN
-from app.jobs.runner import Asker, Bench
-from app.model.merge_job import Job
+from app.jobs.runner import RunCallbacks, Runner
+from app.model.merge_job import MergeJob
 from app.system.memory import give_back, whole
 
 log = logging.getLogger(__name__)
@@ -52,7 +52,7 @@ class WorkerDiedError(MapMergeError):
         )
 
 
-class Workers:
+class WorkerPool:
     """As many as there are cores, and not too many."""
 
     def __init__(self, most: int = MOST) -> None:
@@ -60,7 +60,7 @@ class Workers:
         self._workers: list[_Worker] = []
         self._lock, self._closed = Lock(), False
 
-    def bench(self) -> Bench:
+    def bench(self) -> Runner:
         """A place for a tab; it takes no worker before its first run."""
         return _Place(self)
 
@@ -92,7 +92,7 @@ class _Worker:
     """A process and the line to it. Only who has the turn says something to it."""
 
     def __init__(self) -> None:
-        self.turns = Turns(1)
+        self.turns = FairSemaphore(1)
         self.places: set[_Place] = set()
         self.life = 0  # how often it was started
         self.runs: set[tuple[int, int]] = set()  # that are under way
@@ -187,22 +187,22 @@ def _deaf() -> Iterator[None]:
 _numbers = itertools.count()
 
 
-class _Place(Bench):
+class _Place(Runner):
     """A tab at its worker.
 
     epoch : counts how often both had to begin anew with each other
     """
 
-    def __init__(self, workers: Workers) -> None:
+    def __init__(self, workers: WorkerPool) -> None:
         self._workers, self._number = workers, next(_numbers)
         self._worker: _Worker | None = None
         self._lock, self._closed = Lock(), False
         self._epoch, self._life = 0, 0
-        self._parcels = Parcels("page")
+        self._parcels = IncrementalPickle("page")
         self._maps: tuple[object, object] = (None, None)
 
-    def steps(self, job: Job, asker: Asker, aside: bool = False) -> Generator[Step, None, None]:
-        """As in Bench."""
+    def steps(self, job: MergeJob, asker: RunCallbacks, aside: bool = False) -> Generator[Step, None, None]:
+        """As in Runner."""
         with self._lock:
             if self._closed:
                 raise WorkerDiedError
@@ -232,7 +232,7 @@ class _Place(Bench):
                 self._say(worker, epoch, "leave", run)
 
     def close(self) -> None:
-        """As in Bench."""
+        """As in Runner."""
         with self._lock:
             self._closed = True
         if self._worker is not None:
@@ -240,7 +240,7 @@ class _Place(Bench):
             self._worker.places.discard(self)
             self._epoch += 1
 
-    def _begin(self, worker: _Worker, job: Job, aside: bool) -> int:
+    def _begin(self, worker: _Worker, job: MergeJob, aside: bool) -> int:
         worker.start()
         if worker.life != self._life:
             self._anew()
@@ -260,7 +260,7 @@ class _Place(Bench):
         (run,) = self._heard(worker.ask("start", self._number, aside, turns, data))
         return int(run)
 
-    def _next(self, worker: _Worker, run: int, asker: Asker) -> Step | None:
+    def _next(self, worker: _Worker, run: int, asker: RunCallbacks) -> Step | None:
         (data,) = self._heard(worker.ask("next", self._number, run, wanted=asker.wanted))
         if data is None:
             return None
@@ -281,7 +281,7 @@ class _Place(Bench):
         raise failed.error from _ThereError(failed.trace)
 
     def _anew(self) -> None:
-        self._parcels, self._maps = Parcels("page"), (None, None)
+        self._parcels, self._maps = IncrementalPickle("page"), (None, None)
         self._epoch += 1
 
     def _say(self, worker: _Worker, epoch: int, verb: str, *what: Any) -> None:
@@ -307,7 +307,7 @@ class _Failed:
     anew: bool = False
 
 
-COMMON = Workers()
+COMMON = WorkerPool()
 atexit.register(COMMON.close)
 
 
@@ -316,7 +316,7 @@ atexit.register(COMMON.close)
 
 @dataclass
 class _Tab:
-    parcels: Parcels = field(default_factory=lambda: Parcels("worker"))
+    parcels: IncrementalPickle = field(default_factory=lambda: IncrementalPickle("worker"))
     memo: Memo = field(default_factory=dict)
     runs: dict[int, Iterator[Step]] = field(default_factory=dict)
 
@@ -363,7 +363,7 @@ def _started(
     try:
         for _ in range(turns):
             tab.parcels.turn_over()
-        job: Job = tab.parcels.unpack(data)
+        job: MergeJob = tab.parcels.unpack(data)
     except Exception as error:
         del tabs[number]
         return (_failed(error, anew=True),)

@@ -11,7 +11,7 @@ from algorithms.methods.steps import TurnsDetail
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.spectra.candidates import Candidate
 from algorithms.spectra.hough_spectra import HoughMatch, ShiftMatch
-from app.model.objective_label import Measure
+from app.model.objective_label import ObjectiveLabel
 
 Columns = tuple[FloatArray, ...]
 
@@ -176,7 +176,7 @@ def _bounded(values: FloatArray, top: float) -> FloatArray:
     return np.nan_to_num(values, nan=np.nan, posinf=top, neginf=0.0)
 
 
-def proof_rows(result: ProofState, measure: Measure) -> list[tuple[str, ...]]:
+def proof_rows(result: ProofState, measure: ObjectiveLabel) -> list[tuple[str, ...]]:
     """The optimum and its rivals: turn, where map 2 goes, value, share of the best value."""
     if result.best is None:
         return []
@@ -190,7 +190,7 @@ def proof_rows(result: ProofState, measure: Measure) -> list[tuple[str, ...]]:
 
 
 def candidate_rows(
-    candidates: tuple[Candidate, ...], refined: list[list[float]], measure: Measure
+    candidates: tuple[Candidate, ...], refined: list[list[float]], measure: ObjectiveLabel
 ) -> list[tuple[str, ...]]:
     """Rank, turn, shift, value of the first look, value after refining."""
     rows = []

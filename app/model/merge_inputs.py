@@ -35,7 +35,7 @@ class Files:
 
 
 @dataclass(frozen=True, eq=False)
-class Inputs:
+class MergeInputs:
     """Two maps and what robot 1 saw; None or empty for what is not there yet.
 
     observations : one sighting or several
@@ -70,7 +70,7 @@ class Inputs:
         """Whether there is all that a merge needs."""
         return self.ref is not None and self.mov is not None and bool(self.observations)
 
-    def same_pair(self, other: Inputs) -> bool:
+    def same_pair(self, other: MergeInputs) -> bool:
         """Whether these are the very maps and sightings of others."""
         mine, theirs = (self.ref, self.mov, self.observations), (other.ref, other.mov, other.observations)
         return all(a is b for a, b in zip(mine, theirs, strict=True))
@@ -123,6 +123,6 @@ class Inputs:
         return ""
 
     @staticmethod
-    def of(case: Case) -> Inputs:
+    def of(case: Case) -> MergeInputs:
         """The inputs of a case folder."""
-        return Inputs(case.ref, case.mov, case.observations, case.name, case.truth)
+        return MergeInputs(case.ref, case.mov, case.observations, case.name, case.truth)

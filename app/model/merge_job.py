@@ -16,7 +16,7 @@ Goal = Literal["merge", "candidates", "cause"]
 
 
 @dataclass(frozen=True, eq=False)
-class Job:
+class MergeJob:
     """One request: what to merge, how, how far, and how fast to tell it.
 
     goal  : the whole merge, or only up to the candidates (before the first merge, a moved slider

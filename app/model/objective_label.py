@@ -13,7 +13,7 @@ from algorithms.methods.baselines.phase_correlation import PhaseCorrelationConfi
 
 
 @dataclass(frozen=True)
-class Measure:
+class ObjectiveLabel:
     """Words for the value of a transform.
 
     name : in a sentence, and above a chart
@@ -37,20 +37,20 @@ class Measure:
         return f"{number} {self.unit}" if self.unit and number != "–" else number
 
 
-GAMMA = Measure("Γ", "Γ, eq. (17)", "")
-AGREEMENT = Measure("agreement", "agreement (m of wall)", "m")
+GAMMA = ObjectiveLabel("Γ", "Γ, eq. (17)", "")
+AGREEMENT = ObjectiveLabel("agreement", "agreement (m of wall)", "m")
 
 
-_SIMILARITY = Measure("similarity", "similarity (1 − MSE)", "")
+_SIMILARITY = ObjectiveLabel("similarity", "similarity (1 − MSE)", "")
 _OWN = {
-    FeatureConfig: Measure("agreeing matches", "matches that agree", ""),
+    FeatureConfig: ObjectiveLabel("agreeing matches", "matches that agree", ""),
     MseConfig: _SIMILARITY,
     PhaseCorrelationConfig: _SIMILARITY,
-    SmmConfig: Measure("acceptance index", "acceptance index of the search", ""),
+    SmmConfig: ObjectiveLabel("acceptance index", "acceptance index of the search", ""),
 }
 
 
-def measure_of(config: Any) -> Measure:
+def measure_of(config: Any) -> ObjectiveLabel:
     """What the method with this config maximises; one without an objective says nothing of it."""
     for kind, measure in _OWN.items():
         if isinstance(config, kind):

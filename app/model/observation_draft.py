@@ -14,7 +14,7 @@ Point = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Draft:
+class ObservationDraft:
     """An Observation of which parts may be missing; range and bearing follow what is placed.
 
     observer       : robot 1 in map 1
@@ -33,9 +33,9 @@ class Draft:
     bearing_back: float | None = None
 
     @staticmethod
-    def of(o: Observation) -> Draft:
+    def of(o: Observation) -> ObservationDraft:
         """The draft that makes just this observation."""
-        return Draft(
+        return ObservationDraft(
             o.observer,
             o.range,
             o.bearing,
@@ -79,19 +79,19 @@ class Draft:
             self.bearing_back,
         )
 
-    def stood(self, observer: Pose2) -> Draft:
+    def stood(self, observer: Pose2) -> ObservationDraft:
         """Robot 1 stood there; what it saw stays where it is in the map."""
         seen, moved = self.seen, replace(self, observer=observer)
         return moved if seen is None else moved.saw(seen)
 
-    def saw(self, point: Point) -> Draft:
+    def saw(self, point: Point) -> ObservationDraft:
         """Robot 1 saw robot 2 there, in map 1; it must have stood somewhere already."""
         assert self.observer is not None
         dx, dy = point[0] - self.observer.x, point[1] - self.observer.y
         bearing = wrap_angle(atan2(dy, dx) - self.observer.theta)
         return replace(self, range=hypot(dx, dy), bearing=bearing)
 
-    def typed(self, field: str, value: float) -> Draft:
+    def typed(self, field: str, value: float) -> ObservationDraft:
         """One number was typed; metres, radians. ``field`` as in ``observation_panel.fields_of``."""
         if self.observer is not None and field in ("x1", "y1", "turn1"):
             name = {"x1": "x", "y1": "y", "turn1": "theta"}[field]
@@ -102,6 +102,6 @@ class Draft:
         name = "heading" if field == "turn2" else field
         return replace(self, **{name: value})
 
-    def was(self, point: Point, heading: float | None) -> Draft:
+    def was(self, point: Point, heading: float | None) -> ObservationDraft:
         """Robot 2 was there, in map 2."""
         return replace(self, observed=point, heading=heading)

@@ -67,7 +67,7 @@ def dwell(step: Step, pace: float, again: bool) -> float:
     return pace * DWELL.get(type(step.detail), 0.0)
 
 
-class Waiting:
+class InterruptibleWait:
     """A wait that ends at once when ``cut`` is called from elsewhere."""
 
     def __init__(self) -> None:

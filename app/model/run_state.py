@@ -18,13 +18,13 @@ from algorithms.methods.steps import (
     Step,
     WeighedDetail,
 )
-from app.model.objective_label import Measure, measure_of
+from app.model.objective_label import ObjectiveLabel, measure_of
 
 D = TypeVar("D")
 
 
 @dataclass
-class Story:
+class RunState:
     """The state of a run as it is drawn. A picture that needs a detail asks with ``get``.
 
     config  : of the method that runs
@@ -68,7 +68,7 @@ class Story:
         return kind in self._newest
 
     @property
-    def measure(self) -> Measure:
+    def measure(self) -> ObjectiveLabel:
         """What is maximised."""
         return measure_of(self.config)
 

@@ -31,8 +31,8 @@ from algorithms.methods.steps import (
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.verdict.decision import NEXT_TO_NO_WALL, SAME_PLACE, Outcome, Verdict
 from algorithms.verdict.probability_model import OTHERS
-from app.model.objective_label import Measure
-from app.model.run_state import Story
+from app.model.objective_label import ObjectiveLabel
+from app.model.run_state import RunState
 
 # Share of the work done when a stage begins; refining and proving take what lies before the next.
 _SHARE: dict[type, float] = {
@@ -75,7 +75,7 @@ def typeset(text: str) -> str:
     return re.sub(r"(?<![\w.)\]-])-(?=\.?\d)", "−", text)
 
 
-def sentence(story: Story) -> str:
+def sentence(story: RunState) -> str:
     """What a run is doing right now."""
     detail, measure = story.last.detail if story.last else None, story.measure
     if isinstance(detail, ObservationDetail):
@@ -151,7 +151,7 @@ def fits_nowhere(state: ProofState) -> bool:
     return state.stopped is not None and not state.empty and state.ceiling <= 0
 
 
-def _proving(state: ProofState, measure: Measure) -> str:
+def _proving(state: ProofState, measure: ObjectiveLabel) -> str:
     blocks = f"{state.nodes:,} blocks bounded"
     if state.empty:
         return f"Proving: {blocks}, none of them agrees with every sighting."
@@ -160,7 +160,7 @@ def _proving(state: ProofState, measure: Measure) -> str:
     return f"Proving: {blocks}, nothing above {measure.text(state.ceiling)} is left."
 
 
-def proof_says(state: ProofState, measure: Measure) -> str:
+def proof_says(state: ProofState, measure: ObjectiveLabel) -> str:
     """What the picture of the proof means, in a line."""
     if state.empty:
         return "No transform agrees with every sighting: there is nothing to bound."
@@ -179,7 +179,7 @@ def proof_says(state: ProofState, measure: Measure) -> str:
     return f"{best}, and no other place has {state.floor / state.best_value:.0%} of it."
 
 
-def found_it(story: Story) -> str:
+def found_it(story: RunState) -> str:
     """Whether the optimiser had come to the proven optimum; empty for a method without a proof."""
     proven, answers = story.get(ProvenDetail), story.get(AnswersDetail)
     if proven is None or answers is None:
@@ -239,7 +239,7 @@ def likelihood_of_rival(result: MergeResult) -> float:
     return min(1.0 - verdict.probability, verdict.probability * (verdict.ambiguity or 0.0))
 
 
-def progress(story: Story) -> float:
+def progress(story: RunState) -> float:
     """Share of the run that is done, 0 … 1."""
     detail = story.last.detail if story.last else None
     share = _SHARE.get(type(detail), 0.0)

@@ -14,12 +14,12 @@ import viser
 from algorithms.common.errors import MapMergeError
 from algorithms.files.case_folder import Case
 from app.jobs import worker_pool as workers
-from app.jobs.runner import Asker
-from app.model.merge_job import Job
+from app.jobs.runner import RunCallbacks
+from app.model.merge_job import MergeJob
 from app.page.page import Page
 from app.system.logging_setup import facts
-from app.system.memory import Housekeeping
-from app.web.cell_quota import Budget
+from app.system.memory import MemoryCleanup
+from app.web.cell_quota import CellQuota
 from app.web.security.access_control import Access
 from app.web.session_store import SessionStore
 from app.web.viser_server import guarded_server
@@ -62,8 +62,8 @@ def make_server(
     camera.fov, camera.near, camera.far = radians(4), 10.0, 5000.0
     pages: dict[int, Page] = {}
     keep = SessionStore()
-    budget = Budget(make_room=keep.forget_all)
-    housekeeping = Housekeeping()
+    budget = CellQuota(make_room=keep.forget_all)
+    housekeeping = MemoryCleanup()
 
     @server.on_client_connect
     def _(client: viser.ClientHandle) -> None:
@@ -101,9 +101,11 @@ def warm_up() -> None:
     benches = [workers.COMMON.bench() for _ in range(WARM)]
     try:
         for bench in benches:  # each has a process of its own, as long as the others are there
-            for _ in bench.steps(Job(room, room, (seen,), None), Asker()):
+            for _ in bench.steps(MergeJob(room, room, (seen,), None), RunCallbacks()):
                 pass
-        for _ in Job(room, room, (seen,), None).run({}):  # here, too: for what a hand moves, and the lesson
+        for _ in MergeJob(room, room, (seen,), None).run(
+            {}
+        ):  # here, too: for what a hand moves, and the lesson
             pass
     except MapMergeError:
         log.debug("warming up ended early", exc_info=True)

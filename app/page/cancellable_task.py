@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import viser
 
 from app.system.cancellation import Cancelled, Check
-from app.web.download import TAKEAWAY
+from app.web.download import DOWNLOADS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -135,10 +135,10 @@ class DownloadTask:
         if not self._at_work.acquire(blocking=False):
             return  # a second press while it is being made
         try:
-            with TAKEAWAY.making() as begun, suppress(Cancelled):
+            with DOWNLOADS.making() as begun, suppress(Cancelled):
                 if begun:
                     with self._task(doing, aside=True) as check:
                         content = make(check)
-                    TAKEAWAY.send(self._client, name, content)
+                    DOWNLOADS.send(self._client, name, content)
         finally:
             self._at_work.release()

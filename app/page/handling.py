@@ -14,12 +14,12 @@ from algorithms.methods.manual_merge import Scales, known_answers, refine
 from algorithms.methods.steps import MergeResult, ObservationDetail, Step
 from algorithms.observations.observation import Observation
 from app.drawing.legend import legend
-from app.drawing.scene_layout import Layout
-from app.model.run_state import Story
+from app.drawing.scene_layout import SceneLayout
+from app.model.run_state import RunState
 from app.model.view_modes import MAP
-from app.page.editing.map_drag_controller import ByHand
-from app.page.editing.placement_controller import Placing
-from app.page.page_snapshot import Desk
+from app.page.editing.map_drag_controller import MapDragController
+from app.page.editing.placement_controller import PlacementController
+from app.page.page_snapshot import PageSnapshot
 from app.page.panels.result_panel import result_html
 from app.page.part import Part
 
@@ -27,14 +27,16 @@ from app.page.part import Part
 class Handling(Part):
     """The part of a Page that is done by hand."""
 
-    _method: Story | None = None  # of the last run whose answer was not made by hand
+    _method: RunState | None = None  # of the last run whose answer was not made by hand
     _refining: tuple[Scales, Pose2] | None = None  # where map 2 was when its refinement began
 
     def _handle_with(self, gui: viser.GuiApi) -> None:
         """Add both to the page."""
         both = self._turn, self.session.drawing
-        self._hand = ByHand(gui, self._channel, self._stage, self._maps, *both, self)
-        self._placing = Placing(self._observation, self._channel, self._stage, self._maps, *both, self)
+        self._hand = MapDragController(gui, self._channel, self._stage, self._maps, *both, self)
+        self._placing = PlacementController(
+            self._observation, self._channel, self._stage, self._maps, *both, self
+        )
 
     def _fade(self) -> None:
         """What was found is out of date."""
@@ -52,7 +54,7 @@ class Handling(Part):
         self.session.stop()
         self._hand.end()
 
-    def placing_begins(self, layout: Layout) -> None:
+    def placing_begins(self, layout: SceneLayout) -> None:
         """The maps are shown side by side, and stay so."""
         self._farewell()
         self._comparison.clear()
@@ -61,14 +63,14 @@ class Handling(Part):
             self._run.view = MAP
             self._turn_view()
         self._maps.load(replace(self._inputs, observations=()), layout, self._palette)
-        shown = {"frames": layout.frames(), "legend": legend(self._palette, MAP, Story())}
+        shown = {"frames": layout.frames(), "legend": legend(self._palette, MAP, RunState())}
         self._stage.hud(mood="idle", progress=None, readout="", **shown)
         self._stage.layer("readout", None)
 
     def observed(self, observations: tuple[Observation, ...]) -> None:
         """These are the observations now; what was found with others no longer counts."""
         self._inputs = replace(self._inputs, observations=observations)
-        self._result, self._story, self._method = None, Story(), None
+        self._result, self._story, self._method = None, RunState(), None
         self._merged = self._asked = False
         self._plots.clear()
         self._run.merge.disabled = not self._inputs.complete
@@ -143,7 +145,7 @@ class Handling(Part):
 
     def hand_taken(self, result: MergeResult) -> None:
         """This is to be the answer."""
-        story = Story(self._tuning.config)
+        story = RunState(self._tuning.config)
         for stage, detail in (
             ("observe", ObservationDetail(result.encounters)),
             ("fuse", result.fusion),
@@ -164,7 +166,7 @@ class Handling(Part):
             self._refining = scales, T_ref_mov
             self.session.request(job)
 
-    def _refined(self, story: Story, result: MergeResult) -> None:
+    def _refined(self, story: RunState, result: MergeResult) -> None:
         if self._refining is None:
             return
         self._plots.show(story, follow=False)
@@ -189,6 +191,6 @@ class Handling(Part):
         known = method if method is not None and method.config == self._tuning.config else None
         self._go_to(replace(self._desk(), outcome=known))
 
-    def _go_to(self, desk: Desk, label: str = "") -> None:
+    def _go_to(self, desk: PageSnapshot, label: str = "") -> None:
         self._timeline.note(desk, label)
         self._restore(desk)

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Protocol
 
 from app.drawing.palette import Palette
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 
 
 class PageHost(Protocol):
     """A page with maps on it."""
 
     @property
-    def inputs(self) -> Inputs:
+    def inputs(self) -> MergeInputs:
         """What is loaded."""
 
     @property

@@ -11,14 +11,14 @@ from algorithms.common.errors import MapMergeError
 from algorithms.methods.steps import AugmentDetail
 from app.drawing.draw_items import Item
 from app.drawing.legend import legend
-from app.drawing.scene_layout import Layout
-from app.model.merge_inputs import Files, Inputs
-from app.model.run_state import Story
+from app.drawing.scene_layout import SceneLayout
+from app.model.merge_inputs import Files, MergeInputs
+from app.model.run_state import RunState
 from app.model.view_modes import LESSON, MAP, MUSEUM
-from app.page.lesson.lesson_controller import Lesson
+from app.page.lesson.lesson_controller import LessonController
 from app.page.lesson.lesson_texts import lesson_folder, museum_folder
-from app.page.lesson.museum_controller import Museum
-from app.page.page_snapshot import Desk
+from app.page.lesson.museum_controller import MuseumController
+from app.page.page_snapshot import PageSnapshot
 from app.page.part import Part
 
 
@@ -27,8 +27,8 @@ class Learning(Part):
 
     def _learn_with(self, gui: viser.GuiApi, lesson: Path | None) -> None:
         """Add both to the page; ``lesson`` is the folder of its texts, None for those that come along."""
-        self._lesson = Lesson(self, gui, self._tuning, self._turn, lesson or lesson_folder())
-        self._museum = Museum(self, gui, self._turn, museum_folder())
+        self._lesson = LessonController(self, gui, self._tuning, self._turn, lesson or lesson_folder())
+        self._museum = MuseumController(self, gui, self._turn, museum_folder())
         self._channel.on("left", self._left)
 
     def _left(self) -> None:
@@ -51,7 +51,7 @@ class Learning(Part):
     # --- the lesson -------------------------------------------------------------------------------
 
     @property
-    def layout(self) -> Layout:
+    def layout(self) -> SceneLayout:
         """Where the maps lie in the scene."""
         return self._maps.layout
 
@@ -84,7 +84,7 @@ class Learning(Part):
         self._report(error)
 
     def present(
-        self, story: Story, says: str, ink: list[Item], turn: float | None, look: bool, busy: bool
+        self, story: RunState, says: str, ink: list[Item], turn: float | None, look: bool, busy: bool
     ) -> None:
         """Show a run on the map, as far as the story goes, and what the lesson draws over it."""
         with self.session.drawing, self._client.atomic():
@@ -106,7 +106,7 @@ class Learning(Part):
     # --- the museum -------------------------------------------------------------------------------
 
     @property
-    def desk(self) -> Desk | None:
+    def desk(self) -> PageSnapshot | None:
         """What is on the page, with what has come of it."""
         return self._timeline.desk
 
@@ -115,7 +115,7 @@ class Learning(Part):
         self._run.open(MUSEUM, open_)
         self._press()
 
-    def hang(self, inputs: Inputs, method: str, config: Any, label: str) -> None:
+    def hang(self, inputs: MergeInputs, method: str, config: Any, label: str) -> None:
         """Put an exhibit on the page, without merging it."""
         self.session.stop()
         self._lesson.shut()
@@ -132,7 +132,7 @@ class Learning(Part):
         self._run.restore(method, 0)
         self._merge()
 
-    def museum_left(self, desk: Desk | None) -> None:
+    def museum_left(self, desk: PageSnapshot | None) -> None:
         """Put back what was on the page before the visit."""
         if desk is not None:
             self._timeline.note(desk, "leave the museum")

@@ -17,41 +17,41 @@ from app.drawing.browser_messages import BrowserMessages
 from app.drawing.legend import legend
 from app.drawing.palette import LIGHT, Palette
 from app.drawing.scene.height_view import HeightsView
-from app.drawing.scene.map_comparison import MODES, Comparison
+from app.drawing.scene.map_comparison import MODES, MapComparison
 from app.drawing.scene.map_view import MapView
-from app.drawing.scene.swarm_view import SwarmSpaceView
+from app.drawing.scene.swarm_view import SwarmView
 from app.drawing.scene_layout import lay_out
 from app.jobs import worker_pool as workers
-from app.jobs.job_thread import Session
+from app.jobs.job_thread import JobThread
 from app.model import status_text as words
-from app.model.merge_inputs import Inputs
-from app.model.merge_job import Job
-from app.model.run_state import Story
+from app.model.merge_inputs import MergeInputs
+from app.model.merge_job import MergeJob
+from app.model.run_state import RunState
 from app.model.view_modes import MAP
 from app.page.cancellable_task import CancellableTask
 from app.page.editing.observation_panel import ObservationPanel
 from app.page.handling import Handling
 from app.page.learning import Learning
-from app.page.page_snapshot import Desk
-from app.page.panels.charts_panel import PlotDock
+from app.page.page_snapshot import PageSnapshot
+from app.page.panels.charts_panel import ChartsPanel
 from app.page.panels.export_panel import ExportPanel
 from app.page.panels.files_panel import FilesPanel
 from app.page.panels.result_panel import result_html
 from app.page.panels.run_panel import RunPanel, Wishes
-from app.page.panels.settings_panel import TuningPanel
+from app.page.panels.settings_panel import SettingsPanel
 from app.page.panels.what_if_panel import WhatIfPanel
 from app.page.research.other_result_controller import Researching
 from app.page.run_controller import Telling
-from app.page.undo_controller import Timeline
+from app.page.undo_controller import UndoController
 from app.page.undo_history import SavedTab
 from app.page.view_controller import Looking
-from app.page.zoom_controller import Closeness
-from app.web.browser_events import Channel
-from app.web.cell_quota import Budget
-from app.web.download import TAKEAWAY
+from app.page.zoom_controller import ZoomController
+from app.web.browser_events import BrowserEvents
+from app.web.cell_quota import CellQuota
+from app.web.download import DOWNLOADS
 from app.web.session_store import SessionStore
 from app.web.tab_messages import TabMessages
-from app.web.upload import Arrivals, Recipient
+from app.web.upload import Recipient, Uploads
 
 log = logging.getLogger(__name__)
 
@@ -66,20 +66,20 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         client: viser.ClientHandle,
         initial: Case | None,
         keep: SessionStore,
-        arrivals: Arrivals,
+        arrivals: Uploads,
         lesson: Path | None = None,
-        budget: Budget | None = None,
+        budget: CellQuota | None = None,
     ) -> None:
         self._client = client
         self._palette: Palette = LIGHT
         self._stage: BrowserMessages = TabMessages(client)
-        self._channel = Channel(client.gui, self._stage)
+        self._channel = BrowserEvents(client.gui, self._stage)
         self._maps = MapView(client, self._stage)
         self._heights = HeightsView(client, self._stage)
-        self._swarm = SwarmSpaceView(self._stage)
-        self._comparison = Comparison(self._stage, self._maps)
-        self._inputs = Inputs()
-        self._story = Story()
+        self._swarm = SwarmView(self._stage)
+        self._comparison = MapComparison(self._stage, self._maps)
+        self._inputs = MergeInputs()
+        self._story = RunState()
         self._notice: viser.NotificationHandle | None = None
         self._result: MergeResult | None = None  # of the last run that came to its end
         self._conflicts: Conflicts | None = None  # of this result
@@ -87,15 +87,15 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         self._merged = False  # from the first Merge on, a moved slider runs the whole method again
         self._asked = False  # whether anything was asked for at all
         self._keep, self._key, self._gone = keep, "", False
-        self._budget = budget or Budget()
+        self._budget = budget or CellQuota()
         self._turn = RLock()  # wishes come one after the other; taken before session.drawing
-        self.session = Session(self, workers.COMMON.bench())
+        self.session = JobThread(self, workers.COMMON.bench())
         self._channel.on("compare", self._compare, mode=MODES)
-        self._closer = Closeness(self._channel, self._stage, self._maps.ground, self.session.drawing)
+        self._closer = ZoomController(self._channel, self._stage, self._maps.ground, self.session.drawing)
         self._errand = CancellableTask(
             self._stage, self.session.drawing, lambda yes: self._run.stoppable("errand", yes)
         )
-        inputs = Inputs.of(initial) if initial else Inputs()
+        inputs = MergeInputs.of(initial) if initial else MergeInputs()
         self._build(inputs.name)
         self._arrivals = arrivals
         arrivals.welcome(
@@ -106,7 +106,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         self._channel.on("hello", lambda **who: self._greet(inputs, **who), key=str, again=bool)
         self._stage.flush()  # the page says hello when it has read where to
 
-    def _greet(self, initial: Inputs, key: str, again: bool) -> None:
+    def _greet(self, initial: MergeInputs, key: str, again: bool) -> None:
         """The page is there: what it left behind comes back; otherwise it begins."""
         with self._turn:
             if self._gone or self._key:  # a page says so once
@@ -170,19 +170,19 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         )
         self._files = FilesPanel(gui, self._load, self._report, chosen, self._save, self._turn, self._errand)
         self._observation = ObservationPanel(gui)
-        self._tuning = TuningPanel(gui, self._changed, self._report, self._turn)
+        self._tuning = SettingsPanel(gui, self._changed, self._report, self._turn)
         self._export = ExportPanel(client, self._errand)
         self._what_if = WhatIfPanel(gui, lambda: self._tuning.config.verdict)
         self._handle_with(gui)
-        self._timeline = Timeline(gui, self._channel, self._turn, self._restore)
-        self._plots = PlotDock(client, self._press)
+        self._timeline = UndoController(gui, self._channel, self._turn, self._restore)
+        self._plots = ChartsPanel(client, self._press)
         self._research_with(gui)
         client.scene.on_click()(self._read_out)
         self._channel.on("resized", self._forget_place)
 
     # --- what a person asks for -------------------------------------------------------------------
 
-    def _load(self, inputs: Inputs) -> None:
+    def _load(self, inputs: MergeInputs) -> None:
         """Show these inputs in place of everything there was."""
         self.session.stop()
         with self._turn:
@@ -194,11 +194,11 @@ class Page(Looking, Telling, Handling, Learning, Researching):
             if learning:
                 self._lesson.enter()
 
-    def _desk(self) -> Desk:
+    def _desk(self) -> PageSnapshot:
         """What is on the page, before anything has come of it."""
         tuning, goal = self._tuning, "merge" if self._merged else "candidates" if self._asked else None
         inputs, files, hand = self._inputs, self._files.files, self._hand.pose
-        return Desk(inputs, files, tuning.method, tuning.config, self._run.seed, goal, hand)
+        return PageSnapshot(inputs, files, tuning.method, tuning.config, self._run.seed, goal, hand)
 
     def _stop(self) -> None:
         """Leave what is read, or else what is run, or else what is on its way."""
@@ -212,9 +212,9 @@ class Page(Looking, Telling, Handling, Learning, Researching):
             self._timeline.leave()
 
     def _save(self, name: str, content: bytes) -> None:
-        TAKEAWAY.send(self._client, name, content)
+        DOWNLOADS.send(self._client, name, content)
 
-    def _restore(self, desk: Desk) -> None:
+    def _restore(self, desk: PageSnapshot) -> None:
         """Put a desk back: as it was, or worked out again where that has been let go of."""
         self.session.stop()
         self._lesson.shut()
@@ -246,7 +246,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         if placing and desk.goal is None:  # who takes a step back while placing goes on placing
             self._placing.begin()
 
-    def _show_inputs(self, inputs: Inputs) -> bool:
+    def _show_inputs(self, inputs: MergeInputs) -> bool:
         if self._gone:
             return False
         self.session.stop()  # a run of others may have been asked for while this waited for its turn
@@ -262,7 +262,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         self._placing.end()
         self._farewell()
         self._hand.panel.offer(inputs.complete)
-        self._inputs, self._result, self._story, self._method = inputs, None, Story(), None
+        self._inputs, self._result, self._story, self._method = inputs, None, RunState(), None
         self._weighed = None
         self._merged = self._asked = False
         self._observation.show(inputs)
@@ -297,11 +297,11 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         self._stage.flush()
         return True
 
-    def _job(self, **how: Any) -> Job | None:
+    def _job(self, **how: Any) -> MergeJob | None:
         i = self._inputs
         if i.ref is None or i.mov is None or not i.observations:
             return None
-        return Job(
+        return MergeJob(
             i.ref,
             i.mov,
             i.observations,

@@ -11,15 +11,15 @@ import numpy as np
 from algorithms.common.pose import Pose2
 from algorithms.methods.registry import METHODS
 from algorithms.methods.steps import MergeResult
-from app.model.merge_inputs import Files, Inputs
+from app.model.merge_inputs import Files, MergeInputs
 from app.model.merge_job import Goal
-from app.model.run_state import Story
+from app.model.run_state import RunState
 from app.model.settings import settings_of, text_for, value_at
-from app.page.research.other_result import Guest
+from app.page.research.other_result import OtherResult
 
 
 @dataclass(frozen=True, eq=False)
-class Desk:
+class PageSnapshot:
     """One state of the page; nothing in it is ever changed.
 
     files   : what the folder "Maps" says of where the inputs came from
@@ -30,15 +30,15 @@ class Desk:
     guest   : another method's answer that is looked at in its place
     """
 
-    inputs: Inputs
+    inputs: MergeInputs
     files: Files
     method: str
     config: Any
     seed: int
     goal: Goal | None = None
     hand: Pose2 | None = None
-    outcome: Story | None = field(default=None, repr=False)
-    guest: Guest | None = None
+    outcome: RunState | None = field(default=None, repr=False)
+    guest: OtherResult | None = None
 
     @property
     def held(self) -> bool:
@@ -50,11 +50,11 @@ class Desk:
         """The answer; None where there is none (yet)."""
         return self.outcome.get(MergeResult) if self.outcome is not None else None
 
-    def same_wish(self, other: Desk) -> bool:
+    def same_wish(self, other: PageSnapshot) -> bool:
         """Whether both ask for the same, whatever came of it."""
         return not change(self, other)[0] and self.goal == other.goal
 
-    def without_outcome(self) -> Desk:
+    def without_outcome(self) -> PageSnapshot:
         """The same, to be worked out again when it is needed: the same seed gives the same answer."""
         return replace(self, outcome=None)
 
@@ -70,17 +70,17 @@ class Desk:
             yield from (fusion.merged.cells, fusion.ref_cells, fusion.mov_cells)
 
 
-def weight(desk: Desk) -> dict[int, int]:
+def weight(desk: PageSnapshot) -> dict[int, int]:
     """Bytes by the identity of what holds them, so that what two desks share counts once."""
     return {id(held): held.nbytes if isinstance(held, np.ndarray) else len(held) for held in desk.arrays()}
 
 
-def first_label(desk: Desk) -> str:
+def first_label(desk: PageSnapshot) -> str:
     """What to call the desk that a tab begins with."""
     return f"load {desk.inputs.name}" if desk.inputs.name else "an empty page"
 
 
-def change(before: Desk, after: Desk) -> tuple[str, Hashable]:
+def change(before: PageSnapshot, after: PageSnapshot) -> tuple[str, Hashable]:
     """What a person did between two desks, and what to call doing more of the same; "" for nothing."""
     old, new = before.inputs, after.inputs
     if old is not new:

@@ -16,59 +16,59 @@ from algorithms.verdict.contradictions import Conflicts
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import Palette
 from app.drawing.scene.height_view import HeightsView
-from app.drawing.scene.map_comparison import Comparison
+from app.drawing.scene.map_comparison import MapComparison
 from app.drawing.scene.map_view import MapView
-from app.drawing.scene.swarm_view import SwarmSpaceView
-from app.jobs.job_thread import Session
-from app.model.merge_inputs import Inputs
-from app.model.merge_job import Job
-from app.model.run_state import Story
+from app.drawing.scene.swarm_view import SwarmView
+from app.jobs.job_thread import JobThread
+from app.model.merge_inputs import MergeInputs
+from app.model.merge_job import MergeJob
+from app.model.run_state import RunState
 from app.page.cancellable_task import CancellableTask
-from app.page.editing.map_drag_controller import ByHand
+from app.page.editing.map_drag_controller import MapDragController
 from app.page.editing.observation_panel import ObservationPanel
-from app.page.editing.placement_controller import Placing
-from app.page.lesson.lesson_controller import Lesson
-from app.page.lesson.museum_controller import Museum
-from app.page.page_snapshot import Desk
-from app.page.panels.charts_panel import PlotDock
+from app.page.editing.placement_controller import PlacementController
+from app.page.lesson.lesson_controller import LessonController
+from app.page.lesson.museum_controller import MuseumController
+from app.page.page_snapshot import PageSnapshot
+from app.page.panels.charts_panel import ChartsPanel
 from app.page.panels.export_panel import ExportPanel
 from app.page.panels.files_panel import FilesPanel
 from app.page.panels.run_panel import RunPanel
-from app.page.panels.settings_panel import TuningPanel
+from app.page.panels.settings_panel import SettingsPanel
 from app.page.panels.what_if_panel import WhatIfPanel
-from app.page.undo_controller import Timeline
-from app.web.browser_events import Channel
+from app.page.undo_controller import UndoController
+from app.web.browser_events import BrowserEvents
 
 
 class Part(ABC):
     """One concern of a Page, which is made of several: each is the others' only through these names."""
 
-    session: Session
+    session: JobThread
     _client: viser.ClientHandle
     _stage: BrowserMessages
     _maps: MapView
     _heights: HeightsView
-    _swarm: SwarmSpaceView
-    _plots: PlotDock
-    _comparison: Comparison
+    _swarm: SwarmView
+    _plots: ChartsPanel
+    _comparison: MapComparison
     _run: RunPanel
-    _tuning: TuningPanel
+    _tuning: SettingsPanel
     _export: ExportPanel
     _what_if: WhatIfPanel
-    _timeline: Timeline
-    _museum: Museum
+    _timeline: UndoController
+    _museum: MuseumController
     _palette: Palette
-    _inputs: Inputs
-    _story: Story
+    _inputs: MergeInputs
+    _story: RunState
     _result: MergeResult | None
     _config: Any
     _conflicts: Conflicts | None
-    _method: Story | None
-    _hand: ByHand
-    _placing: Placing
-    _channel: Channel
+    _method: RunState | None
+    _hand: MapDragController
+    _placing: PlacementController
+    _channel: BrowserEvents
     _observation: ObservationPanel
-    _lesson: Lesson
+    _lesson: LessonController
     _merged: bool
     _asked: bool
     _turn: RLock
@@ -77,7 +77,7 @@ class Part(ABC):
     _refining: tuple[Scales, Pose2] | None
 
     @property
-    def inputs(self) -> Inputs:
+    def inputs(self) -> MergeInputs:
         """What is loaded."""
         return self._inputs
 
@@ -112,23 +112,23 @@ class Part(ABC):
         """Say what the colours of the picture mean."""
 
     @abstractmethod
-    def _show_inputs(self, inputs: Inputs) -> bool:
+    def _show_inputs(self, inputs: MergeInputs) -> bool:
         """Show these inputs in place of everything there was."""
 
     @abstractmethod
-    def _desk(self) -> Desk:
+    def _desk(self) -> PageSnapshot:
         """What is on the page."""
 
     @abstractmethod
-    def _restore(self, desk: Desk) -> None:
+    def _restore(self, desk: PageSnapshot) -> None:
         """Put a desk back."""
 
     @abstractmethod
-    def _job(self, **how: Any) -> Job | None:
+    def _job(self, **how: Any) -> MergeJob | None:
         """What a run would do now."""
 
     @abstractmethod
-    def _answered(self, story: Story, result: MergeResult, config: Any, live: bool) -> None:
+    def _answered(self, story: RunState, result: MergeResult, config: Any, live: bool) -> None:
         """Show an answer."""
 
     @abstractmethod
@@ -152,7 +152,7 @@ class Part(ABC):
         """Merge what is loaded as it is set."""
 
     @abstractmethod
-    def _draw(self, story: Story, live: bool, look: bool = False) -> None:
+    def _draw(self, story: RunState, live: bool, look: bool = False) -> None:
         """Draw a story in the chosen view."""
 
     @abstractmethod
@@ -164,7 +164,7 @@ class Part(ABC):
         """Whoever else was looked at is not any more; whether there was anyone."""
 
     @abstractmethod
-    def _refined(self, story: Story, result: MergeResult) -> None:
+    def _refined(self, story: RunState, result: MergeResult) -> None:
         """What the hand had refined has come out."""
 
     @abstractmethod
@@ -172,7 +172,7 @@ class Part(ABC):
         """A setting, the method or the seed is another."""
 
     @abstractmethod
-    def _say(self, story: Story, result: MergeResult) -> None:
+    def _say(self, story: RunState, result: MergeResult) -> None:
         """Say in a sentence what has come out."""
 
     @abstractmethod

@@ -14,14 +14,14 @@ from algorithms.verdict.contradictions import Conflicts, find_conflicts
 from app.drawing.legend import in_hand, legend
 from app.jobs.worker_pool import WorkerDiedError
 from app.model import status_text as words
-from app.model.merge_inputs import Inputs
-from app.model.merge_job import Job
-from app.model.run_state import Story
+from app.model.merge_inputs import MergeInputs
+from app.model.merge_job import MergeJob
+from app.model.run_state import RunState
 from app.model.view_modes import HEIGHTS, MAP, SWARM
 from app.page.panels.html_widgets import box
 from app.page.panels.result_panel import result_html
 from app.page.part import Part
-from app.report.export import Harvest
+from app.report.export import ResultFiles
 from app.report.replay.make_replay import replay_of
 from app.web import callback_errors as mishap
 
@@ -29,11 +29,11 @@ from app.web import callback_errors as mishap
 class Telling(Part):
     """The part of a Page that listens to its session."""
 
-    _weighed: tuple[tuple[MergeResult, Inputs, Any], tuple[Conflicts, str]] | None = None
+    _weighed: tuple[tuple[MergeResult, MergeInputs, Any], tuple[Conflicts, str]] | None = None
 
     # --- what the session tells -------------------------------------------------------------------
 
-    def begun(self, job: Job) -> None:
+    def begun(self, job: MergeJob) -> None:
         """A run starts."""
         if job.goal == "cause":
             self._run.stoppable("run", True)
@@ -49,7 +49,7 @@ class Telling(Part):
         self._stage.hud(state="Starting.", mood="running", progress=0.0, readout="")
         self._stage.flush()
 
-    def show(self, job: Job, story: Story) -> None:
+    def show(self, job: MergeJob, story: RunState) -> None:
         """Draw the newest state."""
         if job.goal == "cause":
             self._seek(story)
@@ -65,7 +65,7 @@ class Telling(Part):
             self._stage.hud(state=words.sentence(story), mood="running", progress=words.progress(story))
             self._stage.flush()
 
-    def ending(self, job: Job, story: Story) -> None:
+    def ending(self, job: MergeJob, story: RunState) -> None:
         """What is to be said of an answer: with large maps it takes longer than to draw it."""
         result = story.get(MergeResult)
         if result is not None and job.steps is None:
@@ -79,7 +79,7 @@ class Telling(Part):
             self._weighed = of, (found, result_html(result, self._inputs, config, found))
         return self._weighed[1]
 
-    def waits(self, job: Job, before: int) -> None:
+    def waits(self, job: MergeJob, before: int) -> None:
         """Others are at work: other tabs' runs, or the end of a step of one that was left."""
         if job.goal == "cause":
             return
@@ -87,7 +87,7 @@ class Telling(Part):
         self._stage.hud(state=f"The processors are busy: {place}.", mood="running")
         self._stage.flush()
 
-    def ended(self, job: Job, story: Story) -> None:
+    def ended(self, job: MergeJob, story: RunState) -> None:
         """The run came to its goal."""
         i = self._inputs
         if job.ref is not i.ref or job.mov is not i.mov or job.observations != i.observations:
@@ -116,7 +116,7 @@ class Telling(Part):
 
     # --- after a refusal: a simple change under which the maps would agree? ---------------------------
 
-    def _seek(self, story: Story) -> None:
+    def _seek(self, story: RunState) -> None:
         """Tell below the verdict what is being tried."""
         tried, result = story.get(TriedDetail), self._result
         if tried is None or result is None:
@@ -137,14 +137,14 @@ class Telling(Part):
             if cause.hint:
                 story.tell(Step("explain", told, 0.0))
                 self._result = told
-                self._export.offer(Harvest(told, self._inputs, self._config))
+                self._export.offer(ResultFiles(told, self._inputs, self._config))
                 self._timeline.amend(story)
             self._stage.flush()
 
     def _tell_result(self, result: MergeResult) -> None:
         self._plots.tell(result_html(result, self._inputs, self._config, self._conflicts))
 
-    def _answered(self, story: Story, result: MergeResult, config: Any, live: bool) -> None:
+    def _answered(self, story: RunState, result: MergeResult, config: Any, live: bool) -> None:
         """Show an answer and everything that led to it."""
         self._farewell()
         self._story, self._result, self._config = story, result, config
@@ -153,13 +153,13 @@ class Telling(Part):
         self._plots.show(story, follow=True)
         self._conflicts, told = self._weigh(result, config)
         self._plots.tell(told)
-        self._export.offer(Harvest(result, self._inputs, config))
+        self._export.offer(ResultFiles(result, self._inputs, config))
         self._what_if.offer(result)
         i = self._inputs
         if result.method == BY_HAND:  # there was no run that could be told again
             self._export.replay.visible(False)
         elif i.ref is not None and i.mov is not None:
-            job = Job(i.ref, i.mov, i.observations, config, result.method, result.seed)
+            job = MergeJob(i.ref, i.mov, i.observations, config, result.method, result.seed)
             self._export.replay.offer(i.name, partial(replay_of, job, self.session.told_again, i))
         self._draw(story, live=live)
         self._comparison.offer(self._conflicts, self._palette)
@@ -167,7 +167,7 @@ class Telling(Part):
         self._say(story, result)
         self._museum.told(self._inputs, result.method, config, result)
 
-    def stopped(self, job: Job, story: Story) -> None:
+    def stopped(self, job: MergeJob, story: RunState) -> None:
         """Someone pressed Stop."""
         self._run.stoppable("run", False)
         if job.goal == "cause":
@@ -182,7 +182,7 @@ class Telling(Part):
         self._stage.hud(state=f"Stopped, unfinished. {words.sentence(story)}", mood="stopped", progress=None)
         self._stage.flush()
 
-    def failed(self, job: Job, story: Story, error: Exception) -> None:
+    def failed(self, job: MergeJob, story: RunState, error: Exception) -> None:
         """The run could not go on."""
         self._run.stoppable("run", False)
         if job.goal == "cause":  # the verdict stands without it
@@ -201,7 +201,7 @@ class Telling(Part):
         self._stage.hud(state=text, mood="failed", progress=None)
         self._stage.flush()
 
-    def _unanswered(self, story: Story, refusal: NoAnswerError) -> None:
+    def _unanswered(self, story: RunState, refusal: NoAnswerError) -> None:
         """The method found no transform: the maps go back to where they were, with the reason."""
         self._story, self._method = story, None
         self._result = self._conflicts = self._config = None
@@ -218,7 +218,7 @@ class Telling(Part):
 
     # --- drawing ----------------------------------------------------------------------------------
 
-    def _draw(self, story: Story, live: bool, look: bool = False) -> None:
+    def _draw(self, story: RunState, live: bool, look: bool = False) -> None:
         view, camera = self._run.view, self._run.follow
         if look and view == MAP and (self._placing.active or self._hand.active):
             self._stage.look_down(self._maps.extent())
@@ -242,7 +242,7 @@ class Telling(Part):
         usual = legend(self._palette, view, self._story, mode=mode)
         self._stage.hud(legend=in_hand(self._palette) if held else usual)
 
-    def _say(self, story: Story, result: MergeResult) -> None:
+    def _say(self, story: RunState, result: MergeResult) -> None:
         """The verdict; over the swarm whether it found the proven optimum, and the verdict's first word."""
         found, reason = words.found_it(story), result.verdict.reason
         if result.method == BY_HAND:
@@ -250,7 +250,7 @@ class Telling(Part):
         brief = f"{found} {reason.split(':')[0]}."
         self._stage.hud(state=brief if found and self._run.view == SWARM else reason)
 
-    def _maps_preview(self, job: Job) -> None:
+    def _maps_preview(self, job: MergeJob) -> None:
         if self._run.view == MAP:
             self._maps.preview(self._story, job.config)
             self._stage.hud(legend=legend(self._palette, MAP, self._story, preview=True))

@@ -8,14 +8,14 @@ from threading import RLock
 
 import viser
 
-from app.model.run_state import Story
-from app.page.page_snapshot import Desk, change, first_label
+from app.model.run_state import RunState
+from app.page.page_snapshot import PageSnapshot, change, first_label
 from app.page.panels.history_panel import HistoryPanel
-from app.page.undo_history import Entry, History
-from app.web.browser_events import Channel
+from app.page.undo_history import UndoHistory, UndoStep
+from app.web.browser_events import BrowserEvents
 
 
-class Timeline:
+class UndoController:
     """Keeps the history and its folder.
 
     turn    : held while a person's wish is carried out, so that wishes come one after the other
@@ -23,28 +23,28 @@ class Timeline:
     """
 
     def __init__(
-        self, gui: viser.GuiApi, channel: Channel, turn: RLock, restore: Callable[[Desk], None]
+        self, gui: viser.GuiApi, channel: BrowserEvents, turn: RLock, restore: Callable[[PageSnapshot], None]
     ) -> None:
         self._turn, self._restore = turn, restore
         self._panel = HistoryPanel(gui)
-        self.history: History | None = None  # before anything was on the page
+        self.history: UndoHistory | None = None  # before anything was on the page
         channel.on("step", self.step, by=int)
         channel.on("go", self.go, to=int)
 
-    def resume(self, history: History) -> None:
+    def resume(self, history: UndoHistory) -> None:
         """Go on where an earlier tab was."""
         with self._turn:
             self.history = history
             self._restore(history.desk)
             self._panel.show(history)
 
-    def note(self, desk: Desk, label: str = "") -> bool:
+    def note(self, desk: PageSnapshot, label: str = "") -> bool:
         """Write down the desk after a wish; whether there is anything new about it.
 
         label : what was done; otherwise it is told by what has changed
         """
         if self.history is None:
-            self.history = History(Entry(label or first_label(desk), desk))
+            self.history = UndoHistory(UndoStep(label or first_label(desk), desk))
         else:
             found, kind = change(self.history.desk, desk)
             if not (found or label):
@@ -53,7 +53,7 @@ class Timeline:
         self._panel.show(self.history)
         return True
 
-    def amend(self, outcome: Story) -> None:
+    def amend(self, outcome: RunState) -> None:
         """What was asked for has come out."""
         if self.history is not None:
             self.history.amend(replace(self.history.desk, outcome=outcome))
@@ -66,7 +66,7 @@ class Timeline:
             self.history.amend(replace(desk, goal=None))
 
     @property
-    def desk(self) -> Desk | None:
+    def desk(self) -> PageSnapshot | None:
         """The desk at hand."""
         return None if self.history is None else self.history.desk
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from time import monotonic
 from typing import Any
 
-from app.page.page_snapshot import Desk, weight
+from app.page.page_snapshot import PageSnapshot, weight
 
 MOST = 80  # entries; the oldest are forgotten
 MOST_BYTES = 300_000_000  # that all of them hold on to, what they share counted once
@@ -15,7 +15,7 @@ PAUSE = 1.2  # seconds; a slider that is moved on within them makes one entry, n
 
 
 @dataclass(frozen=True, eq=False)
-class Entry:
+class UndoStep:
     """A desk and what was done to come to it.
 
     kind : what doing more of the same is called; None for a deed that stands alone
@@ -23,49 +23,49 @@ class Entry:
     """
 
     label: str
-    desk: Desk
+    desk: PageSnapshot
     kind: Hashable = None
     at: float = 0.0
 
 
-class History:
+class UndoHistory:
     """Entries in their order and the one at hand. A new one forgets those that were undone."""
 
-    def __init__(self, first: Entry, most: int = MOST, most_bytes: int = MOST_BYTES) -> None:
+    def __init__(self, first: UndoStep, most: int = MOST, most_bytes: int = MOST_BYTES) -> None:
         self._entries = [first]
         self._most, self._most_bytes = most, most_bytes
         self._moving = False  # whether the entry at hand may still take in more of the same
         self.position = 0
 
     @property
-    def entries(self) -> tuple[Entry, ...]:
+    def entries(self) -> tuple[UndoStep, ...]:
         """All of them, oldest first."""
         return tuple(self._entries)
 
     @property
-    def desk(self) -> Desk:
+    def desk(self) -> PageSnapshot:
         """The desk at hand."""
         return self._entries[self.position].desk
 
-    def record(self, label: str, desk: Desk, kind: Hashable = None, now: float | None = None) -> None:
+    def record(self, label: str, desk: PageSnapshot, kind: Hashable = None, now: float | None = None) -> None:
         """A person did something: this is the desk since then."""
         now = monotonic() if now is None else now
         del self._entries[self.position + 1 :]
         last = self._entries[-1]
         if self._moving and kind is not None and kind == last.kind and now - last.at <= PAUSE:
             label = _joined(last.label, label)
-            self._entries[-1] = Entry(label, desk, kind, now)
+            self._entries[-1] = UndoStep(label, desk, kind, now)
         else:
-            self._entries.append(Entry(label, desk, kind, now))
+            self._entries.append(UndoStep(label, desk, kind, now))
         self.position, self._moving = len(self._entries) - 1, True
         self._trim()
 
-    def amend(self, desk: Desk) -> None:
+    def amend(self, desk: PageSnapshot) -> None:
         """What was asked for at the entry at hand has come out."""
         self._entries[self.position] = replace(self._entries[self.position], desk=desk)
         self._trim()
 
-    def go(self, position: int) -> Desk | None:
+    def go(self, position: int) -> PageSnapshot | None:
         """Go to an entry; None where there is none, or it is the one at hand."""
         if position == self.position or not 0 <= position < len(self._entries):
             return None
@@ -102,7 +102,7 @@ class History:
 class SavedTab:
     """What a tab leaves behind: where it has been, how it was looked at, and how fast."""
 
-    history: History
+    history: UndoHistory
     dark: bool = False
     speed: str = ""
     research: tuple[Any, ...] = ()  # what each of its tabs had found

@@ -6,19 +6,21 @@ from threading import RLock
 
 from algorithms.common.pose import Pose2
 from app.drawing.browser_messages import BrowserMessages
-from app.drawing.scene.map_layers import Ground
-from app.drawing.scene.zoom_crop import View
-from app.jobs.latest_request import Newest
-from app.web.browser_events import Channel, Numbers
+from app.drawing.scene.map_layers import MapLayers
+from app.drawing.scene.zoom_crop import CameraView
+from app.jobs.latest_request import LatestRequest
+from app.web.browser_events import BrowserEvents, Numbers
 
 
-class Closeness:
+class ZoomController:
     """Of one tab: follows its camera. The page tells where it rests, and which part of map 2 is there."""
 
-    def __init__(self, channel: Channel, stage: BrowserMessages, ground: Ground, drawing: RLock) -> None:
+    def __init__(
+        self, channel: BrowserEvents, stage: BrowserMessages, ground: MapLayers, drawing: RLock
+    ) -> None:
         self._stage, self._ground, self._drawing = stage, ground, drawing
-        self._view: View | None = None
-        self._work = Newest(self._sharpen, "mapmeld-closer")
+        self._view: CameraView | None = None
+        self._work = LatestRequest(self._sharpen, "mapmeld-closer")
         ground.changed = self._again
         seen = {"box": Numbers(4, 4), "mov": Numbers(3, 3), "density": float}
         channel.on("look", self._look, latest=True, **seen)
@@ -30,14 +32,14 @@ class Closeness:
     def _look(self, box: list[float], mov: list[float], density: float) -> None:
         x0, y0, x1, y1 = box
         if x0 < x1 and y0 < y1 and density > 0:
-            self._view = View((x0, y0, x1, y1), Pose2(*mov), density)
+            self._view = CameraView((x0, y0, x1, y1), Pose2(*mov), density)
             self._again()
 
     def _again(self) -> None:
         if self._view is not None:
             self._work.ask(self._view)
 
-    def _sharpen(self, view: View) -> None:
+    def _sharpen(self, view: CameraView) -> None:
         with self._drawing:
             lacking = self._ground.closer(view)
         if not lacking:

@@ -10,7 +10,7 @@ from typing import Any
 
 from algorithms.files.case_folder import OBSERVATION_FILE, observations_to_bytes
 from algorithms.methods.steps import MergeResult
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.report.result_files import (
     MERGED_FILES,
     OVERLAY_FILE,
@@ -30,14 +30,14 @@ ALONE = (PAGE_FILE, *reversed(MERGED_FILES), TRANSFORM_FILE, OVERLAY_FILE, REPOR
 
 
 @dataclass(frozen=True, eq=False)
-class Harvest:
+class ResultFiles:
     """A result with what it was made from; its files are made when they are first asked for.
 
     config : the settings that were used
     """
 
     result: MergeResult
-    inputs: Inputs
+    inputs: MergeInputs
     config: Any
     _made: dict[str, bytes] = field(default_factory=dict, init=False)
 

@@ -17,7 +17,7 @@ from app.drawing.svg.verdict_bars import bars
 from app.model import chart_data as charts
 from app.model import status_text as words
 from app.model.contradiction_text import MOST_PLACES, signed, summary, whose
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.model.objective_label import measure_of
 from app.model.settings import Setting, settings_of, value_at, word_for
 from app.model.status_text import typeset
@@ -40,7 +40,7 @@ STRONG = {
 
 def report_page(
     result: MergeResult,
-    inputs: Inputs,
+    inputs: MergeInputs,
     config: Any,
     report: Mapping[str, Any],
     check: Check = unwatched,
@@ -80,7 +80,7 @@ def report_page(
 # --- parts ----------------------------------------------------------------------------------------
 
 
-def _verdict(result: MergeResult, inputs: Inputs) -> str:
+def _verdict(result: MergeResult, inputs: MergeInputs) -> str:
     verdict, T = result.verdict, result.T_ref_mov
     then = words.remedy(result)
     stop, reason = STRONG.get(verdict.outcome, ""), verdict.reason
@@ -107,7 +107,7 @@ def _bare(reason: str) -> str:
     return rest[:1].upper() + rest[1:]
 
 
-def _pictures(result: MergeResult, inputs: Inputs, found: Conflicts, check: Check) -> str:
+def _pictures(result: MergeResult, inputs: MergeInputs, found: Conflicts, check: Check) -> str:
     figures = []
     check(0.3)
     if inputs.ref is not None and inputs.mov is not None:
@@ -188,7 +188,7 @@ def _proof(result: MergeResult, config: Any) -> str:
     )
 
 
-def _seen(inputs: Inputs) -> list[str]:
+def _seen(inputs: MergeInputs) -> list[str]:
     count = len(inputs.observations)
     said = "One sighting." if count == 1 else f"{count} sightings."
     text = observations_to_bytes(inputs.observations).decode()

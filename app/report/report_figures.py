@@ -20,11 +20,11 @@ from algorithms.verdict.contradictions import Conflicts
 from app.drawing.palette import LIGHT, Rgb, css
 from app.drawing.scene_layout import Rect, known_corners, rect_of
 from app.drawing.svg.map_plot import robot, scale_bar, scene
-from app.drawing.svg.map_raster import Pixels, View, draw_map
-from app.drawing.svg.svg_canvas import Plot, Sheet, ticks
+from app.drawing.svg.map_raster import Pixels, RasterView, draw_map
+from app.drawing.svg.svg_canvas import Plot, SvgCanvas, ticks
 from app.model import chart_data as charts
 from app.model.contradiction_text import MOST_PLACES
-from app.model.objective_label import Measure
+from app.model.objective_label import ObjectiveLabel
 
 FULL = 760.0  # width of a picture of the report; two stand side by side in it
 PAIR, BETWEEN = 372.0, 16.0
@@ -41,7 +41,7 @@ def sources(ref: GridMap, mov: GridMap, seen: Sequence[Observation], met: Sequen
     ):
         views.append(_fitted(np.vstack([known_corners(grid), *more]), PAIR, 170.0, 420.0))
     high = max(high for _, high in views)
-    sheet = Sheet(high + 22, FULL)
+    sheet = SvgCanvas(high + 22, FULL)
     colours, names = (
         (LIGHT.ref, LIGHT.mov),
         ("map 1, of the robot that saw", "map 2, of the robot that was seen"),
@@ -49,7 +49,7 @@ def sources(ref: GridMap, mov: GridMap, seen: Sequence[Observation], met: Sequen
     for k, grid in enumerate((ref, mov)):
         x = k * (PAIR + BETWEEN)
         rect = _widened(views[k][0], PAIR / high)
-        view = View(rect, int(FINE * PAIR), int(FINE * high))
+        view = RasterView(rect, int(FINE * PAIR), int(FINE * high))
         plot = scene(sheet, x, 20, PAIR, high, view)
         sheet.text(x, 12, names[k], 12, colour=colours[k], bold=True)
         plot.image(draw_map(view, LIGHT, grid, colours[k]))
@@ -122,12 +122,12 @@ def difference(result: MergeResult, found: Conflicts) -> str:
     return _finish(plot, (*chips, ("other walls", FAINT)), "Where the maps contradict each other")
 
 
-def proof(state: ProofState, measure: Measure) -> str:
+def proof(state: ProofState, measure: ObjectiveLabel) -> str:
     """What is known of every turn of the circle: no transform at that turn is better than its ceiling."""
     finite = state.ceilings[np.isfinite(state.ceilings)]
     low, high = charts.proof_range(state, float(finite.max()) if len(finite) else 0.0)
     x, ceiling, met, floor, best, rivals = charts.proof(state, high)
-    sheet = Sheet(252, FULL)
+    sheet = SvgCanvas(252, FULL)
     plot = Plot(sheet, 50, 8, FULL - 66, 180, (-180.0, 180.0), (low, high))
     plot.curve(x, ceiling, css(LIGHT.margin), 1.5, fill=True)
     plot.curve(x, met, css(LIGHT.particle), 1, fill=True)
@@ -154,7 +154,7 @@ def proof(state: ProofState, measure: Measure) -> str:
 class _Raster:
     """Pixels of a view, painted by masks of a grid's cells; no cell is lost where a pixel holds many."""
 
-    def __init__(self, view: View, grid: GridMap) -> None:
+    def __init__(self, view: RasterView, grid: GridMap) -> None:
         self._view, self._grid = view, grid
         at = np.floor(grid.grid_coordinates(view.places())).astype(np.intp)
         self._inside = np.all((at >= 0) & (at < (grid.width, grid.height)), axis=1)
@@ -174,8 +174,8 @@ class _Raster:
 
 def _merged_plot(fusion: Fusion) -> tuple[Plot, _Raster]:
     rect, high = _fitted(known_corners(fusion.merged), FULL, 260.0, 620.0)
-    view = View(_widened(rect, FULL / high), int(FINE * FULL), int(FINE * high))
-    return scene(Sheet(high + 24, FULL), 0, 0, FULL, high, view), _Raster(view, fusion.merged)
+    view = RasterView(_widened(rect, FULL / high), int(FINE * FULL), int(FINE * high))
+    return scene(SvgCanvas(high + 24, FULL), 0, 0, FULL, high, view), _Raster(view, fusion.merged)
 
 
 def _finish(plot: Plot, chips: Sequence[tuple[str, Rgb]], title: str) -> str:

@@ -21,7 +21,7 @@ from algorithms.verdict.performance_index import performance_index
 from algorithms.verdict.ranking import Weighed
 from app.drawing import grid_pixels as render
 from app.drawing.palette import LIGHT
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.report.html_report import report_page
 from app.report.ros_transform import transform_yaml
 from app.system.cancellation import Check, unwatched
@@ -170,7 +170,7 @@ def overlay_png(result: MergeResult) -> bytes:
 
 def result_files(
     result: MergeResult,
-    inputs: Inputs,
+    inputs: MergeInputs,
     config: Any,
     report: Mapping[str, Any],
     with_merged: bool,

@@ -14,7 +14,7 @@ from algorithms.methods.steps import MergeResult
 from algorithms.observations.observation import Encounter, Observation
 from algorithms.verdict.performance_index import performance_index
 from app.model import status_text as words
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.model.objective_label import measure_of
 
 STAGES = {
@@ -36,7 +36,7 @@ def _share(index: float | None) -> str:
     return "–" if index is None else f"{index:.1%}"
 
 
-def numbers(result: MergeResult, inputs: Inputs, config: Any = None) -> list[tuple[str, ...]]:
+def numbers(result: MergeResult, inputs: MergeInputs, config: Any = None) -> list[tuple[str, ...]]:
     """The transform with its standard deviations, its value, and the figures of merit."""
     T, verdict = result.T_ref_mov, result.verdict
     at_robot, turn = _deviations(result)

@@ -26,7 +26,7 @@ def hide(word: str) -> None:
         _hidden.add(word)
 
 
-class Lines(logging.Formatter):
+class JsonFormatter(logging.Formatter):
     """A record as one line: when, level, where, what, and the facts that ``extra={"facts": ...}`` gave."""
 
     def format(self, record: logging.LogRecord) -> str:
@@ -46,7 +46,7 @@ class Lines(logging.Formatter):
         return _TOKEN.sub(r"\1…", text)
 
 
-class Seldom(logging.Filter):
+class RepeatFilter(logging.Filter):
     """Lets through the same words some times a minute: what a stranger can cause must not fill a disk.
 
     Warnings and worse; what ``--verbose`` tells of is told in full.
@@ -99,8 +99,8 @@ def quiet_handshakes() -> None:
 def start(verbose: bool) -> None:
     """Log to stderr from now on: what went wrong, and with ``verbose`` who came and what was done."""
     handler = logging.StreamHandler()
-    handler.setFormatter(Lines())
-    handler.addFilter(Seldom())
+    handler.setFormatter(JsonFormatter())
+    handler.addFilter(RepeatFilter())
     logging.basicConfig(level=QUIET, handlers=[handler], force=True)
     logging.getLogger("app").setLevel(VERBOSE if verbose else QUIET)
 

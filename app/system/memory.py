@@ -34,7 +34,7 @@ def give_back() -> None:
         ctypes.CDLL(None).malloc_trim(0)
 
 
-class Housekeeping:
+class MemoryCleanup:
     """Gives memory back a little later, once for all who ask meanwhile."""
 
     def __init__(self) -> None:

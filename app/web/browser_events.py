@@ -71,7 +71,7 @@ def checked(value: Any, kind: Kind) -> Any:
     raise ValueError(f"not {kind.__name__}")
 
 
-class Channel:
+class BrowserEvents:
     """Calls back in the order of the messages, one at a time, in a thread of its own."""
 
     def __init__(self, gui: viser.GuiApi, stage: BrowserMessages) -> None:

@@ -12,7 +12,7 @@ from algorithms.common.errors import TooLargeError
 MOST_CELLS = 200_000_000
 
 
-class Budget:
+class CellQuota:
     """Cells that are spoken for, by who holds them."""
 
     def __init__(self, most: int = MOST_CELLS, make_room: Callable[[], None] = lambda: None) -> None:

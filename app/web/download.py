@@ -12,7 +12,7 @@ import viser
 PATIENCE = 15.0  # seconds; who ends a server does not wait for ever
 
 
-class Takeaway:
+class Downloads:
     """What is being made, and what has been made and not been taken yet."""
 
     def __init__(self) -> None:
@@ -57,4 +57,4 @@ def _waits(client: viser.ClientHandle) -> bool:
     return bool(buffer.message_from_id) and not buffer.done
 
 
-TAKEAWAY = Takeaway()
+DOWNLOADS = Downloads()

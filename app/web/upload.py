@@ -25,7 +25,7 @@ from viser._gui_handles import GuiUploadButtonHandle
 from websockets.exceptions import ConnectionClosed
 
 from algorithms.common.errors import InputFileError
-from app.web.security.message_filter import Gate, usable
+from app.web.security.message_filter import MessageFilter, usable
 
 log = logging.getLogger(__name__)
 
@@ -87,10 +87,10 @@ class Arrival:
         return self.gui._current_file_upload_states.pop(self.id, None) is not None
 
 
-class Arrivals:
+class Uploads:
     """All of a server."""
 
-    def __init__(self, gate: Gate, tabs: Callable[[], dict[int, viser.ClientHandle]]) -> None:
+    def __init__(self, gate: MessageFilter, tabs: Callable[[], dict[int, viser.ClientHandle]]) -> None:
         """tabs : those that are open, by their number"""
         self._gate, self._tabs = gate, tabs
         self._recipients: dict[int, Recipient] = {}

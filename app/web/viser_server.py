@@ -26,17 +26,17 @@ from websockets.http11 import Response
 from app.system.logging_setup import quiet_handshakes
 from app.web.callback_errors import watched
 from app.web.index_page import served
-from app.web.security.access_control import HEADERS, PAGE_POLICY, Access, Answer, Asked
+from app.web.security.access_control import HEADERS, PAGE_POLICY, Access, HttpReply, HttpRequest
 from app.web.security.frame_limit import bounded
-from app.web.security.message_filter import Gate
-from app.web.upload import MOST, PATH, Arrivals
+from app.web.security.message_filter import MessageFilter
+from app.web.upload import MOST, PATH, Uploads
 
 log = logging.getLogger(__name__)
 
 SPEAKS = f"viser-v{viser.__version__}"
-TOO_MANY = Answer(503, "too many tabs are open here; close one, and reload")
-NOT_FOUND = Answer(404, "there is no such page here")
-NO_REQUEST = Answer(400, "this is no request of the page")
+TOO_MANY = HttpReply(503, "too many tabs are open here; close one, and reload")
+NOT_FOUND = HttpReply(404, "there is no such page here")
+NO_REQUEST = HttpReply(400, "this is no request of the page")
 
 
 def guarded_server(host: str, port: int, access: Access, most: int) -> viser.ViserServer:
@@ -51,16 +51,16 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
     # viser prints what it thinks of, words of strangers among them, in the loop that serves everybody:
     # where nobody reads what is printed, that loop waits for ever
     rich.reconfigure(quiet=True)
-    gate = Gate()
+    gate = MessageFilter()
     real_serve = websockets.asyncio.server.serve
     live: set[Any] = set()
     files: set[Any] = set()  # connections that bring one
-    arrivals = Arrivals(gate, lambda: server.get_clients())
+    arrivals = Uploads(gate, lambda: server.get_clients())
 
     def serve(handler: Any, at: str, on: int, *, process_request: Callable[..., Any], **options: Any) -> Any:
         async def ask(connection: Any, request: Any) -> Any:
             try:
-                asked = Asked.of(request.path, request.headers.raw_items())
+                asked = HttpRequest.of(request.path, request.headers.raw_items())
                 answer = access.answer(asked)
                 if answer is None and asked.upgrade and len(files if asked.path == PATH else live) >= most:
                     answer = TOO_MANY
@@ -121,7 +121,7 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
     return server
 
 
-def _response(answer: Answer) -> Response:
+def _response(answer: HttpReply) -> Response:
     body = answer.body.encode()
     kind = "text/html" if answer.body.startswith("<") else "text/plain"
     told = {"Content-Type": f"{kind}; charset=utf-8", "Content-Length": str(len(body))}

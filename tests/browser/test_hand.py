@@ -13,7 +13,7 @@ from algorithms.files.case_folder import Case, read_observations
 from algorithms.observations.observation import encounter
 from app.drawing.scene_layout import lay_out
 from app.page.application import make_server
-from app.web.browser_events import Channel, Numbers
+from app.web.browser_events import BrowserEvents, Numbers
 from app.web.security.access_control import Access
 from app.web.tab_messages import TabMessages
 from app.web.viser_server import guarded_server
@@ -32,7 +32,7 @@ def test_everything_the_page_tells_arrives_in_order(browser):
         @server.on_client_connect
         def _(client) -> None:
             stage = TabMessages(client)
-            Channel(client.gui, stage).on("count", lambda at: told.append(at), at=Numbers(2, 2))
+            BrowserEvents(client.gui, stage).on("count", lambda at: told.append(at), at=Numbers(2, 2))
             stage.flush()
 
         page = context.new_page()

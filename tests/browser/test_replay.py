@@ -13,9 +13,9 @@ from playwright.sync_api import Browser, Page
 from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS, run
 from app.drawing.palette import DARK, LIGHT
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.report.replay.html_page import replay_html
-from app.report.replay.metadata import About
+from app.report.replay.metadata import ReplayMetadata
 from app.report.replay.recorder import record
 
 pytestmark = pytest.mark.browser
@@ -75,9 +75,11 @@ class Replay:
 
 def page_of(case: Case, path: Path, name: str) -> Path:
     config = METHODS["spectra-proven"].defaults
-    inputs = replace(Inputs.of(case), name=name)
+    inputs = replace(MergeInputs.of(case), name=name)
     steps = run("spectra-proven", case.ref, case.mov, case.observations, config)
-    path.write_bytes(replay_html(record(steps, inputs, config), About(inputs, "spectra-proven", config, 0)))
+    path.write_bytes(
+        replay_html(record(steps, inputs, config), ReplayMetadata(inputs, "spectra-proven", config, 0))
+    )
     return path
 
 
@@ -129,7 +131,7 @@ def test_a_replay_is_the_right_way_up_light_and_dark_and_its_names_are_words(bro
     replay = Replay(browser, page_of(small_case, tmp_path / "r.html", nasty))
     assert nasty in replay.page.locator(".title").inner_text()
     assert replay.page.evaluate("() => window.hit") is None
-    grid, at = small_case.ref, Inputs.of(small_case).at.x_ref
+    grid, at = small_case.ref, MergeInputs.of(small_case).at.x_ref
     rows, cols = np.nonzero(grid.occupied)
     inner = [k for k in range(len(rows)) if grid.occupied[rows[k] - 1 : rows[k] + 2, cols[k]].all()]
     wall = (grid.centres(rows[inner[:1]], cols[inner[:1]])[0] - at).tolist()

@@ -68,14 +68,14 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     from app.cli.setting_flags import case_folder
     from app.evaluation.comparison_files import NOTES, remarks, table_rows
     from app.evaluation.csv_tables import aligned
-    from app.evaluation.method_comparison import contest, defaults_of, pairs_in
+    from app.evaluation.method_comparison import compare_methods, defaults_of, pairs_in
 
     if args.out is not None:
         check_folder(args.out)
     root, configs = case_folder(args.cases, parser), defaults_of(args.methods)
     executor = executor_for(args.jobs, args.scheduler)
     n, pairs = pairs_in(root, args.rough)
-    told = contest(pairs, configs, executor, args.seed)
+    told = compare_methods(pairs, configs, executor, args.seed)
     scores = list(bar(iterable=told, total=n * len(configs), unit="merge"))
     for line in (*aligned(table_rows(scores)), "", *NOTES, *remarks(scores)):
         print(line)
@@ -89,12 +89,12 @@ def _leave(args: argparse.Namespace, root: Path, scores: Sequence) -> None:  # t
     from algorithms.files.atomic_write import write_files
     from app.cli.progress_bar import bar
     from app.evaluation.comparison_files import case_files, contest_files
-    from app.evaluation.method_comparison import Unread, defaults_of, pairs_in
+    from app.evaluation.method_comparison import UnreadableCase, defaults_of, pairs_in
 
     files = contest_files(scores, defaults_of(args.methods), args.seed)
     n, pairs = pairs_in(root, args.rough)
     for name, case in bar(iterable=pairs, total=n, unit="picture"):
-        if not isinstance(case, Unread):
+        if not isinstance(case, UnreadableCase):
             files |= case_files(name, case, scores)
     write_files({args.out / name: data for name, data in files.items()})
     print(f"written to {args.out}: {', '.join(files)}")

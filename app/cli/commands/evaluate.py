@@ -81,7 +81,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     from app.cli.setting_flags import config_from
     from app.evaluation.dataset_evaluation import (
         OVERALL,
-        Order,
+        EvaluationTask,
         calibration_of,
         crossings,
         evaluate,
@@ -96,7 +96,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         if args.json.resolve().parent in {folder.resolve() for folder in case_folders(args.folder)}:
             raise OutputError(args.json, "lies in the folder of a case", "choose another place for --json")
     executor = executor_for(args.jobs, args.scheduler)
-    order = Order(args.folder, args.method, config_from(args), args.seed, args.rough)
+    order = EvaluationTask(args.folder, args.method, config_from(args), args.seed, args.rough)
     total = len(case_folders(args.folder)) + (len(rough_folders(args.folder)) if args.both else 0)
     wrong = crossings(args.folder, args.wrong_pairs, args.seed) if args.wrong_pairs else []
     told = evaluate_both(order, executor) if args.both else evaluate(order, executor)

@@ -88,7 +88,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     from algorithms.methods import registry as methods
     from app.cli.progress_bar import result_of
     from app.cli.setting_flags import config_from
-    from app.model.merge_inputs import Inputs
+    from app.model.merge_inputs import MergeInputs
     from app.report.result_files import MERGED_FILES, TRANSFORM_FILE, report_json, report_of, result_files
 
     config = config_from(args)
@@ -107,7 +107,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         return _without_answer(refusal, args, config, load_s, named, warnings)
     report = report_of(result, config, load_s, named, warnings)
     accepted = result.verdict.accepted
-    inputs = Inputs(ref, mov, observations, f"{args.map1.stem} and {args.map2.stem}")
+    inputs = MergeInputs(ref, mov, observations, f"{args.map1.stem} and {args.map2.stem}")
     files = result_files(result, inputs, config, report, with_merged=accepted or args.force)
     stale = [] if accepted or args.force else [*MERGED_FILES, TRANSFORM_FILE]
     removed = _leave(args.out, files, stale)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from app.cli.argument_parser import Parser, did_you_mean
 
 if TYPE_CHECKING:
-    from app.model.merge_inputs import Inputs
+    from app.model.merge_inputs import MergeInputs
 
 USAGE = "{CASE | MAP1 MAP2 --observation FILE} --out FILE.html [options]"
 DESCRIPTION = """\
@@ -55,7 +55,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     from app.cli.progress_bar import with_bar
     from app.cli.setting_flags import config_from
     from app.report.replay.html_page import replay_html
-    from app.report.replay.metadata import About
+    from app.report.replay.metadata import ReplayMetadata
     from app.report.replay.recorder import record
 
     if args.out.suffix.lower() not in HTML_SUFFIXES:
@@ -72,26 +72,26 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     assert inputs.mov is not None
     steps = methods.run(args.method, inputs.ref, inputs.mov, inputs.observations, config, args.seed)
     recording = record(with_bar(steps), inputs, config)
-    page = replay_html(recording, About(inputs, args.method, config, args.seed))
+    page = replay_html(recording, ReplayMetadata(inputs, args.method, config, args.seed))
     write_file(args.out, page)
     print(recording["verdict"])
     print(f"written to {args.out}: {len(page) / 1000:,.0f} kB, {recording['length']:.0f} s")
     return 0
 
 
-def _inputs(args: argparse.Namespace, parser: Parser) -> Inputs:
+def _inputs(args: argparse.Namespace, parser: Parser) -> MergeInputs:
     """What the command line names: two maps, a sample by its name, or the folder of a case."""
     from dataclasses import replace
 
     from algorithms.files.case_folder import read_case, read_observations
     from app.cli.commands.merge import read_inputs
-    from app.model.merge_inputs import Inputs
+    from app.model.merge_inputs import MergeInputs
     from app.system.data_paths import samples
 
     if args.map2 is not None:
         args.map1 = Path(args.first)
         ref, mov, observations = read_inputs(args)
-        return Inputs(ref, mov, observations, f"{args.map1.stem} + {args.map2.stem}")
+        return MergeInputs(ref, mov, observations, f"{args.map1.stem} + {args.map2.stem}")
     known, folder = samples(), Path(args.first)
     if not folder.is_dir():
         if args.first not in known:
@@ -100,7 +100,7 @@ def _inputs(args: argparse.Namespace, parser: Parser) -> Inputs:
                 "for two maps give MAP1, MAP2 and --observation FILE"
             )
         folder = known[args.first]
-    inputs = Inputs.of(read_case(folder))
+    inputs = MergeInputs.of(read_case(folder))
     if args.observation is None:
         return inputs
     return replace(inputs, observations=read_observations(args.observation))

@@ -72,7 +72,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     from app.cli.open_browser import browser
     from app.page.application import make_server
     from app.system import logging_setup as logs
-    from app.web.download import TAKEAWAY
+    from app.web.download import DOWNLOADS
 
     if (args.map1 is None) != (args.map2 is None) or (args.map1 is None) != (args.observation is None):
         parser.error("give MAP1, MAP2 and --observation FILE together, or none of them for a sample")
@@ -92,7 +92,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         with browser(url, secret=bool(access.token)) if wanted else contextlib.nullcontext():
             threading.Event().wait()
     except KeyboardInterrupt:
-        TAKEAWAY.finish()
+        DOWNLOADS.finish()
         server.stop()
         print()
     return 0

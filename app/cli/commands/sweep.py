@@ -11,7 +11,7 @@ from app.cli.argument_parser import Parser
 
 if TYPE_CHECKING:
     from algorithms.files.case_folder import Case
-    from app.evaluation.parameter_sweep import Plan, Point
+    from app.evaluation.parameter_sweep import SweepPlan, SweepPoint
 
 SWARM = "spectra-swarm"  # the paper's method, whose settings the paper sweeps
 SEEDS = 10
@@ -62,7 +62,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     from algorithms.files.atomic_write import check_folder, write_files
     from app.cli.executor_flags import executor_for
     from app.cli.progress_bar import bar
-    from app.evaluation.checkpoint import Journal
+    from app.evaluation.checkpoint import Checkpoint
     from app.evaluation.parameter_sweep import done_before, sweep
     from app.evaluation.sweep_files import JOURNAL_FILE, name_of, sweep_files
 
@@ -73,7 +73,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     check_folder(out)
     plans = _plans(args, case)
     executor = executor_for(args.jobs, args.scheduler)
-    journal = Journal(out / JOURNAL_FILE)
+    journal = Checkpoint(out / JOURNAL_FILE)
     written: list[str] = []
     failed = 0
     for plan in plans:
@@ -107,17 +107,17 @@ def _case(args: argparse.Namespace, parser: Parser) -> Case:
     return read_case(case_folder(args.case, parser), args.rough)
 
 
-def _plans(args: argparse.Namespace, case: Case) -> list[Plan]:
+def _plans(args: argparse.Namespace, case: Case) -> list[SweepPlan]:
     """What is asked for; the paper's two unless told otherwise."""
     from app.cli.setting_flags import config_from
     from app.evaluation import sweep_axes as axes
-    from app.evaluation.parameter_sweep import Plan
+    from app.evaluation.parameter_sweep import SweepPlan
 
     config, seeds = config_from(args), tuple(range(args.seed, args.seed + args.seeds))
     if args.x is not None:
         x = axes.axis_from(args.x, config)
         y = None if args.y is None else axes.axis_from(args.y, config)
-        return [Plan(args.method, config, x, y, seeds)]
+        return [SweepPlan(args.method, config, x, y, seeds)]
     cell = case.ref.resolution
     first = _fixed(args, config, {axes.PARTICLES: axes.PAPER_PARTICLES})
     spread = axes.in_metres(axes.PAPER_SQUARED_CELLS, cell)
@@ -141,7 +141,7 @@ def _fixed(args: argparse.Namespace, config: Any, paper: dict[tuple[str, ...], A
     return config
 
 
-def _summary(plan: Plan, points: Sequence[Point]) -> list[str]:
+def _summary(plan: SweepPlan, points: Sequence[SweepPoint]) -> list[str]:
     """What a person wants to know first: where it is best, and what went wrong."""
     from app.evaluation.sweep_files import name_of
 
@@ -161,7 +161,7 @@ def _summary(plan: Plan, points: Sequence[Point]) -> list[str]:
     return [*lines, *(f"  could not be run: {reason}" for reason in reasons)]
 
 
-def _place(plan: Plan, point: Point) -> str:
+def _place(plan: SweepPlan, point: SweepPoint) -> str:
     at = [f"{plan.x.name} {point.x:g}" if isinstance(point.x, float) else f"{plan.x.name} {point.x}"]
     if plan.y is not None:
         at.append(f"{plan.y.name} {point.y:g}" if isinstance(point.y, float) else f"{plan.y.name} {point.y}")

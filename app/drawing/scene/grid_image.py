@@ -12,15 +12,15 @@ import viser
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import GridMap
 from app.drawing.browser_messages import BrowserMessages
-from app.drawing.grid_pixels import WHOLE, Part, Picture
+from app.drawing.grid_pixels import WHOLE, CellRegion, GridPixels
 from app.drawing.png import png_base64
-from app.drawing.scene.zoom_crop import Excerpt, View, looked_at
+from app.drawing.scene.zoom_crop import CameraView, ZoomCrop, looked_at
 
 
 class Draw(Protocol):
     """Draws a grid, or a part of it, in at the most so many pixels on a side: see grid_pixels."""
 
-    def __call__(self, *, most: int, part: Part = ...) -> Picture: ...
+    def __call__(self, *, most: int, part: CellRegion = ...) -> GridPixels: ...
 
 
 @dataclass(frozen=True)
@@ -48,9 +48,9 @@ class Closer:
 
     image: GridImage
     draw: Draw
-    excerpt: Excerpt | None
+    excerpt: ZoomCrop | None
 
-    def picture(self) -> Picture | None:
+    def picture(self) -> GridPixels | None:
         """Draw it; nothing on the page is touched."""
         if self.excerpt is None:
             return None
@@ -111,7 +111,7 @@ class GridImage:
         self._seen = True
         self._bare()
 
-    def _drawn(self, draw: Draw, grid: GridMap) -> Picture:
+    def _drawn(self, draw: Draw, grid: GridMap) -> GridPixels:
         picture = draw(most=self._size.of(grid), part=WHOLE)
         rows, cols = picture.pixels.shape[:2]
         self._draw, self._grid, self._pooled = draw, grid, picture.pooled
@@ -155,7 +155,7 @@ class GridImage:
 
     # --- what is looked at closely ------------------------------------------------------------------
 
-    def closer(self, view: View, parent: Pose2) -> Closer | None:
+    def closer(self, view: CameraView, parent: Pose2) -> Closer | None:
         """What is to lie over it for this view; None where nothing is to change.
 
         parent : where the frame that it hangs on lies; scene
@@ -175,7 +175,7 @@ class GridImage:
             return None
         return Closer(self, draw, excerpt)
 
-    def lay(self, closer: Closer, picture: Picture | None) -> None:
+    def lay(self, closer: Closer, picture: GridPixels | None) -> None:
         """Put an excerpt over it, drawn without the lock: only if it is still one of what is shown."""
         excerpt = closer.excerpt
         if closer.draw is not self._draw or self._stage is None:

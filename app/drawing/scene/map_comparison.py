@@ -23,7 +23,7 @@ def rings(places: tuple[Place, ...], anchor: FloatArray) -> list[dict[str, Any]]
     ]
 
 
-class Comparison:
+class MapComparison:
     """The mode a person has chosen, and what there is to compare."""
 
     def __init__(self, stage: BrowserMessages, maps: MapView) -> None:

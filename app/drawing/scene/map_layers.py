@@ -19,8 +19,8 @@ from app.drawing import grid_pixels as render
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import Palette
 from app.drawing.scene.grid_image import Closer, GridImage, Size
-from app.drawing.scene.zoom_crop import View
-from app.drawing.scene_layout import Layout
+from app.drawing.scene.zoom_crop import CameraView
+from app.drawing.scene_layout import SceneLayout
 
 Which = Literal["sources", "levels", "merged", "touching"]
 Mode = Literal["overlay", "blink", "curtain", "difference"]  # how two maps are compared where they lie
@@ -33,7 +33,7 @@ LAID_OVER = Size(whole=render.MOST_PIXELS, pooled=1024)
 GHOSTLY = 60  # of 255; twice as much on the page, which makes thin walls darker
 
 
-class Ground:
+class MapLayers:
     """Map 1 lies still; map 2 hangs on the frame /world/mov, which the page turns and slides."""
 
     def __init__(
@@ -77,7 +77,7 @@ class Ground:
         pairs = (*self._free, *self._walls, *self._levels, *self._merged, *self._touches)
         self._all = (*pairs, self._denied, self._ghost)
         self._shown: tuple[GridMap | None, GridMap | None] = (None, None)
-        self._layout: Layout | None = None
+        self._layout: SceneLayout | None = None
         self._palette: Palette | None = None
         self._mov: GridMap | None = None
         self._lifted: AugmentDetail | None = None
@@ -88,7 +88,7 @@ class Ground:
         self.which: Which = "sources"
         self._hidden = False
 
-    def load(self, ref: GridMap | None, mov: GridMap | None, layout: Layout, palette: Palette) -> None:
+    def load(self, ref: GridMap | None, mov: GridMap | None, layout: SceneLayout, palette: Palette) -> None:
         """Draw two maps; what was there before is gone. A map that was there already is only moved."""
         grids = (ref, mov)
         old = self._shown if palette is self._palette else (None, None)
@@ -201,7 +201,7 @@ class Ground:
         self._ghost.visible(self._ghost_at is not None and self._mode == "overlay")
         self.changed()
 
-    def closer(self, view: View) -> list[Closer]:
+    def closer(self, view: CameraView) -> list[Closer]:
         """The excerpts that this view lacks, or has no use for any more."""
         at = {"ref": Pose2(), "mov": view.mov, "ghost": self._ghost_at or Pose2()}
         found = (image.closer(view, at[image.name.split("/")[2]]) for image in self._all)

@@ -32,11 +32,11 @@ from app.drawing.draw_items import cloud, mark
 from app.drawing.palette import LIGHT, Palette, css
 from app.drawing.scene import search_symbols as signs
 from app.drawing.scene.grid_image import Size
-from app.drawing.scene.map_layers import LAID_OVER, Ground, Mode
-from app.drawing.scene_layout import Layout, Rect, known_hull, union
+from app.drawing.scene.map_layers import LAID_OVER, MapLayers, Mode
+from app.drawing.scene_layout import Rect, SceneLayout, known_hull, union
 from app.model import status_text as words
-from app.model.merge_inputs import Inputs
-from app.model.run_state import Story
+from app.model.merge_inputs import MergeInputs
+from app.model.run_state import RunState
 
 TURN_MS, SLIDE_MS, FOLLOW_MS = 900.0, 330.0, 70.0
 MOST_PARTICLES = 600  # drawn; more would be a blot
@@ -48,17 +48,17 @@ class MapView:
 
     def __init__(self, client: viser.ClientHandle, stage: BrowserMessages, size: Size = LAID_OVER) -> None:
         self._stage = stage
-        self.ground = Ground(client.scene, size, stage)
-        self._inputs = Inputs()
+        self.ground = MapLayers(client.scene, size, stage)
+        self._inputs = MergeInputs()
         self._palette = LIGHT
         self._mov_at = Pose2()
         self._mode: Mode = "overlay"
         self._boxed: object = None  # the box that is drawn and looked at
-        self.layout = Layout(np.zeros(2), np.zeros(2), None, None, Pose2())
+        self.layout = SceneLayout(np.zeros(2), np.zeros(2), None, None, Pose2())
 
     # --- what was loaded --------------------------------------------------------------------------
 
-    def load(self, inputs: Inputs, layout: Layout, palette: Palette) -> None:
+    def load(self, inputs: MergeInputs, layout: SceneLayout, palette: Palette) -> None:
         """Show maps side by side, before any merge."""
         self._inputs, self.layout, self._palette = inputs, layout, palette
         self.ground.load(inputs.ref, inputs.mov, layout, palette)
@@ -76,7 +76,7 @@ class MapView:
         """Turn map 2 where it lies beside map 1."""
         self._place(Pose2(self.layout.apart.x, self.layout.apart.y, turn), SLIDE_MS)
 
-    def recolour(self, palette: Palette, story: Story) -> None:
+    def recolour(self, palette: Palette, story: RunState) -> None:
         """Draw everything again in other colours."""
         which, self._palette = self.ground.which, palette
         self.ground.load(self._inputs.ref, self._inputs.mov, self.layout, palette)
@@ -117,7 +117,7 @@ class MapView:
         self._mov_at = at
 
     def touch(self, walls: tuple[Walls, Walls], told: tuple[Touch, Touch]) -> None:
-        """Show which walls coincide and which are denied; see ``Ground.touch``."""
+        """Show which walls coincide and which are denied; see ``MapLayers.touch``."""
         self.ground.touch(walls, told)
 
     def let_go(self) -> None:
@@ -143,7 +143,7 @@ class MapView:
 
     # --- a run ------------------------------------------------------------------------------------
 
-    def show(self, story: Story, config: Any, camera: bool, live: bool) -> None:
+    def show(self, story: RunState, config: Any, camera: bool, live: bool) -> None:
         """Draw the newest state of a run.
 
         config : of the method that runs; Σ_aug is drawn from it
@@ -172,7 +172,7 @@ class MapView:
         if camera and look is not None:
             self._stage.look_down(look)
 
-    def preview(self, story: Story, config: Any) -> None:
+    def preview(self, story: RunState, config: Any) -> None:
         """Draw what a moved slider does before there is a merge: levels, Σ_aug, windows, the box's size."""
         self.ground.lift(story.get(AugmentDetail))
         self._lifted(0.0, 0.0)
@@ -184,7 +184,7 @@ class MapView:
             self._stage.layer("box", signs.margins(box.sigma_x, box.sigma_y, self._palette))
         self._windows(story, self.layout.view())
 
-    def _windows(self, story: Story, view: Rect) -> None:
+    def _windows(self, story: RunState, view: Rect) -> None:
         window, found = story.get(WindowDetail), story.get(CandidatesDetail)
         if window is None or self._inputs.at is None:
             return
@@ -206,7 +206,7 @@ class MapView:
         if augment is not None:
             self._stage.layer("aug", signs.rings(augment.covariance(), self._palette, both=True))
 
-    def _candidates(self, story: Story, glide: float) -> Rect:
+    def _candidates(self, story: RunState, glide: float) -> Rect:
         colours, found = self._palette, story.get(CandidatesDetail)
         self.ground.show("sources")
         self._clear("aug", "swarm", "rival", "best")
@@ -246,7 +246,7 @@ class MapView:
         self._robots(together=False)
         return union(self.layout.view(), self.layout.view(turned))
 
-    def _refine(self, story: Story, detail: RefineDetail, glide: float) -> Rect | None:
+    def _refine(self, story: RunState, detail: RefineDetail, glide: float) -> Rect | None:
         layout, colours, state = self.layout, self._palette, detail.state
         self.ground.show("sources")
         self._clear("aug", "rival")
@@ -268,7 +268,7 @@ class MapView:
         self._stage.layer("box", signs.box(detail.box, layout, colours))
         return signs.footprint(detail.box, layout)
 
-    def _prove(self, story: Story, detail: ProofDetail, glide: float) -> Rect | None:
+    def _prove(self, story: RunState, detail: ProofDetail, glide: float) -> Rect | None:
         self.ground.show("sources")
         self._clear("aug", "swarm", "box", "rival")
         if story.answer is None:
@@ -280,7 +280,7 @@ class MapView:
         self._stage.layer("best", signs.proof(detail.state, self.layout, self._palette))
         return self.layout.view(at)
 
-    def _answer(self, story: Story, glide: float) -> Rect | None:
+    def _answer(self, story: RunState, glide: float) -> Rect | None:
         fusion, result = story.get(Fusion), story.get(MergeResult)
         if story.answer is None:
             return None
@@ -305,7 +305,7 @@ class MapView:
 
     # --- parts ------------------------------------------------------------------------------------
 
-    def read_out(self, place: FloatArray, story: Story) -> str:
+    def read_out(self, place: FloatArray, story: RunState) -> str:
         """What both maps know of a place in the scene: coordinates, occupancy, level."""
         point = place + self.layout.anchor_ref
         there = self._mov_at.inverse().apply(place) + self.layout.anchor_mov

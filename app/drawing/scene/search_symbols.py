@@ -15,8 +15,8 @@ from algorithms.observations.search_window import Box, CoupledWindow, Window
 from algorithms.optimisation.branch_and_bound import ProofState
 from app.drawing.draw_items import Item, ellipse, mark, path, rectangle
 from app.drawing.palette import Palette, css
-from app.drawing.scene_layout import Layout, Rect
-from app.model.observation_draft import Draft
+from app.drawing.scene_layout import Rect, SceneLayout
+from app.model.observation_draft import ObservationDraft
 
 ZERO = np.zeros(2)  # the meeting place of the first sighting, in both frames
 TURN_ARM = 90  # px from robot 2 to the knob that turns map 2; map_editing.js knows it as the knob's arm
@@ -27,7 +27,7 @@ DASHED = {"close": True, "d": [6, 4], "halo": True}
 
 
 def robots(
-    o: Observation, layout: Layout, colours: Palette, mov: bool, together: bool, seen: bool
+    o: Observation, layout: SceneLayout, colours: Palette, mov: bool, together: bool, seen: bool
 ) -> list[Item]:
     """Both robots with their names.
 
@@ -50,7 +50,13 @@ def robots(
 
 
 def sight(
-    o: Observation, at: Encounter, layout: Layout, colours: Palette, mov: bool, together: bool, close: bool
+    o: Observation,
+    at: Encounter,
+    layout: SceneLayout,
+    colours: Palette,
+    mov: bool,
+    together: bool,
+    close: bool,
 ) -> list[Item]:
     """The line of sight, the doubt of its far end, and which two places of the maps are one.
 
@@ -71,7 +77,7 @@ def sight(
 def further(
     seen: Sequence[Observation],
     places: Sequence[Encounter],
-    layout: Layout,
+    layout: SceneLayout,
     colours: Palette,
     mov: bool,
     together: bool,
@@ -105,7 +111,9 @@ def _sides(o: Observation, dx: float) -> tuple[dict[str, Any], dict[str, Any]]:
     return (left, right) if cos(o.observer.theta + o.bearing) >= 0 else (right, left)
 
 
-def drafts(draft: Draft, others: Sequence[Draft], layout: Layout, colours: Palette) -> list[Item]:
+def drafts(
+    draft: ObservationDraft, others: Sequence[ObservationDraft], layout: SceneLayout, colours: Palette
+) -> list[Item]:
     """Robots as they are being placed, with knobs on the chosen draft's; the other drafts are quiet."""
     items = []
     for one in others:
@@ -114,7 +122,7 @@ def drafts(draft: Draft, others: Sequence[Draft], layout: Layout, colours: Palet
     return items
 
 
-def _draft(draft: Draft, layout: Layout, colours: Palette, alpha: float) -> list[Item]:
+def _draft(draft: ObservationDraft, layout: SceneLayout, colours: Palette, alpha: float) -> list[Item]:
     items: list[Item] = []
     chosen = alpha == 1.0
     first = draft.observer.xy - layout.anchor_ref if draft.observer else None
@@ -163,7 +171,9 @@ def rings(covariance: FloatArray, colours: Palette, both: bool) -> list[Item]:
     return items
 
 
-def windows(detail: WindowDetail, turn: float, layout: Layout, colours: Palette, view: Rect) -> list[Item]:
+def windows(
+    detail: WindowDetail, turn: float, layout: SceneLayout, colours: Palette, view: Rect
+) -> list[Item]:
     """Both windows as the places where T may put robot 2: the one in use strong, the other faint.
 
     turn : of map 2 at hand, radians: as printed the window bounds where map 2's origin goes, and robot 2
@@ -178,7 +188,7 @@ def windows(detail: WindowDetail, turn: float, layout: Layout, colours: Palette,
 
 
 def _paper_window(
-    w: Window, turn: float, layout: Layout, colours: Palette, view: Rect, strong: bool
+    w: Window, turn: float, layout: SceneLayout, colours: Palette, view: Rect, strong: bool
 ) -> list[Item]:
     off = rotation(turn) @ (layout.anchor_mov - w.pivot) - layout.anchor_ref
     low, high = w.low + off, w.high + off
@@ -203,7 +213,7 @@ def _paper_window(
 
 
 def discs(
-    w: CoupledWindow, layout: Layout, colours: Palette, strong: bool = True, below: bool = False
+    w: CoupledWindow, layout: SceneLayout, colours: Palette, strong: bool = True, below: bool = False
 ) -> list[Item]:
     """The coupled window: for every sighting the disc in which T may put the seen robot.
 
@@ -224,7 +234,7 @@ def discs(
     return items
 
 
-def proof(state: ProofState, layout: Layout, colours: Palette) -> list[Item]:
+def proof(state: ProofState, layout: SceneLayout, colours: Palette) -> list[Item]:
     """The best so far and its rivals, as map 2's robot would stand there."""
     items = [
         mark("dot", layout.placed(Pose2.from_array(pose)).xy, colours.rival, r=4.5) for pose in state.rivals
@@ -267,7 +277,7 @@ def margins(sigma_x: float, sigma_y: float, colours: Palette) -> list[Item]:
     return [path(rectangle(-half, half), colours.margin, **DASHED, **label)]
 
 
-def box(b: Box, layout: Layout, colours: Palette) -> list[Item]:
+def box(b: Box, layout: SceneLayout, colours: Palette) -> list[Item]:
     """The optimiser's box around where its centre puts robot 2."""
     middle = layout.placed(b.transform(b.centre)).xy
     half = (b.high - b.low)[:2] / 2
@@ -275,7 +285,7 @@ def box(b: Box, layout: Layout, colours: Palette) -> list[Item]:
     return [path(corners, colours.margin, w=1.5, t="box ± σ_x, ± σ_y", tp=corners[3], dy=-8, **DASHED)]
 
 
-def seen_robot(transforms: FloatArray, layout: Layout) -> FloatArray:
+def seen_robot(transforms: FloatArray, layout: SceneLayout) -> FloatArray:
     """(P, 3) where each (Δx, Δy, Δθ) puts x̂2 in the scene, and its turn; metres, metres, radians."""
     c, s = np.cos(transforms[:, 2]), np.sin(transforms[:, 2])
     x, y = layout.anchor_mov
@@ -283,7 +293,7 @@ def seen_robot(transforms: FloatArray, layout: Layout) -> FloatArray:
     return np.column_stack([at, transforms[:, 2]])
 
 
-def footprint(b: Box, layout: Layout) -> Rect:
+def footprint(b: Box, layout: SceneLayout) -> Rect:
     """Rectangle that shows a box of transforms at the seen robot, with walls around it."""
     edges = list(zip(b.low.tolist(), b.high.tolist(), strict=True))
     corners = np.array(np.meshgrid(*edges)).reshape(3, -1).T
@@ -294,7 +304,7 @@ def footprint(b: Box, layout: Layout) -> Rect:
     return x - half, y - half, x + half, y + half
 
 
-def matches(found: MatchesDetail, mov_at: Pose2, layout: Layout, colours: Palette) -> list[Item]:
+def matches(found: MatchesDetail, mov_at: Pose2, layout: SceneLayout, colours: Palette) -> list[Item]:
     """Lines between the features that look alike, from map 1 to map 2; those that agree on a transform on
     top and strong.
 

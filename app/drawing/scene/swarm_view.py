@@ -13,7 +13,7 @@ from app.drawing.browser_messages import BrowserMessages
 from app.drawing.draw_items import Item, cloud, mark, path
 from app.drawing.palette import Palette, css
 from app.model import status_text as words
-from app.model.run_state import Story
+from app.model.run_state import RunState
 
 TRAILS = 24  # particles that draw a trail
 TRAIL_LENGTH = 10
@@ -56,7 +56,7 @@ def proven_optimum(proven: ProvenDetail, detail: RefineDetail, palette: Palette)
     return [ray, mark("star", edge, palette.answer, **first), mark("none", edge, palette.text, **second)]
 
 
-class SwarmSpaceView:
+class SwarmView:
     """Particles, a few trails, the swarm's best, the proven optimum, and shadows on floor and walls."""
 
     def __init__(self, stage: BrowserMessages) -> None:
@@ -71,7 +71,7 @@ class SwarmSpaceView:
         self._trail.clear()
         self._of = None
 
-    def show(self, story: Story, palette: Palette, look: bool) -> None:
+    def show(self, story: RunState, palette: Palette, look: bool) -> None:
         """Draw the newest snapshot; ``look`` puts the camera before the box."""
         detail = story.swarm
         if look:

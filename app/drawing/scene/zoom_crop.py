@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2
-from app.drawing.grid_pixels import Part
+from app.drawing.grid_pixels import CellRegion
 from app.drawing.scene_layout import Rect
 
 MOST_EXCERPT = 1536  # pixels on a side of an excerpt: all that a laptop's screen shows, and the margin
@@ -19,7 +19,7 @@ MARGIN = 0.2  # of what is seen, on each side: so far the camera moves before th
 
 
 @dataclass(frozen=True)
-class View:
+class CameraView:
     """What a tab shows of the scene, seen from above.
 
     box     : what is seen of the scene; metres
@@ -38,7 +38,7 @@ class View:
 
 
 @dataclass(frozen=True)
-class Excerpt:
+class ZoomCrop:
     """Cells of a grid, and how many of them a pixel stands for on each axis."""
 
     top: int
@@ -48,7 +48,7 @@ class Excerpt:
     pooled: int
 
     @property
-    def part(self) -> Part:
+    def part(self) -> CellRegion:
         """Rows and columns."""
         return slice(self.top, self.bottom), slice(self.left, self.right)
 
@@ -57,7 +57,7 @@ class Excerpt:
         """Pixels on its longer side."""
         return -(-max(self.bottom - self.top, self.right - self.left) // self.pooled)
 
-    def serves(self, other: Excerpt) -> bool:
+    def serves(self, other: ZoomCrop) -> bool:
         """Whether it shows all that the other one would, and no less finely."""
         within = self.top <= other.top and self.left <= other.left
         within = within and self.bottom >= other.bottom and self.right >= other.right
@@ -66,7 +66,7 @@ class Excerpt:
 
 def looked_at(
     seen: FloatArray, shape: tuple[int, ...], cells_per_pixel: float
-) -> tuple[Excerpt, Excerpt] | None:
+) -> tuple[ZoomCrop, ZoomCrop] | None:
     """What a person sees of a grid, and the same with a margin: the excerpt to be drawn.
 
     seen            : (4, 2) corners of the view in the grid's coordinates, column and row
@@ -87,7 +87,7 @@ def looked_at(
     bottom, right = (
         min(-(-end // pooled) * pooled, n) for end, n in zip((bottom, right), shape, strict=True)
     )
-    return Excerpt(*bare, pooled), Excerpt(top, left, bottom, right, pooled)
+    return ZoomCrop(*bare, pooled), ZoomCrop(top, left, bottom, right, pooled)
 
 
 def _clipped(low: FloatArray, high: FloatArray, shape: tuple[int, ...]) -> tuple[int, int, int, int]:

@@ -8,24 +8,24 @@ import numpy as np
 
 from algorithms.common.pose import FloatArray
 from app.drawing.palette import Rgb
-from app.drawing.svg.map_raster import View, around
-from app.drawing.svg.svg_canvas import INK, Plot, Sheet, number
+from app.drawing.svg.map_raster import RasterView, around
+from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number
 
 ROBOT = np.array([[1.35, 0.0], [-0.85, 0.8], [-0.45, 0.0], [-0.85, -0.8]])
 
 
-def scene(sheet: Sheet, x: float, y: float, wide: float, high: float, view: View) -> Plot:
+def scene(sheet: SvgCanvas, x: float, y: float, wide: float, high: float, view: RasterView) -> SvgPlot:
     """A plot over a view of the plane; pixels of the view are drawn finer than those of the sheet."""
     x0, y0, x1, y1 = view.rect
-    return Plot(sheet, x, y, wide, high, (x0, x1), (y0, y1))
+    return SvgPlot(sheet, x, y, wide, high, (x0, x1), (y0, y1))
 
 
-def view_of(centre: FloatArray, half: float, wide: float, high: float) -> View:
+def view_of(centre: FloatArray, half: float, wide: float, high: float) -> RasterView:
     """A square-pixelled view about a place, two pixels to one of the sheet."""
-    return View(around(centre, half, wide / high), int(2 * wide), int(2 * high))
+    return RasterView(around(centre, half, wide / high), int(2 * wide), int(2 * high))
 
 
-def robot(plot: Plot, at: FloatArray, heading: float | None, colour: Rgb, r: float = 7) -> None:
+def robot(plot: SvgPlot, at: FloatArray, heading: float | None, colour: Rgb, r: float = 7) -> None:
     """A robot, its nose to where it is heading; a disc where that is not known."""
     x, y = plot.one(*at.tolist())
     if heading is None:
@@ -37,7 +37,7 @@ def robot(plot: Plot, at: FloatArray, heading: float | None, colour: Rgb, r: flo
     plot.sheet.path(points, None, 0, colour, close=True)
 
 
-def scale_bar(plot: Plot, colour: str = INK) -> None:
+def scale_bar(plot: SvgPlot, colour: str = INK) -> None:
     """How long a metre is, at the lower left of a plot."""
     px = plot.wide / (plot.across[1] - plot.across[0])
     metres = next((m for m in (50, 20, 10, 5, 2, 1, 0.5, 0.2, 0.1) if m * px <= 0.4 * plot.wide), 0.05)

@@ -21,7 +21,7 @@ Pixels = NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
-class View:
+class RasterView:
     """A rectangle of the plane on a raster of pixels.
 
     rect          : x low, y low, x high, y high; metres
@@ -77,7 +77,9 @@ def around(centre: FloatArray, half: float, aspect: float = 1.0) -> Rect:
     return x - half, y - half / aspect, x + half, y + half / aspect
 
 
-def under(values: NDArray[Any], grid: GridMap, view: View, T: Pose2 | None, outside: float) -> NDArray[Any]:
+def under(
+    values: NDArray[Any], grid: GridMap, view: RasterView, T: Pose2 | None, outside: float
+) -> NDArray[Any]:
     """(H, W) what an array over a grid, which lies at T, holds under every pixel."""
     row, col, inside = view.cells(grid, T)
     found = np.full(inside.shape, outside, dtype=values.dtype)
@@ -86,7 +88,7 @@ def under(values: NDArray[Any], grid: GridMap, view: View, T: Pose2 | None, outs
 
 
 def walls(
-    grid: GridMap, view: View, T: Pose2 | None = None, cells: NDArray[np.int8] | None = None
+    grid: GridMap, view: RasterView, T: Pose2 | None = None, cells: NDArray[np.int8] | None = None
 ) -> BoolArray:
     """(H, W) where a map that lies at T has a wall; ``cells`` those under the pixels, where known."""
     values = under(grid.cells, grid, view, T, UNKNOWN) if cells is None else cells
@@ -98,7 +100,7 @@ def walls(
 
 
 def draw_map(
-    view: View,
+    view: RasterView,
     palette: Palette,
     grid: GridMap,
     colour: Rgb,
@@ -114,7 +116,7 @@ def draw_map(
     return pixels
 
 
-def draw_levels(view: View, palette: Palette, lifted: AugmentedMap, T: Pose2 | None = None) -> Pixels:
+def draw_levels(view: RasterView, palette: Palette, lifted: AugmentedMap, T: Pose2 | None = None) -> Pixels:
     """A map's walls in the colours of their levels, eq. (4); walls too far to count keep a faint grey."""
     faint = tuple((2 * a + b) // 3 for a, b in zip(palette.free, palette.margin, strict=True))
     pixels = draw_map(view, palette, lifted.grid, faint, T)  # type: ignore[arg-type]

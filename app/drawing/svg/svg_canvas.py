@@ -59,7 +59,7 @@ def ticks(low: float, high: float, most: int = 6, steps: Sequence[float] = (1, 2
 
 
 @dataclass
-class Sheet:
+class SvgCanvas:
     """What is drawn so far, from the back to the front."""
 
     height: float
@@ -186,7 +186,7 @@ class Plot:
     across, up       : what its left and right, and its lower and upper edge stand for
     """
 
-    sheet: Sheet
+    sheet: SvgCanvas
     x: float
     y: float
     wide: float

@@ -12,7 +12,7 @@ from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import UNKNOWN, GridMap
 from app.drawing.palette import Palette
 from app.drawing.scene_layout import known_hull, rect_of, union
-from app.drawing.svg.map_raster import Pixels, View, under, walls
+from app.drawing.svg.map_raster import Pixels, RasterView, under, walls
 
 SIZE = 208, 156  # pixels; shown at half of that
 _NEAR = np.ones((3, 3), np.uint8)  # walls a pixel apart are the same wall here
@@ -39,10 +39,10 @@ def thumbnail(
     return pixels
 
 
-def _around(ref: GridMap, mov: GridMap, T: Pose2, wide: int, high: int) -> View:
+def _around(ref: GridMap, mov: GridMap, T: Pose2, wide: int, high: int) -> RasterView:
     """Both maps in the middle of so many pixels, with a little room around."""
     x0, y0, x1, y1 = union(rect_of(known_hull(ref)), rect_of(T.apply(known_hull(mov))))
     metre = 0.94 * min(wide / max(x1 - x0, 1e-6), high / max(y1 - y0, 1e-6))  # pixels
     half = wide / 2 / metre, high / 2 / metre
     cx, cy = (x0 + x1) / 2, (y0 + y1) / 2
-    return View((cx - half[0], cy - half[1], cx + half[0], cy + half[1]), wide, high)
+    return RasterView((cx - half[0], cy - half[1], cx + half[0], cy + half[1]), wide, high)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from algorithms.verdict.decision import Outcome, Verdict
 from algorithms.verdict.probability_model import OTHERS, QUANTITIES
 from app.drawing.palette import LIGHT, Palette, Rgb, css
-from app.drawing.svg.svg_canvas import INK, WIDE, Sheet, worded
+from app.drawing.svg.svg_canvas import INK, WIDE, SvgCanvas, worded
 from app.model import status_text as words
 
 AMBER: Rgb = (0x7A, 0x52, 0x00)  # as words, on a light page
@@ -47,7 +47,7 @@ def titles() -> dict[str, str]:
 def bars(verdict: Verdict, palette: Palette) -> str:
     """A bar per quantity: by how much it moves the log-odds from those of a typical right merge."""
     named = titles()
-    sheet = Sheet(TOP + ROW * len(named) + 26)
+    sheet = SvgCanvas(TOP + ROW * len(named) + 26)
     head = worded(COLOURS[verdict.outcome], palette)
     sheet.text(0, 13, f"{verdict.outcome.value.capitalize()}: {words.likelihood(verdict.probability)}", 15,
                colour=head, bold=True)  # fmt: skip

@@ -18,12 +18,12 @@ from algorithms.methods.steps import MergeResult
 from algorithms.verdict.cell_agreement import Walls
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.scene.map_view import MapView
-from app.jobs.latest_request import Newest
+from app.jobs.latest_request import LatestRequest
 from app.model import status_text as words
-from app.page.editing.transform_panel import HandPanel, HandWishes, weighed_html
+from app.page.editing.transform_panel import HandWishes, TransformPanel, weighed_html
 from app.page.host import MapHost
 from app.page.panels.html_widgets import box
-from app.web.browser_events import Channel
+from app.web.browser_events import BrowserEvents
 
 PATIENCE = 0.1  # seconds; weighing that takes longer waits until the hand rests
 REST = 0.15  # seconds in which a hand that rests does not move
@@ -67,13 +67,13 @@ class Host(MapHost, Protocol):
         """Everything as it was before."""
 
 
-class ByHand:
+class MapDragController:
     """Of one tab. ``turn`` and ``drawing`` as in the page: the first is taken before the second."""
 
     def __init__(
         self,
         gui: viser.GuiApi,
-        channel: Channel,
+        channel: BrowserEvents,
         stage: BrowserMessages,
         maps: MapView,
         turn: RLock,
@@ -88,8 +88,8 @@ class ByHand:
         self.active = False
         typed = partial(channel.then, self._type)  # in order with what the page tells of the hand
         wishes = HandWishes(self._toggle, typed, self._refine, self._snap, self._take)
-        self.panel = HandPanel(gui, wishes)
-        self._work = Newest(self._weigh, "mapmeld-hand")
+        self.panel = TransformPanel(gui, wishes)
+        self._work = LatestRequest(self._weigh, "mapmeld-hand")
         where = {"x": float, "y": float, "theta": float}
         channel.on("carry", lambda **at: self._carry(Pose2(**at)), latest=True, **where)
         channel.on("put", lambda knew, **at: self._put(Pose2(**at), knew), knew=int, **where)

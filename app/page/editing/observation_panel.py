@@ -17,8 +17,8 @@ from algorithms.observations.observation import (
 )
 from app.drawing.palette import LIGHT, QUIET
 from app.model import status_text as words
-from app.model.merge_inputs import Inputs
-from app.model.observation_draft import Draft
+from app.model.merge_inputs import MergeInputs
+from app.model.observation_draft import ObservationDraft
 from app.page.panels.html_widgets import box, table
 from app.report.result_rows import sighting_rows
 
@@ -107,7 +107,7 @@ class ObservationPanel:
 
             handle.on_update(typed)
 
-    def show(self, inputs: Inputs) -> None:
+    def show(self, inputs: MergeInputs) -> None:
         """Show the numbers of these inputs; nothing is being placed."""
         self._html.content = observations_html(inputs)
         self._html.visible = True
@@ -118,7 +118,7 @@ class ObservationPanel:
             handle.visible = False
         self._save.visible = bool(inputs.observations)
 
-    def edit(self, drafts: list[Draft], chosen: int, trouble: str = "") -> None:
+    def edit(self, drafts: list[ObservationDraft], chosen: int, trouble: str = "") -> None:
         """Show one of the drafts in fields, and what is to be done next.
 
         trouble : what is wrong with what was just done
@@ -147,7 +147,7 @@ class ObservationPanel:
         self._save.visible = all(one.missing is None for one in drafts)
 
 
-def fields_of(draft: Draft) -> dict[str, float | None]:
+def fields_of(draft: ObservationDraft) -> dict[str, float | None]:
     """The number of every field; metres, radians; None where it is not known yet."""
     observer, observed = draft.observer, draft.observed
     placed = draft.seen is not None
@@ -165,7 +165,7 @@ def fields_of(draft: Draft) -> dict[str, float | None]:
     }
 
 
-def observations_html(inputs: Inputs) -> str:
+def observations_html(inputs: MergeInputs) -> str:
     """HTML of a table per sighting, each under what is odd about it."""
     parts = []
     total = len(inputs.observations)

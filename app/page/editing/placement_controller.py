@@ -15,12 +15,12 @@ from algorithms.observations.observation import Observation
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.scene import search_symbols as signs
 from app.drawing.scene.map_view import MapView
-from app.drawing.scene_layout import Layout, lay_out
+from app.drawing.scene_layout import SceneLayout, lay_out
 from app.model import status_text as words
-from app.model.observation_draft import Draft, Part
+from app.model.observation_draft import ObservationDraft, Part
 from app.page.editing.observation_panel import ObservationPanel, PlacingWishes
 from app.page.host import MapHost, PageHost
-from app.web.browser_events import Channel, Numbers
+from app.web.browser_events import BrowserEvents, Numbers
 
 PARTS: tuple[Part, ...] = ("observer", "seen", "observed")
 
@@ -31,7 +31,7 @@ class Host(PageHost, MapHost, Protocol):
     def placing_asked(self) -> None:
         """The robots are to be placed: whatever else is going on ends."""
 
-    def placing_begins(self, layout: Layout) -> None:
+    def placing_begins(self, layout: SceneLayout) -> None:
         """The maps are shown side by side, and stay so."""
 
     def observed(self, observations: tuple[Observation, ...]) -> None:
@@ -44,13 +44,13 @@ class Host(PageHost, MapHost, Protocol):
         """Send a file."""
 
 
-class Placing:
+class PlacementController:
     """Of one tab. ``turn`` and ``drawing`` as in the page: the first is taken before the second."""
 
     def __init__(
         self,
         panel: ObservationPanel,
-        channel: Channel,
+        channel: BrowserEvents,
         stage: BrowserMessages,
         maps: MapView,
         turn: RLock,
@@ -59,7 +59,7 @@ class Placing:
     ) -> None:
         self._panel, self._stage, self._maps, self._host = panel, stage, maps, host
         self._turn, self._drawing = turn, drawing
-        self._drafts: list[Draft] = [Draft()]
+        self._drafts: list[ObservationDraft] = [ObservationDraft()]
         self._chosen = 0
         self._layout = lay_out(None, None, None)
         self.active = False
@@ -100,7 +100,7 @@ class Placing:
             inputs = self._host.inputs
             if inputs.ref is None or inputs.mov is None:
                 return
-            self._drafts = [Draft.of(o) for o in inputs.observations] or [Draft()]
+            self._drafts = [ObservationDraft.of(o) for o in inputs.observations] or [ObservationDraft()]
             self._chosen, self.active = 0, True
             with self._drawing:
                 self._layout = lay_out(inputs.ref, inputs.mov, None)
@@ -116,7 +116,7 @@ class Placing:
     def _add(self) -> None:
         with self._turn, self._drawing:
             if self.active and self._drafts[-1].missing is None:
-                self._drafts.append(Draft())
+                self._drafts.append(ObservationDraft())
                 self._chosen = len(self._drafts) - 1
                 self._show()
 
@@ -125,7 +125,7 @@ class Placing:
             if not self.active:
                 return
             del self._drafts[self._chosen]
-            self._drafts = self._drafts or [Draft()]
+            self._drafts = self._drafts or [ObservationDraft()]
             self._chosen = min(self._chosen, len(self._drafts) - 1)
             self._settle()
 
@@ -204,12 +204,12 @@ class Placing:
         self._stage.hand({"grips": self._grips(draft), **self._place(draft)})
         self._stage.flush()
 
-    def _place(self, draft: Draft) -> dict[str, object]:
+    def _place(self, draft: ObservationDraft) -> dict[str, object]:
         if draft.missing is None:
             return {}
         return {"place": {"id": draft.missing, "f": "mov" if draft.missing == "observed" else "scene"}}
 
-    def _grips(self, draft: Draft) -> list[dict[str, object]]:
+    def _grips(self, draft: ObservationDraft) -> list[dict[str, object]]:
         layout, grips = self._layout, []
         if draft.observer is not None:
             at = draft.observer.xy - layout.anchor_ref

@@ -35,7 +35,7 @@ class HandWishes:
     take: Callable[[], None]
 
 
-class HandPanel:
+class TransformPanel:
     """Widgets; they know nothing of maps."""
 
     def __init__(self, gui: viser.GuiApi, wishes: HandWishes) -> None:

@@ -6,25 +6,25 @@ from typing import Any, Protocol
 
 from algorithms.common.errors import MapMergeError
 from app.drawing.draw_items import Item
-from app.drawing.scene_layout import Layout
-from app.jobs.job_thread import Session
-from app.model.merge_inputs import Inputs
-from app.model.run_state import Story
+from app.drawing.scene_layout import SceneLayout
+from app.jobs.job_thread import JobThread
+from app.model.merge_inputs import MergeInputs
+from app.model.run_state import RunState
 from app.page.host import RunHost
-from app.page.page_snapshot import Desk
+from app.page.page_snapshot import PageSnapshot
 
 
 class Host(RunHost, Protocol):
     """A page with a lesson."""
 
-    session: Session
+    session: JobThread
 
     @property
-    def layout(self) -> Layout:
+    def layout(self) -> SceneLayout:
         """Where it lies in the scene."""
 
     def present(
-        self, story: Story, says: str, ink: list[Item], turn: float | None, look: bool, busy: bool
+        self, story: RunState, says: str, ink: list[Item], turn: float | None, look: bool, busy: bool
     ) -> None:
         """Show a run, as far as a story goes, on the map."""
 
@@ -45,16 +45,16 @@ class Hall(Protocol):
     """A page with a museum."""
 
     @property
-    def desk(self) -> Desk | None:
+    def desk(self) -> PageSnapshot | None:
         """What is on the page."""
 
-    def hang(self, inputs: Inputs, method: str, config: Any, label: str) -> None:
+    def hang(self, inputs: MergeInputs, method: str, config: Any, label: str) -> None:
         """Put these maps and settings on the page, without merging them."""
 
     def treat(self, method: str, config: Any) -> None:
         """Take these settings, and merge."""
 
-    def museum_left(self, desk: Desk | None) -> None:
+    def museum_left(self, desk: PageSnapshot | None) -> None:
         """Put back what was on the page before."""
 
     def museum_entered(self, open_: bool) -> None:

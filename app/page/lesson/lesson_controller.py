@@ -13,18 +13,18 @@ from algorithms.common.errors import MapMergeError
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from algorithms.methods.spectra_method import PipelineConfig
 from algorithms.methods.steps import Step
-from app.jobs.job_thread import Session
-from app.jobs.runner import Overheard
-from app.model.merge_inputs import Inputs
-from app.model.merge_job import Job
-from app.model.run_state import Story
-from app.page.lesson.figures.figure_registry import PICTURES, Dial
+from app.jobs.job_thread import JobThread
+from app.jobs.runner import TappedRunner
+from app.model.merge_inputs import MergeInputs
+from app.model.merge_job import MergeJob
+from app.model.run_state import RunState
+from app.page.lesson.figures.figure_registry import PICTURES, FigureSlider
 from app.page.lesson.hosts import Host
 from app.page.lesson.lesson_panel import LessonPanel, LessonWishes
-from app.page.lesson.lesson_run import Study, keep
+from app.page.lesson.lesson_run import LessonRun, keep
 from app.page.lesson.lesson_texts import StepText, files, filled, read_step, with_settings
 from app.page.lesson.placeholders import NUMBERS, numbers_of
-from app.page.panels.settings_panel import TuningPanel
+from app.page.panels.settings_panel import SettingsPanel
 
 OWN = "Your own settings and results come back when you leave."
 WAIT = "Working it out on these maps …"
@@ -32,26 +32,28 @@ NO_MAPS = "Load two maps and an observation: the lesson is about them."
 NOT_HERE = "The method as it is set does not come to this. Choose another method, or put its settings back."
 
 
-class Lesson:
+class LessonController:
     """Goes through the steps; listens to a session of its own.
 
     turn : held while a person's wish is carried out
     """
 
-    def __init__(self, host: Host, gui: viser.GuiApi, tuning: TuningPanel, turn: RLock, folder: Path) -> None:
+    def __init__(
+        self, host: Host, gui: viser.GuiApi, tuning: SettingsPanel, turn: RLock, folder: Path
+    ) -> None:
         self._host, self._tuning, self._turn, self._folder = host, tuning, turn, folder
         wishes = LessonWishes(
             go=self.go, move=self.move, leave=self.leave, turn=self._dialled, try_=self._try
         )
         self._panel = LessonPanel(gui, wishes)
-        self._session = Session(self, Overheard(host.session.bench, self._record), beside=host.session)
+        self._session = JobThread(self, TappedRunner(host.session.bench, self._record), beside=host.session)
         self.open = False
         self._own: tuple[str, Any] = (DEFAULT_METHOD, METHODS[DEFAULT_METHOD].defaults)
         self._files: list[Path] = []
         self._index = 0
         self._text: StepText | None = None
         self._steps: list[Step] = []
-        self._study = Study(Inputs(), None)
+        self._study = LessonRun(MergeInputs(), None)
         self._done = False  # whether the run has come to its end
         self._places: tuple[int, ...] = ()
         self._tried: tuple[int, Any] | None = None  # which thing to try, and the settings before it
@@ -133,7 +135,7 @@ class Lesson:
                 self._text = None
                 with self._host.session.drawing:
                     self._panel.broken(index, self._files[index].name, str(error))
-                    self._host.present(Story(), f"Lesson: {error}", [], None, True, False)
+                    self._host.present(RunState(), f"Lesson: {error}", [], None, True, False)
                 return
             self._show(fresh=True)
 
@@ -188,9 +190,9 @@ class Lesson:
         i, config = self._host.inputs, self._tuning.config
         self._session.stop()
         self._done = False
-        self._study = Study(i, config, self._host.seed)
+        self._study = LessonRun(i, config, self._host.seed)
         if self._possible and i.ref is not None and i.mov is not None:
-            job = Job(i.ref, i.mov, i.observations, config, self._tuning.method, self._host.seed)
+            job = MergeJob(i.ref, i.mov, i.observations, config, self._tuning.method, self._host.seed)
             self._session.request(job)
 
     @property
@@ -205,36 +207,36 @@ class Lesson:
             keep(steps, step)
             yield step
 
-    def begun(self, job: Job) -> None:
+    def begun(self, job: MergeJob) -> None:
         """The run starts."""
 
-    def show(self, job: Job, story: Story) -> None:
+    def show(self, job: MergeJob, story: RunState) -> None:
         """The run goes on: what a picture waits for may be there."""
         text, had = self._text, self._study
         if text is None or text.picture not in PICTURES or had.reached(*PICTURES[text.picture].needs):
             return
-        early = Study(had.inputs, job.config, job.seed, tuple(self._steps))
+        early = LessonRun(had.inputs, job.config, job.seed, tuple(self._steps))
         if early.reached(*PICTURES[text.picture].needs):
             self._study = early
             self._show(fresh=True)
 
-    def ending(self, job: Job, story: Story) -> None:
+    def ending(self, job: MergeJob, story: RunState) -> None:
         """There is nothing to work out."""
 
-    def waits(self, job: Job, before: int) -> None:
+    def waits(self, job: MergeJob, before: int) -> None:
         """Other tabs' runs are at work; the picture says that it is being worked out."""
 
-    def ended(self, job: Job, story: Story) -> None:
+    def ended(self, job: MergeJob, story: RunState) -> None:
         """The run came to its end."""
         had = bool(self._study.steps)
-        self._study = Study(self._study.inputs, job.config, job.seed, tuple(self._steps))
+        self._study = LessonRun(self._study.inputs, job.config, job.seed, tuple(self._steps))
         self._done = True
         self._show(fresh=not had)
 
-    def stopped(self, job: Job, story: Story) -> None:
+    def stopped(self, job: MergeJob, story: RunState) -> None:
         """The run is no longer wanted."""
 
-    def failed(self, job: Job, story: Story, error: Exception) -> None:
+    def failed(self, job: MergeJob, story: RunState, error: Exception) -> None:
         """The run could not go on."""
         self._done = True
         self._panel.picture(f"These maps cannot be merged: {error}")
@@ -267,8 +269,11 @@ class Lesson:
                 self._panel.trials(text.trials, answers)
             self._draw(text, study, fresh)
 
-    def _draw(self, text: StepText, study: Study, fresh: bool) -> None:
-        host, says = self._host, f"Lesson, step {self._index + 1} of {len(self._files)}: {text.title}"
+    def _draw(self, text: StepText, study: LessonRun, fresh: bool) -> None:
+        host, says = (
+            self._host,
+            f"Lesson, step {self._index + 1} of {len(self._files)}: {text.title}",
+        )
         picture = PICTURES.get(text.picture)
         ready = picture is not None and self._possible and study.reached(*picture.needs)
         if picture is None or not ready:
@@ -276,7 +281,7 @@ class Lesson:
             over = self._done or not self._possible
             self._panel.picture(NOT_HERE if waiting == WAIT and over else waiting)
             self._panel.dials((), ())
-            host.present(Story(study.config), says, [], None, fresh, waiting == WAIT and not over)
+            host.present(RunState(study.config), says, [], None, fresh, waiting == WAIT and not over)
             return
         dials = picture.dials(study)
         places = self._placed(dials)
@@ -291,7 +296,7 @@ class Lesson:
             False,
         )
 
-    def _placed(self, dials: tuple[Dial, ...]) -> tuple[int, ...]:
+    def _placed(self, dials: tuple[FigureSlider, ...]) -> tuple[int, ...]:
         """Where the dials stand, or where they begin."""
         if len(self._places) != len(dials):
             self._places = tuple(dial.start for dial in dials)

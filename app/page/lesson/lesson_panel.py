@@ -10,8 +10,8 @@ import viser
 
 from app.drawing.palette import QUIET
 from app.page.lesson.equations import equations_html
-from app.page.lesson.figures.figure_registry import Dial, place_of, shown
-from app.page.lesson.lesson_texts import Trial
+from app.page.lesson.figures.figure_registry import FigureSlider, place_of, shown
+from app.page.lesson.lesson_texts import Exercise
 from app.page.panels.html_widgets import box
 from app.page.panels.sparing import put
 
@@ -45,7 +45,7 @@ class LessonPanel:
     def __init__(self, gui: viser.GuiApi, wishes: LessonWishes) -> None:
         self._wishes = wishes
         self._titles: tuple[str, ...] = ("…",)
-        self._dials: tuple[Dial, ...] = ()
+        self._dials: tuple[FigureSlider, ...] = ()
         self._panel = gui.add_panel(visible=False)
         with self._panel.add_tab("Lesson", icon=viser.Icon.SCHOOL):
             moves = gui.add_button_group("", (BACK, NEXT, LEAVE))
@@ -125,7 +125,7 @@ class LessonPanel:
             svg = f'<div class="mm-wait">{escape(svg)}</div>'
         self._picture.content = f'<div class="mm-frame">{svg}</div>' if svg else ""
 
-    def dials(self, dials: tuple[Dial, ...], places: Sequence[int]) -> None:
+    def dials(self, dials: tuple[FigureSlider, ...], places: Sequence[int]) -> None:
         """Show what can be moved in the picture, and where it stands."""
         self._dials = dials
         for k, slider in enumerate(self._sliders):
@@ -147,7 +147,7 @@ class LessonPanel:
             for dial, slider in zip(self._dials, self._sliders, strict=False)
         )
 
-    def trials(self, trials: Sequence[Trial], told: Sequence[str]) -> None:
+    def trials(self, trials: Sequence[Exercise], told: Sequence[str]) -> None:
         """Show what there is to try.
 
         told : the answer to each, "" where it is not shown yet

@@ -18,8 +18,8 @@ from algorithms.optimisation.objective import Objective, make_objective
 from algorithms.optimisation.optimiser import SearchState
 from algorithms.optimisation.particle_swarm import settled_within, swarm
 from algorithms.spectra.hough_spectra import hough_transform
-from app.model.merge_inputs import Inputs
-from app.model.run_state import Story
+from app.model.merge_inputs import MergeInputs
+from app.model.run_state import RunState
 
 D = TypeVar("D")
 
@@ -38,13 +38,13 @@ def keep(steps: list[Step], step: Step) -> None:
     steps.append(step)
 
 
-class Study:
+class LessonRun:
     """One run, as far as it has come. Everything drawn from it is worked out once, when asked for.
 
     steps : of the run, in their order
     """
 
-    def __init__(self, inputs: Inputs, config: Any, seed: int = 0, steps: tuple[Step, ...] = ()) -> None:
+    def __init__(self, inputs: MergeInputs, config: Any, seed: int = 0, steps: tuple[Step, ...] = ()) -> None:
         self.inputs, self.config, self.seed, self.steps = inputs, config, seed, steps
 
     def all(self, kind: type[D]) -> list[D]:
@@ -60,10 +60,10 @@ class Study:
         told = {type(step.detail) for step in self.steps}
         return told.issuperset(kinds)
 
-    def story(self, kind: type, index: int = -1) -> Story:
+    def story(self, kind: type, index: int = -1) -> RunState:
         """The run up to a step of a kind, as the page draws it; empty where it has not come to it."""
         found = [k for k, step in enumerate(self.steps) if isinstance(step.detail, kind)]
-        story = Story(self.config)
+        story = RunState(self.config)
         for step in self.steps[: found[index] + 1] if found else ():
             story.tell(step)
         return story

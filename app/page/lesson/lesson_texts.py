@@ -30,7 +30,7 @@ EXAMPLE = "begin the file with a line ---, then title: …, then a line ---, the
 
 
 @dataclass(frozen=True)
-class Trial:
+class Exercise:
     """One thing to try.
 
     ask      : what to do, and what to look at
@@ -53,7 +53,7 @@ class StepText:
     title: str
     picture: str
     equations: tuple[str, ...]
-    trials: tuple[Trial, ...]
+    trials: tuple[Exercise, ...]
     body: str
 
 
@@ -200,7 +200,7 @@ def _list(fields: Fields, key: str, remedy: str) -> list[Any]:
     return value
 
 
-def _trial(fields: Fields, index: int, entry: Any) -> Trial:
+def _trial(fields: Fields, index: int, entry: Any) -> Exercise:
     if not isinstance(entry, dict):
         raise fields.error("try", f"holds {shown(entry)}", "give {ask: …, answer: …} per thing to try")
     own = Fields(fields.source, entry, f"try {index + 1}: ")
@@ -209,7 +209,7 @@ def _trial(fields: Fields, index: int, entry: Any) -> Trial:
     button = own.text("button", "say what the button is called") if "button" in entry else ""
     if bool(button) != bool(settings):
         raise own.error("button and set", "are not both there", "give both of them, or neither")
-    return Trial(
+    return Exercise(
         own.text("ask", "say what to try"), own.text("answer", "say what is to be seen"), button, settings
     )
 

@@ -12,16 +12,16 @@ from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import pose_error
 from algorithms.methods.registry import METHODS
 from algorithms.methods.steps import MergeResult
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.model.settings import settings_of, value_at, word_for
 from app.model.status_text import apart_by
 from app.page.lesson.hosts import Hall
 from app.page.lesson.lesson_texts import Exhibit, Settings, exhibit_case, files, read_exhibit, with_settings
 from app.page.lesson.museum_panel import MuseumPanel, MuseumWishes
-from app.page.page_snapshot import Desk
+from app.page.page_snapshot import PageSnapshot
 
 
-class Museum:
+class MuseumController:
     """Knows the exhibit at hand, and what there was before the visit.
 
     turn : held while a person's wish is carried out
@@ -31,11 +31,11 @@ class Museum:
         self._hall, self._turn, self._folder = hall, turn, folder
         self._panel = MuseumPanel(gui, MuseumWishes(self.pick, self.cure, self._again, self.leave))
         self.open = False
-        self._before: Desk | None = None
+        self._before: PageSnapshot | None = None
         self._files: list[Path] = []
         self._index = 0
         self._exhibit: Exhibit | None = None
-        self._inputs = Inputs()
+        self._inputs = MergeInputs()
 
     def enter(self) -> None:
         """Begin where one was the last time."""
@@ -71,7 +71,7 @@ class Museum:
             self._index, self._exhibit = index, None
             try:
                 exhibit = read_exhibit(self._files[index])
-                self._inputs = Inputs.of(exhibit_case(exhibit))
+                self._inputs = MergeInputs.of(exhibit_case(exhibit))
             except MapMergeError as error:
                 self._panel.broken(index, str(error))
                 return
@@ -93,7 +93,7 @@ class Museum:
     def _again(self) -> None:
         self.pick(self._index)
 
-    def told(self, inputs: Inputs, method: str, config: Any, result: MergeResult) -> None:
+    def told(self, inputs: MergeInputs, method: str, config: Any, result: MergeResult) -> None:
         """A merge came to its end: if it was the exhibit's, or its cure's, say what happened."""
         exhibit, truth = self._exhibit, self._inputs.truth
         if exhibit is None or inputs is not self._inputs or truth is None or truth.T_ref_mov is None:

@@ -22,9 +22,9 @@ from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.branch_and_bound import ProofState
 from app.model.objective_label import measure_of
 from app.model.status_text import likelihood
-from app.page.lesson.lesson_run import Study
+from app.page.lesson.lesson_run import LessonRun
 
-Number = tuple[tuple[type, ...], Callable[[Study], str]]  # what the run must have come to, and the words
+Number = tuple[tuple[type, ...], Callable[[LessonRun], str]]  # what the run must have come to, and the words
 
 
 def _n(value: float, digits: int = 2) -> str:
@@ -39,21 +39,21 @@ def _angle(turn: float) -> str:
     return f"{_n(degrees(turn), 1)}°"
 
 
-def _seen(study: Study):  # type: ignore[no-untyped-def]
+def _seen(study: LessonRun):  # type: ignore[no-untyped-def]
     return study.inputs.observations[0]
 
 
-def _walls(study: Study, number: int) -> int:
+def _walls(study: LessonRun, number: int) -> int:
     grid = study.inputs.ref if number == 1 else study.inputs.mov
     return 0 if grid is None else int(grid.occupied.sum())
 
 
-def _cells(study: Study, number: int) -> int:
+def _cells(study: LessonRun, number: int) -> int:
     grid = study.inputs.ref if number == 1 else study.inputs.mov
     return 0 if grid is None else int(grid.cells.size)
 
 
-def _twin(study: Study) -> str:
+def _twin(study: LessonRun) -> str:
     """How near the runner-up comes to the strongest turn, its own twin left out."""
     match = study.get(HoughDetail).match
     others = [s for s, twin in zip(match.strengths, match.twins, strict=True) if not twin][1:]
@@ -70,12 +70,12 @@ def _disc(window: CoupledWindow) -> float:
     return float(pi * window.k**2 * np.sqrt(np.linalg.det(window.covariances[0])))
 
 
-def _ratio(study: Study) -> str:
+def _ratio(study: LessonRun) -> str:
     told = study.get(WindowDetail)
     return f"{float(np.prod(told.paper.high - told.paper.low)) / _disc(told.coupled):,.0f}"
 
 
-def _transforms(study: Study) -> str:
+def _transforms(study: LessonRun) -> str:
     """How many transforms of the lattice the coupled window holds: a cell, and the turn that moves a
     wall at 2 σ_aug by a cell."""
     cell, spread = study.get(CandidatesDetail).objective.cell, study.config.augment.spread
@@ -83,22 +83,22 @@ def _transforms(study: Study) -> str:
     return f"{turns * _disc(study.get(WindowDetail).coupled) / cell**2:,.0f}"
 
 
-def _proof(study: Study) -> ProofState:
+def _proof(study: LessonRun) -> ProofState:
     return study.get(ProvenDetail).state
 
 
-def _value(study: Study, value: float) -> str:
+def _value(study: LessonRun, value: float) -> str:
     return measure_of(study.config).text(value)
 
 
-def _rival(study: Study) -> str:
+def _rival(study: LessonRun) -> str:
     state = _proof(study)
     if not len(state.rivals) or state.best_value <= 0:
         return "no rival above half of it"
     return f"a rival with {state.rival_value / state.best_value:.0%} of it"
 
 
-def _verdict(study: Study):  # type: ignore[no-untyped-def]
+def _verdict(study: LessonRun):  # type: ignore[no-untyped-def]
     return study.get(MergeResult).verdict
 
 
@@ -180,6 +180,6 @@ NUMBERS: dict[str, Number] = {
 }
 
 
-def numbers_of(study: Study) -> dict[str, str]:
+def numbers_of(study: LessonRun) -> dict[str, str]:
     """The words for every number that the run has come to."""
     return {name: words(study) for name, (needs, words) in NUMBERS.items() if study.reached(*needs)}

@@ -28,7 +28,7 @@ from algorithms.optimisation.branch_and_bound import ProofState
 from app.drawing.palette import LIGHT, css
 from app.model import chart_data as charts
 from app.model import status_text as words
-from app.model.run_state import Story
+from app.model.run_state import RunState
 from app.page.panels.html_widgets import box, table
 
 TURN, SHIFT, SWARM, PROOF, RESULT = "Turn", "Shift", "Swarm", "Proof", "Result"
@@ -66,7 +66,7 @@ def _entitle(plot: Any, title: str) -> None:
         plot.title = title
 
 
-class PlotDock:
+class ChartsPanel:
     """Follows the run until the person chooses a page of it; the next Merge follows again."""
 
     def __init__(self, client: viser.ClientHandle, turned: Callable[[], None]) -> None:
@@ -265,7 +265,7 @@ class PlotDock:
             plot.data = (NOTHING[0], *(NOTHING[1] for _ in plot.data[1:]))
         self._show_page()
 
-    def show(self, story: Story, follow: bool) -> None:
+    def show(self, story: RunState, follow: bool) -> None:
         """Draw what has changed since the last call; ``follow`` turns to the page of the stage at hand."""
         detail = story.last.detail if story.last else None
         hough, refine = story.get(HoughDetail), story.get(RefineDetail)
@@ -326,7 +326,7 @@ class PlotDock:
         _entitle(self._circle, charts.CIRCLE[0].format(measure))
         self._circle.data = charts.circle(detail)
 
-    def _prove(self, story: Story, state: ProofState) -> None:
+    def _prove(self, story: RunState, state: ProofState) -> None:
         measure, span = story.measure, charts.proof_range(state, story.ceiling)
         # the axis first: its curves are clipped to it
         if self._new("proof scale", span):

@@ -13,7 +13,7 @@ from app.drawing.palette import LIGHT, QUIET
 from app.page.cancellable_task import CancellableTask, DownloadTask
 from app.page.panels.html_widgets import box
 from app.page.panels.replay import ReplayButton
-from app.report.export import ACTED_UPON, ALONE, ARCHIVE, Harvest
+from app.report.export import ACTED_UPON, ALONE, ARCHIVE, ResultFiles
 from app.report.ros_transform import publish_command
 from app.system.cancellation import Check
 
@@ -26,7 +26,7 @@ class ExportPanel:
 
     def __init__(self, client: viser.ClientHandle, errand: CancellableTask) -> None:
         self._client, self._deliver = client, DownloadTask(client, errand)
-        self._harvest: Harvest | None = None
+        self._harvest: ResultFiles | None = None
         gui = client.gui
         with gui.add_folder("Export", order=70):
             self._all = gui.add_button(
@@ -45,7 +45,7 @@ class ExportPanel:
             self._line = gui.add_html("")
             self._note = gui.add_html(_NOTHING)  # last, so that nothing moves when it comes
 
-    def offer(self, harvest: Harvest | None) -> None:
+    def offer(self, harvest: ResultFiles | None) -> None:
         """Take this result, or none; a replay of its run is offered apart."""
         self._show(harvest, there=harvest is not None)
         self._note.content = "" if harvest is not None else _NOTHING
@@ -60,7 +60,7 @@ class ExportPanel:
         self._note.content = box(why, "plain", faded=True)
         self._line.content = line_html(last, faded=True)
 
-    def _show(self, harvest: Harvest | None, there: bool) -> None:
+    def _show(self, harvest: ResultFiles | None, there: bool) -> None:
         self._harvest = harvest
         self.replay.offer(None)
         self.replay.visible(there)
@@ -91,7 +91,7 @@ class ExportPanel:
         yes.on_click(lambda _: go(True))
         no.on_click(lambda _: go(False))
 
-    def _send(self, harvest: Harvest, name: str) -> None:
+    def _send(self, harvest: ResultFiles, name: str) -> None:
         def make(check: Check) -> bytes:
             files = harvest.make(check)
             return harvest.archive() if name == ARCHIVE else files[name]
@@ -99,7 +99,7 @@ class ExportPanel:
         self._deliver("Making the files: map, pictures and report.", name, make)
 
 
-def line_html(harvest: Harvest, faded: bool = False) -> str:
+def line_html(harvest: ResultFiles, faded: bool = False) -> str:
     """HTML of the line that publishes the transform, with a button that copies it: see measure_tool.js."""
     if not harvest.result.verdict.accepted:
         return box("Refused: there is no transform to publish.", "refused", faded=faded)

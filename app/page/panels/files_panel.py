@@ -16,7 +16,7 @@ from algorithms.files.case_folder import observations_from_bytes, read_case
 from algorithms.files.map_file import map_from_bytes, parse_meta
 from algorithms.maps.grid_map import GridMap
 from app.drawing.palette import QUIET
-from app.model.merge_inputs import Files, Inputs, Upload
+from app.model.merge_inputs import Files, MergeInputs, Upload
 from app.page.cancellable_task import CancellableTask
 from app.page.panels.image_form import ImageForm
 from app.system import data_paths as paths
@@ -59,7 +59,9 @@ def _large(upload: Upload) -> bool:
     return max(len(upload.content), pixels) >= LARGE
 
 
-def inputs_from(uploads: dict[str, Upload], known: Known | None = None, check: Check = unwatched) -> Inputs:
+def inputs_from(
+    uploads: dict[str, Upload], known: Known | None = None, check: Check = unwatched
+) -> MergeInputs:
     """What the files so far make up: a map where both its files are there, observations.
 
     known  : maps that were read before, by their two files; holds these in the end
@@ -93,7 +95,7 @@ def inputs_from(uploads: dict[str, Upload], known: Known | None = None, check: C
     seen = uploads.get("observation")
     bare = tuple(n for n in MAPS if f"image{n}" in uploads and f"yaml{n}" not in uploads)
     ref, mov = grid(1), grid(2)
-    inputs = Inputs(
+    inputs = MergeInputs(
         ref=ref,
         mov=mov,
         observations=observations_from_bytes(seen.name, seen.content) if seen else (),
@@ -113,7 +115,7 @@ class FilesPanel:
     def __init__(
         self,
         gui: viser.GuiApi,
-        load: Callable[[Inputs], None],
+        load: Callable[[MergeInputs], None],
         report: Report,
         chosen: str,
         save: Callable[[str, bytes], None],
@@ -191,7 +193,7 @@ class FilesPanel:
             self._uploads.clear()
             self._offer_forms()
             self._tell()
-            self._load(Inputs.of(case))
+            self._load(MergeInputs.of(case))
 
     def _arrived(self, key: str, event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
         """Take what the button holds; it would keep that, refused or not, for as long as the tab is there."""
@@ -224,7 +226,7 @@ class FilesPanel:
                 return
             self._show(inputs)
 
-    def _read(self, upload: Upload) -> Inputs:
+    def _read(self, upload: Upload) -> MergeInputs:
         """What the files make up now that this one has come; raises Cancelled where Stop was pressed."""
         if self._errand is None or not _large(upload):
             self._offer_forms()
@@ -242,9 +244,9 @@ class FilesPanel:
         with self._turn:
             self._uploads.clear()
             self._offer_forms()
-            self._show(Inputs())
+            self._show(MergeInputs())
 
-    def _show(self, inputs: Inputs) -> None:
+    def _show(self, inputs: MergeInputs) -> None:
         """What was on the page gives way to the uploads: nobody merges other maps than they think."""
         self._tell()
         self._taken = NONE

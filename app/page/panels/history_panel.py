@@ -8,7 +8,7 @@ import viser
 
 from algorithms.verdict.decision import Outcome
 from app.page.panels.sparing import put
-from app.page.undo_history import Entry, History
+from app.page.undo_history import UndoHistory, UndoStep
 
 DOTS = {Outcome.MERGED: "#009E73", Outcome.BENT: "#E69F00", Outcome.REFUSED: "#D55E00"}
 
@@ -21,7 +21,7 @@ class HistoryPanel:
         with gui.add_folder("History", order=80.0, expand_by_default=False):
             self._list = gui.add_html("")
 
-    def show(self, history: History) -> None:
+    def show(self, history: UndoHistory) -> None:
         """Show it as it is now."""
         entries, at = history.entries, history.position
         undo = entries[at].label if at > 0 else ""
@@ -49,7 +49,7 @@ def steps_html(undo: str, redo: str) -> str:
     return f'<div class="mm-steps">{"".join(buttons)}</div>'
 
 
-def history_html(history: History) -> str:
+def history_html(history: UndoHistory) -> str:
     """HTML of a button per entry, newest first; map_viewer.js tells which one was pressed."""
     rows = []
     for number, entry in reversed(list(enumerate(history.entries))):
@@ -63,7 +63,7 @@ def history_html(history: History) -> str:
     return f'<div class="mm-history">{"".join(rows)}</div>'
 
 
-def _dot(entry: Entry) -> str:
+def _dot(entry: UndoStep) -> str:
     """A dot in the colour of the verdict, where there is one."""
     result = entry.desk.result
     if result is None:

@@ -11,14 +11,14 @@ from app.drawing.palette import LIGHT
 from app.drawing.svg.verdict_bars import bars
 from app.model import status_text as words
 from app.model.contradiction_text import MOST_PLACES, signed, summary, whose
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.page.panels.html_widgets import box, table
 from app.report.result_rows import numbers, times
 
 
 def result_html(
     result: MergeResult,
-    inputs: Inputs,
+    inputs: MergeInputs,
     config: Any = None,
     found: Conflicts | None = None,
     faded: bool = False,

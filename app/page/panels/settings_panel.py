@@ -62,7 +62,7 @@ def _in_metres(setting: Setting) -> bool:
     return setting.bounds is not None and setting.bounds.unit == "m" and bool(setting.bounds.symbol)
 
 
-class TuningPanel:
+class SettingsPanel:
     """Owns the config. ``changed`` is called after every change by the person, in the same turn: nobody else
     gets one before everything that goes by the config has heard of it.
     """

@@ -16,15 +16,15 @@ from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from app.drawing.png import png_base64
 from app.drawing.svg.thumbnail import thumbnail
 from app.evaluation.evaluation_archive import contest_archive
-from app.evaluation.method_comparison import Score, contest
-from app.jobs.background_job import Background, beside_the_page
+from app.evaluation.method_comparison import ComparedRun, compare_methods
+from app.jobs.background_job import BackgroundJob, beside_the_page
 from app.jobs.executor import Executor
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.page.research.comparison_panel import ALL, FAMILIES, Card, ComparePanel, CompareWishes
 from app.page.research.host import ResearchHost
-from app.page.research.other_result import Guest
+from app.page.research.other_result import OtherResult
 from app.page.research.run_summary import outcome_of
-from app.web.browser_events import Channel
+from app.web.browser_events import BrowserEvents
 
 FIRST = (DEFAULT_METHOD, "paper-argmax", "sift")  # ticked in the beginning: quick, and one of each family
 
@@ -32,20 +32,20 @@ FIRST = (DEFAULT_METHOD, "paper-argmax", "sift")  # ticked in the beginning: qui
 class Host(ResearchHost, Protocol):
     """The page, as far as it is asked from here."""
 
-    def look(self, guest: Guest) -> None:
+    def look(self, guest: OtherResult) -> None:
         """Show what a method has found over map 1."""
 
     def back(self) -> None:
         """Show one's own result again."""
 
 
-class Compare:
+class ComparisonController:
     """Of one tab. ``turn`` and ``drawing`` as in the page: the first is taken before the second."""
 
     def __init__(
         self,
         gui: viser.GuiApi,
-        channel: Channel,
+        channel: BrowserEvents,
         turn: RLock,
         drawing: RLock,
         host: Host,
@@ -53,14 +53,14 @@ class Compare:
     ) -> None:
         self._host, self._turn, self._drawing, self._executor = host, turn, drawing, executor
         self._chosen = {name for name in FIRST if name in METHODS}
-        self._pair = Inputs()
-        self._found: dict[str, Guest] = {}
+        self._pair = MergeInputs()
+        self._found: dict[str, OtherResult] = {}
         self._pictures: dict[str, str] = {}
         self._asked: list[str] = []  # of the run at hand, in their order
         self._waiting: list[str] = []  # of those, whose end is not known yet
-        self._guest: Guest | None = None
+        self._guest: OtherResult | None = None
         self._began = 0.0
-        self._work = Background(self, drawing, "comparison")
+        self._work = BackgroundJob(self, drawing, "comparison")
         wishes = CompareWishes(self._run, self._stop, self._group, self._save)
         self._panel = ComparePanel(gui, wishes)
         channel.on("pick", self._pick, method=tuple(METHODS), yes=bool)
@@ -73,7 +73,7 @@ class Compare:
 
     # --- what the page tells ----------------------------------------------------------------------
 
-    def loaded(self, inputs: Inputs) -> None:
+    def loaded(self, inputs: MergeInputs) -> None:
         """These inputs are on the page; what was found on others is forgotten."""
         old, self._pair = self._pair, inputs
         if not inputs.same_pair(old):
@@ -93,18 +93,18 @@ class Compare:
         self._pictures.clear()
         self._draw()
 
-    def shown(self, guest: Guest | None) -> None:
+    def shown(self, guest: OtherResult | None) -> None:
         """This lies over map 1 now; None: the page's own."""
         if self._guest is not guest:
             self._guest = guest
             self._draw()
 
     @property
-    def found(self) -> tuple[Inputs, dict[str, Guest], set[str]]:
+    def found(self) -> tuple[MergeInputs, dict[str, OtherResult], set[str]]:
         """The pair, what came of methods on it, and those that are ticked: for a tab that is reloaded."""
         return self._pair, dict(self._found), set(self._chosen)
 
-    def resume(self, found: tuple[Inputs, dict[str, Guest], set[str]] | None) -> None:
+    def resume(self, found: tuple[MergeInputs, dict[str, OtherResult], set[str]] | None) -> None:
         """Take up what an earlier tab had found on the pair that is loaded."""
         if found is not None and found[0].same_pair(self._pair):
             _, self._found, self._chosen = found
@@ -136,10 +136,10 @@ class Compare:
             case = Case(i.name or "your maps", i.ref, i.mov, i.observations, "", i.truth)
             configs = {name: self._host.settings_for(name) for name in self._asked}
 
-            def work(stop: Event) -> Iterator[tuple[Guest, str]]:
+            def work(stop: Event) -> Iterator[tuple[OtherResult, str]]:
                 pairs = [(case.name, case)]
-                for score in contest(pairs, configs, self._executor(1), seed, stop):
-                    guest = Guest(score.method, configs[score.method], seed, score.trial)
+                for score in compare_methods(pairs, configs, self._executor(1), seed, stop):
+                    guest = OtherResult(score.method, configs[score.method], seed, score.trial)
                     yield guest, self._painted(guest, i)  # here nobody waits for it
 
             self._work.start(work)
@@ -166,7 +166,9 @@ class Compare:
 
     def _save(self) -> None:
         i = self._pair
-        scores = [Score(i.name or "your maps", name, guest.trial) for name, guest in self._found.items()]
+        scores = [
+            ComparedRun(i.name or "your maps", name, guest.trial) for name, guest in self._found.items()
+        ]
         if i.ref is None or i.mov is None or not scores:
             return
         case = Case(i.name or "your maps", i.ref, i.mov, i.observations, "", i.truth)
@@ -184,7 +186,7 @@ class Compare:
         self._began = perf_counter()
         self._panel.say("Starting.", 0.0)
 
-    def told(self, part: tuple[Guest, str]) -> None:
+    def told(self, part: tuple[OtherResult, str]) -> None:
         """A method has ended."""
         guest, picture = part
         self._found[guest.method], self._pictures[guest.method] = guest, picture
@@ -227,13 +229,13 @@ class Compare:
             note="" if default else "your settings",
         )
 
-    def _picture(self, guest: Guest) -> str:
+    def _picture(self, guest: OtherResult) -> str:
         """The merged map as a data URI; made once in the colours of the page."""
         if guest.method not in self._pictures:
             self._pictures[guest.method] = self._painted(guest, self._pair)
         return self._pictures[guest.method]
 
-    def _painted(self, guest: Guest, i: Inputs) -> str:
+    def _painted(self, guest: OtherResult, i: MergeInputs) -> str:
         pose = guest.trial.pose
         if pose is None or i.ref is None or i.mov is None:
             return ""

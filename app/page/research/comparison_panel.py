@@ -13,7 +13,7 @@ from algorithms.methods.registry import METHODS, Family
 from app.drawing.palette import LIGHT, QUIET
 from app.model.status_text import typeset
 from app.page.panels.sparing import put
-from app.page.research.run_summary import Outcome
+from app.page.research.run_summary import RunSummary
 
 OURS, PAPER, RIVALS, ALL, NONE = "Ours", "Paper's", "Rivals", "All", "None"
 FAMILIES: dict[Family, tuple[str, str]] = {
@@ -56,7 +56,7 @@ class Card:
 
     chosen: bool
     state: State = "idle"
-    outcome: Outcome | None = None
+    outcome: RunSummary | None = None
     picture: str = ""
     shown: bool = False
     old: str = ""

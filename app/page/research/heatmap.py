@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from app.drawing.palette import VIRIDIS, Palette, css, viridis
-from app.drawing.svg.svg_canvas import Sheet, worded
-from app.evaluation.parameter_sweep import Axis, Plan
+from app.drawing.svg.svg_canvas import SvgCanvas, worded
+from app.evaluation.parameter_sweep import Axis, SweepPlan
 from app.page.research.sweep_curves import Points, field, reading, span, text_of, title_of, word_of
 
 WIDE, RIGHT, TOP = 296.0, 8.0, 24.0
@@ -18,7 +18,7 @@ LONGEST = 10  # letters of a word beside it
 
 
 def heat_svg(
-    plan: Plan, points: Points, measure: str, judged: bool, here: int | None, palette: Palette
+    plan: SweepPlan, points: Points, measure: str, judged: bool, here: int | None, palette: Palette
 ) -> str:
     """SVG of the field; every cell that is there tells its number and can be pressed: see research.js.
 
@@ -32,7 +32,7 @@ def heat_svg(
     cell = wide / columns, high / rows
     values = field(plan, points, measure)
     low, top = span(values, measure, len(plan.seeds))
-    sheet = Sheet(height=TOP + high + 78, width=WIDE)
+    sheet = SvgCanvas(height=TOP + high + 78, width=WIDE)
     title = title_of(measure, plan, judged)
     sheet.text(4, 13, title, 12, bold=True)
     pixels = np.full((rows, columns, 3), palette.unknown, dtype=np.uint8)
@@ -59,11 +59,11 @@ def heat_svg(
     return sheet.svg(f"{title}: {plan.setting(plan.y).label} over {plan.setting(plan.x).label}")
 
 
-def _at(plan: Plan, axis: Axis, number: int) -> str:
+def _at(plan: SweepPlan, axis: Axis, number: int) -> str:
     return f"{plan.setting(axis).label}: {word_of(plan, axis, axis.values[number])}"
 
 
-def _short(plan: Plan, value: Any) -> str:
+def _short(plan: SweepPlan, value: Any) -> str:
     """A value of the second setting, as it stands beside its row."""
     assert plan.y is not None
     word = word_of(plan, plan.y, value)
@@ -74,7 +74,7 @@ def _escaped(words: str) -> str:
     return words.replace("&", "&amp;").replace("<", "&lt;")
 
 
-def _ticks(sheet: Sheet, plan: Plan, cell: tuple[float, float], left: float, high: float) -> None:
+def _ticks(sheet: SvgCanvas, plan: SweepPlan, cell: tuple[float, float], left: float, high: float) -> None:
     """A word per row and column; of many, as many as there is room for."""
     assert plan.y is not None
     longest = max(len(word_of(plan, plan.x, value)) for value in plan.x.values)
@@ -88,7 +88,7 @@ def _ticks(sheet: Sheet, plan: Plan, cell: tuple[float, float], left: float, hig
         sheet.text(left - 5, y, _short(plan, plan.y.values[k]), 10, "end")
 
 
-def _scale(sheet: Sheet, left: float, y: float, wide: float, low: str, high: str) -> None:
+def _scale(sheet: SvgCanvas, left: float, y: float, wide: float, low: str, high: str) -> None:
     sheet.image(VIRIDIS[None, :, :], left, y, wide, 9, smooth=True)
     sheet.text(left, y + 21, low, 10)
     sheet.text(left + wide, y + 21, high, 10, "end")

@@ -12,8 +12,8 @@ from algorithms.maps.map_fusion import fuse
 from algorithms.methods.registry import METHODS
 from algorithms.methods.steps import Answer, AnswersDetail, AugmentDetail, ObservationDetail, Step
 from algorithms.observations.observation import Observation, encounters_of
-from app.evaluation.method_run import Trial
-from app.model.run_state import Story
+from app.evaluation.method_run import MethodRun
+from app.model.run_state import RunState
 from app.page.panels.html_widgets import box, table
 from app.page.research.run_summary import outcome_of, verdict_mood
 
@@ -21,7 +21,7 @@ NOT_YOURS = "This is another method's merge, to be looked at. Go back to your ow
 
 
 @dataclass(frozen=True)
-class Guest:
+class OtherResult:
     """What a method has found on the loaded pair.
 
     config : the settings it ran with
@@ -30,7 +30,7 @@ class Guest:
     method: str
     config: Any
     seed: int
-    trial: Trial
+    trial: MethodRun
 
     @property
     def title(self) -> str:
@@ -43,12 +43,12 @@ class Guest:
         assert self.trial.pose is not None
         return self.trial.pose
 
-    def story(self, ref: GridMap, mov: GridMap, seen: tuple[Observation, ...], own: Story) -> Story:
+    def story(self, ref: GridMap, mov: GridMap, seen: tuple[Observation, ...], own: RunState) -> RunState:
         """The end of a run that found this; raises TooLargeError.
 
         own : of the page's own run, whose levels are kept: they do not depend on the answer
         """
-        story = Story(self.config)
+        story = RunState(self.config)
         augmented = own.get(AugmentDetail)
         if augmented is not None:
             story.tell(Step("augment", augmented, 0.0))

@@ -12,30 +12,30 @@ from algorithms.common.errors import MapMergeError
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.registry import METHODS
 from algorithms.verdict.contradictions import Conflicts, find_conflicts
-from app.model.run_state import Story
+from app.model.run_state import RunState
 from app.model.view_modes import MAP
 from app.page.cancellable_task import DownloadTask
 from app.page.part import Part
-from app.page.research.comparison_controller import Compare
-from app.page.research.other_result import NOT_YOURS, Guest
+from app.page.research.comparison_controller import ComparisonController
+from app.page.research.other_result import NOT_YOURS, OtherResult
 from app.page.research.run_summary import verdict_mood
-from app.page.research.sweep_controller import Sweep
+from app.page.research.sweep_controller import SweepController
 from app.system.cancellation import Cancelled
 
 
 class Researching(Part):
     """The part of a Page that compares and sweeps."""
 
-    _guest: Guest | None = None  # who is looked at in place of one's own result
+    _guest: OtherResult | None = None  # who is looked at in place of one's own result
 
     def _research_with(self, gui: viser.GuiApi) -> None:
         """Add both tabs to the dock of the plots."""
         self._deliver = DownloadTask(self._client, self._errand)
         both = self._turn, self.session.drawing
         with self._plots.add_tab("Compare", viser.Icon.SCALE):
-            self._compare_tab = Compare(gui, self._channel, *both, self)
+            self._compare_tab = ComparisonController(gui, self._channel, *both, self)
         with self._plots.add_tab("Sweep", viser.Icon.CHART_DOTS):
-            self._sweep_tab = Sweep(gui, self._channel, *both, self)
+            self._sweep_tab = SweepController(gui, self._channel, *both, self)
         self._channel.on("back", self.back)
 
     # --- what the tabs ask ------------------------------------------------------------------------
@@ -68,7 +68,7 @@ class Researching(Part):
 
     # --- another method's transform over map 1 ----------------------------------------------------
 
-    def look(self, guest: Guest) -> None:
+    def look(self, guest: OtherResult) -> None:
         """Show what a method has found, in place of one's own result; undo goes back."""
         self._lesson.leave()
         self.session.stop()
@@ -101,7 +101,7 @@ class Researching(Part):
                 self._timeline.note(own, "back to one's own")
                 self._restore(own)
 
-    def _merged_by(self, guest: Guest) -> tuple[Story, Conflicts]:
+    def _merged_by(self, guest: OtherResult) -> tuple[RunState, Conflicts]:
         """What it would have told, and where the maps then contradict each other; raises TooLargeError."""
         i = self._inputs
         assert i.ref is not None
@@ -111,7 +111,7 @@ class Researching(Part):
         assert fusion is not None
         return story, find_conflicts(fusion)
 
-    def _welcome(self, guest: Guest, story: Story, found: Conflicts) -> None:
+    def _welcome(self, guest: OtherResult, story: RunState, found: Conflicts) -> None:
         """Draw it. Whoever calls is drawing."""
         self._story, self._guest = story, guest
         if self._run.view != MAP:

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from math import degrees
 from typing import Literal
 
-from app.evaluation.method_run import Trial
+from app.evaluation.method_run import MethodRun
 
 Mood = Literal["accepted", "bent", "refused", "plain"]
 
 
 @dataclass(frozen=True)
-class Outcome:
+class RunSummary:
     """A sentence, what mapmeld's verdict says, and numbers.
 
     mood : accepted for what is right, or where nobody knows accepted, bent where that is of bent maps;
@@ -25,18 +25,18 @@ class Outcome:
     mood: Mood
 
 
-def outcome_of(trial: Trial) -> Outcome:
+def outcome_of(trial: MethodRun) -> RunSummary:
     """What became of a trial."""
     if trial.failed:
-        return Outcome("Could not be run.", sentence(trial.reason), "", "plain")
+        return RunSummary("Could not be run.", sentence(trial.reason), "", "plain")
     seconds = f"{trial.seconds:.2f} s"
     if trial.T_ref_mov is None:
-        return Outcome("No transform found.", sentence(trial.reason), seconds, "plain")
+        return RunSummary("No transform found.", sentence(trial.reason), seconds, "plain")
     index = "" if trial.index is None else f"eq. (23) {trial.index:.1%} · "
-    return Outcome(_judgement(trial), trial.reason, f"{index}{seconds}", _mood(trial))
+    return RunSummary(_judgement(trial), trial.reason, f"{index}{seconds}", _mood(trial))
 
 
-def _judgement(trial: Trial) -> str:
+def _judgement(trial: MethodRun) -> str:
     """What the truth says; where none is known, what the verdict says."""
     if trial.right is None:
         return {"accepted": "Accepted.", "bent": "Accepted, bent."}.get(verdict_mood(trial), "Refused.")
@@ -47,13 +47,13 @@ def _judgement(trial: Trial) -> str:
     return f"✓ Right to {off}" if trial.right else f"✗ Wrong by {off}"
 
 
-def _mood(trial: Trial) -> Mood:
+def _mood(trial: MethodRun) -> Mood:
     if trial.right is not None:
         return "accepted" if trial.right else "refused"
     return verdict_mood(trial)
 
 
-def verdict_mood(trial: Trial) -> Mood:
+def verdict_mood(trial: MethodRun) -> Mood:
     """The verdict's own colour, whatever the truth says."""
     if trial.bent:
         return "bent"

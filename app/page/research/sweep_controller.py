@@ -13,12 +13,12 @@ from algorithms.common.errors import SettingError
 from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS
 from app.evaluation import sweep_axes as axes
-from app.evaluation.checkpoint import Journal
+from app.evaluation.checkpoint import Checkpoint
 from app.evaluation.evaluation_archive import sweep_archive
-from app.evaluation.parameter_sweep import Plan, Point, done_before, sweep
-from app.jobs.background_job import Background, beside_the_page
+from app.evaluation.parameter_sweep import SweepPlan, SweepPoint, done_before, sweep
+from app.jobs.background_job import BackgroundJob, beside_the_page
 from app.jobs.executor import Executor
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.model.settings import Setting, settings_of
 from app.page.panels.settings_panel import FRONT, idle
 from app.page.research import sweep_curves as curves
@@ -27,9 +27,9 @@ from app.page.research.host import ResearchHost
 from app.page.research.run_summary import sentence
 from app.page.research.sweep_panel import NOTHING, SweepPanel, SweepWishes
 from app.page.research.sweep_request import labelled, planned, suggestion
-from app.web.browser_events import Channel
+from app.web.browser_events import BrowserEvents
 
-Swept = tuple[Inputs, Case | None, Plan | None, dict[int, Point], Journal]
+Swept = tuple[MergeInputs, Case | None, SweepPlan | None, dict[int, SweepPoint], Checkpoint]
 """A pair, and what was swept on it as far as it came; with the journal, to go on from there."""
 
 
@@ -47,13 +47,13 @@ class Host(ResearchHost, Protocol):
         """Put settings into the sliders, as if a person had moved them."""
 
 
-class Sweep:
+class SweepController:
     """Of one tab. ``turn`` and ``drawing`` as in the page: the first is taken before the second."""
 
     def __init__(
         self,
         gui: viser.GuiApi,
-        channel: Channel,
+        channel: BrowserEvents,
         turn: RLock,
         drawing: RLock,
         host: Host,
@@ -62,19 +62,19 @@ class Sweep:
         self._host, self._turn, self._drawing, self._executor = host, turn, drawing, executor
         self._settings: dict[str, Setting] = {}
         self._offered: Any = None
-        self._pair = Inputs()
+        self._pair = MergeInputs()
         self._case: Case | None = None  # of the plan
-        self._plan: Plan | None = None
-        self._points: dict[int, Point] = {}
+        self._plan: SweepPlan | None = None
+        self._points: dict[int, SweepPoint] = {}
         self._numbers: dict[tuple[Any, Any], int] = {}  # of the places of the plan
         self._configs: list[Any] = []  # there
-        self._journal = Journal()  # what was swept before in this tab is not merged again
+        self._journal = Checkpoint()  # what was swept before in this tab is not merged again
         self._began, self._known = 0.0, 0
-        self._work = Background(self, drawing, "sweep")
+        self._work = BackgroundJob(self, drawing, "sweep")
         self._panel = SweepPanel(gui, SweepWishes(self._run, self._stop, self._chose, self._draw, self._save))
         channel.on("point", self._load, n=int)
         channel.on("along", self._along, share=float)
-        self.loaded(Inputs())
+        self.loaded(MergeInputs())
 
     def close(self) -> None:
         """The tab is gone."""
@@ -82,7 +82,7 @@ class Sweep:
 
     # --- what the page tells ----------------------------------------------------------------------
 
-    def loaded(self, inputs: Inputs) -> None:
+    def loaded(self, inputs: MergeInputs) -> None:
         """These inputs are on the page, these settings in its panel; a sweep of others is forgotten."""
         with self._drawing:
             old, self._pair = self._pair, inputs
@@ -170,14 +170,14 @@ class Sweep:
             self._panel.say("Starting.", 0.0)
             self._draw()
 
-    def _begin(self, case: Case, plan: Plan) -> None:
+    def _begin(self, case: Case, plan: SweepPlan) -> None:
         """This is what is swept from now on."""
         self._case, self._plan, self._points = case, plan, {}
         self._numbers = {place: n for n, place in enumerate(plan.places())}
         self._configs = [plan.config_at(*place) for place in plan.places()]
         self._panel.offer(judged=self._judged)
 
-    def _planned(self) -> Plan:
+    def _planned(self) -> SweepPlan:
         """What the fields ask for; raises SettingError."""
         x, y = (fields.wanted for fields in self._panel.axes)
         method, seed = self._host.method, self._host.seed
@@ -221,7 +221,7 @@ class Sweep:
         self._began = perf_counter()
         self._panel.say("Starting.", 0.0)
 
-    def told(self, part: Point) -> None:
+    def told(self, part: SweepPoint) -> None:
         """A point is there."""
         self._points[self._numbers[part.x, part.y]] = part
         done, total = len(self._points), len(self._numbers)
@@ -288,7 +288,7 @@ class Sweep:
             ]
             self._panel.points((label, "eq. (23)", counted.lower(), "time"), rows, here)
 
-    def _numbers_of(self, point: Point, counted: str) -> list[str]:
+    def _numbers_of(self, point: SweepPoint, counted: str) -> list[str]:
         listed = curves.AGREEMENT, counted, curves.TIME
         told = [(measure, curves.reading(point, measure)) for measure in listed]
         return ["–" if found is None else curves.text_of(found.middle, measure) for measure, found in told]

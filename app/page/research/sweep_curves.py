@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.evaluation.parameter_sweep import Axis, Plan, Point
+from app.evaluation.parameter_sweep import Axis, SweepPlan, SweepPoint
 from app.evaluation.sweep_axes import looks_even_by_factor
 from app.model.settings import word_for
 
@@ -20,12 +20,12 @@ AGREEMENT, RIGHT, ACCEPTED, TIME = "Agreement", "Right", "Accepted", "Time"
 MOST_TICKS = 7
 
 Numbers = NDArray[np.float64]
-Points = Mapping[int, Point]
+Points = Mapping[int, SweepPoint]
 """Points by the number of their place in ``plan.places()``."""
 
 
 @dataclass(frozen=True)
-class Reading:
+class MeasuredValue:
     """What is read off a point: in the middle, and the extremes over the seeds."""
 
     middle: float
@@ -38,7 +38,7 @@ def measures(judged: bool) -> tuple[str, ...]:
     return (AGREEMENT, *((RIGHT,) if judged else ()), ACCEPTED, TIME)
 
 
-def title_of(measure: str, plan: Plan, judged: bool) -> str:
+def title_of(measure: str, plan: SweepPlan, judged: bool) -> str:
     """What a measure is, as a heading."""
     seeds = f"{len(plan.seeds)} seeds" if len(plan.seeds) > 1 else "1 seed"
     return {
@@ -49,18 +49,18 @@ def title_of(measure: str, plan: Plan, judged: bool) -> str:
     }[measure]
 
 
-def reading(point: Point, measure: str) -> Reading | None:
+def reading(point: SweepPoint, measure: str) -> MeasuredValue | None:
     """The measure of a point; None where there is none."""
     if point.failed:
         return None
     if measure == AGREEMENT:
         index = point.index
-        return None if index is None else Reading(index.mean, index.low, index.high)
+        return None if index is None else MeasuredValue(index.mean, index.low, index.high)
     if measure == TIME:
         seconds = point.seconds
-        return Reading(seconds.median, seconds.low, seconds.high)
+        return MeasuredValue(seconds.median, seconds.low, seconds.high)
     count = point.right if measure == RIGHT else point.accepted
-    return None if count is None else Reading(count, count, count)
+    return None if count is None else MeasuredValue(count, count, count)
 
 
 def text_of(value: float, measure: str) -> str:
@@ -110,13 +110,13 @@ def share_of(axis: Axis, value: Any) -> float:
     return (at - low) / (high - low)
 
 
-def nearest(plan: Plan, points: Points, share: float) -> int | None:
+def nearest(plan: SweepPlan, points: Points, share: float) -> int | None:
     """Number of the point that stands nearest to a place along the x axis; None where there is none."""
     places = plan.places()
     return min(points, key=lambda n: abs(share_of(plan.x, places[n][0]) - share), default=None)
 
 
-def word_of(plan: Plan, axis: Axis, value: Any) -> str:
+def word_of(plan: SweepPlan, axis: Axis, value: Any) -> str:
     """A value of a setting, as a person reads it."""
     if isinstance(value, bool):
         return "on" if value else "off"
@@ -125,7 +125,7 @@ def word_of(plan: Plan, axis: Axis, value: Any) -> str:
     return word_for(plan.setting(axis), value)
 
 
-def ticks(plan: Plan, most: int = MOST_TICKS) -> tuple[tuple[float, str], ...]:
+def ticks(plan: SweepPlan, most: int = MOST_TICKS) -> tuple[tuple[float, str], ...]:
     """Places along the x axis that are named: where points stand, some of many of them."""
     values = plan.x.values[:: max(1, -(-len(plan.x.values) // most))]
     return tuple((place_of(plan.x, value), word_of(plan, plan.x, value)) for value in values)
@@ -134,7 +134,7 @@ def ticks(plan: Plan, most: int = MOST_TICKS) -> tuple[tuple[float, str], ...]:
 # ---- a curve
 
 
-def columns(plan: Plan, points: Points, measure: str, here: int | None) -> tuple[Numbers, ...]:
+def columns(plan: SweepPlan, points: Points, measure: str, here: int | None) -> tuple[Numbers, ...]:
     """x, highest, lowest, middle over the points that are there, rising; and the middle of ``here`` alone.
 
     Two columns of NaN where there is nothing yet: a chart wants something.
@@ -151,7 +151,7 @@ def columns(plan: Plan, points: Points, measure: str, here: int | None) -> tuple
     return tuple(np.array(column, dtype=np.float64) for column in zip(*sorted(rows), strict=True))
 
 
-def height(plan: Plan, points: Points, measure: str) -> tuple[float, float]:
+def height(plan: SweepPlan, points: Points, measure: str) -> tuple[float, float]:
     """Lower and upper end of the y axis, in whole steps, so that it seldom changes while a curve grows."""
     told = [found for point in points.values() if (found := reading(point, measure)) is not None]
     if measure in (RIGHT, ACCEPTED):
@@ -167,7 +167,7 @@ def height(plan: Plan, points: Points, measure: str) -> tuple[float, float]:
 # ---- a field
 
 
-def field(plan: Plan, points: Points, measure: str) -> Numbers:
+def field(plan: SweepPlan, points: Points, measure: str) -> Numbers:
     """(rows, columns) the measure over both settings, row 0 the first value of the second; NaN: not yet."""
     assert plan.y is not None
     cells = np.full(len(plan.y.values) * len(plan.x.values), np.nan)

@@ -8,7 +8,7 @@ from typing import Any
 
 from algorithms.common.errors import SettingError
 from app.evaluation import sweep_axes as axes
-from app.evaluation.parameter_sweep import Axis, Plan
+from app.evaluation.parameter_sweep import Axis, SweepPlan
 from app.model.settings import Setting, value_at
 
 MOST_POINTS = 400  # of a sweep on the page; the command takes any number
@@ -32,7 +32,7 @@ def planned(
     x: Wanted | None,
     y: Wanted | None,
     seeds: tuple[int, ...],
-) -> Plan:
+) -> SweepPlan:
     """The sweep that is asked for; raises SettingError.
 
     settings : by their labels
@@ -43,7 +43,7 @@ def planned(
     if y is not None and y.label == x.label:
         raise SettingError("both settings are the same; choose another second one, or none")
     second = None if y is None else _axis(settings[y.label], y)
-    plan = Plan(method, config, _axis(settings[x.label], x), second, seeds)
+    plan = SweepPlan(method, config, _axis(settings[x.label], x), second, seeds)
     count = len(plan.places())
     if count > MOST_POINTS:
         raise SettingError(

@@ -22,7 +22,7 @@ from algorithms.methods.steps import (
 from app.drawing.palette import LIGHT, css
 from app.model import chart_data as charts
 from app.model import status_text as words
-from app.model.run_state import Story
+from app.model.run_state import RunState
 
 LEAST = 20.0  # iterations that the axis of the climb holds from the beginning
 LINES = 4  # courses of the search that are drawn
@@ -34,7 +34,7 @@ GREY, OPTIMUM, RIVAL, RIM = css(LIGHT.margin), css(LIGHT.answer), css(LIGHT.riva
 Chart = dict[str, Any]
 
 
-def curves(story: Story) -> list[Chart]:
+def curves(story: RunState) -> list[Chart]:
     """The charts for what the run has come to, and a line of words below them; [] where there is none."""
     detail = story.last.detail if story.last else None
     if isinstance(detail, (ObservationDetail, AugmentDetail)):
@@ -54,7 +54,7 @@ def curves(story: Story) -> list[Chart]:
     return _shifting(story) or _turning(story)
 
 
-def _turning(story: Story) -> list[Chart]:
+def _turning(story: RunState) -> list[Chart]:
     hough = story.get(HoughDetail)
     if hough is None:
         return []
@@ -67,7 +67,7 @@ def _turning(story: Story) -> list[Chart]:
     ]
 
 
-def _shifting(story: Story) -> list[Chart]:
+def _shifting(story: RunState) -> list[Chart]:
     """The turn at hand among all turns, and how far map 2 is off along x and y."""
     hough, found = story.get(HoughDetail), story.get(CandidatesDetail)
     shift = story.shifts[-1].candidate if story.shifts else None
@@ -103,7 +103,7 @@ def _turns(hough: HoughDetail, theta: float | None) -> Chart:
     return _chart(charts.TURNS, (0.0, 180.0), charts.turn_range(hough.match), *lines)
 
 
-def _climb(story: Story) -> Chart:
+def _climb(story: RunState) -> Chart:
     x, *courses = charts.courses(story.courses, LINES)
     colours = (BEST, MARK, REF, GREY)
     lines = [
@@ -117,7 +117,7 @@ def _climb(story: Story) -> Chart:
     return _chart(title, (0.0, longest), (0.0, 1.1 * top if top > 0 else 1.0), *lines)
 
 
-def _proof(story: Story) -> Chart:
+def _proof(story: RunState) -> Chart:
     proof = story.get(ProofDetail)
     assert proof is not None
     state, measure = proof.state, story.measure

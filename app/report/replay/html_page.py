@@ -8,12 +8,12 @@ from html import escape
 from typing import Any
 
 from app.drawing.palette import DARK, LIGHT
-from app.report.replay.metadata import About
+from app.report.replay.metadata import ReplayMetadata
 from app.report.replay.recorder import Recording
 from app.system.data_paths import asset
 
 
-def replay_html(recording: Recording, about: About) -> bytes:
+def replay_html(recording: Recording, about: ReplayMetadata) -> bytes:
     """The page; equal runs give equal bytes. Every text in it is data, never markup."""
     data = recording | {
         "name": about.inputs.name,

@@ -7,22 +7,22 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from app.model import status_text as words
-from app.model.merge_inputs import Inputs
-from app.model.run_state import Story
+from app.model.merge_inputs import MergeInputs
+from app.model.run_state import RunState
 from app.report.replay.html_page import replay_html
-from app.report.replay.metadata import About
+from app.report.replay.metadata import ReplayMetadata
 from app.report.replay.recorder import record
 from app.system.cancellation import Check, unwatched, wanted
 
 if TYPE_CHECKING:
     from algorithms.methods.steps import Step
-    from app.model.merge_job import Job
+    from app.model.merge_job import MergeJob
 
 
 def replay_of(
-    job: Job,
-    steps: Callable[[Job, Callable[[], bool]], Iterator[Step]],
-    inputs: Inputs,
+    job: MergeJob,
+    steps: Callable[[MergeJob, Callable[[], bool]], Iterator[Step]],
+    inputs: MergeInputs,
     check: Check = unwatched,
 ) -> bytes:
     """The page for a run.
@@ -34,12 +34,12 @@ def replay_of(
     """
 
     def watched() -> Iterator[Step]:
-        story = Story(job.config)
+        story = RunState(job.config)
         for step in steps(job, partial(wanted, check)):
             story.tell(step)
             check(words.progress(story))
             yield step
         check()  # they end early where they are not wanted
 
-    about = About(inputs, job.method, job.config, job.seed)
+    about = ReplayMetadata(inputs, job.method, job.config, job.seed)
     return replay_html(record(watched(), inputs, job.config), about)

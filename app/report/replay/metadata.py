@@ -9,7 +9,7 @@ from typing import Any
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import METHODS
 from app.drawing import grid_pixels as render
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.model.settings import settings_of, text_for, value_at
 from app.report.replay.recorder import LATER_PARTICLES, PARTICLES, PICTURE
 from app.system.version import versions
@@ -18,13 +18,13 @@ Rows = list[list[str]]
 
 
 @dataclass(frozen=True, eq=False)
-class About:
+class ReplayMetadata:
     """The run that was recorded.
 
     versions : of mapmeld and what it stands on
     """
 
-    inputs: Inputs
+    inputs: MergeInputs
     method: str
     config: Any
     seed: int

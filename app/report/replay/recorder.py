@@ -20,9 +20,9 @@ from app.drawing.scene.grid_image import Size
 from app.drawing.scene.map_view import MapView
 from app.drawing.scene_layout import lay_out
 from app.model import status_text as words
-from app.model.merge_inputs import Inputs
+from app.model.merge_inputs import MergeInputs
 from app.model.playback import FRAME, dwell
-from app.model.run_state import Story
+from app.model.run_state import RunState
 from app.model.status_text import typeset
 from app.model.view_modes import MAP
 from app.report.replay.chart_recorder import curves
@@ -84,7 +84,7 @@ class Recorder(BrowserMessages):
         return item | {"p": points[:: max(1, -(-len(points) // self.particles))].ravel()}
 
 
-def record(steps: Iterable[Step], inputs: Inputs, config: Any) -> Recording:
+def record(steps: Iterable[Step], inputs: MergeInputs, config: Any) -> Recording:
     """The pictures, words and curves of a whole run.
 
     steps  : of the method, up to its MergeResult
@@ -96,7 +96,7 @@ def record(steps: Iterable[Step], inputs: Inputs, config: Any) -> Recording:
     stage = Recorder(scene)
     maps = MapView(SimpleNamespace(scene=scene), stage, Size(PICTURE, PICTURE))  # type: ignore[arg-type]
     maps.load(inputs, lay_out(inputs.ref, inputs.mov, inputs.at, ASPECT), LIGHT)
-    story, marks, result = Story(config), [{"t": 0.0, "name": "Maps"}], None
+    story, marks, result = RunState(config), [{"t": 0.0, "name": "Maps"}], None
     stage.hud(state=words.SIDE_BY_SIDE, mood="running", legend=legend(LIGHT, MAP, story))
     stage.extra(curves=[], table=beginning(inputs))
     stage.flush()
@@ -132,7 +132,7 @@ def record(steps: Iterable[Step], inputs: Inputs, config: Any) -> Recording:
     }
 
 
-def beginning(inputs: Inputs) -> dict[str, Any]:
+def beginning(inputs: MergeInputs) -> dict[str, Any]:
     """What there is before anything was done."""
     rows = [
         [name, f"{grid.width} × {grid.height} cells of {grid.resolution:g} m"]
@@ -142,7 +142,7 @@ def beginning(inputs: Inputs) -> dict[str, Any]:
     return {"title": inputs.name, "rows": [*rows, ["sightings of robot 2", str(len(inputs.observations))]]}
 
 
-def observed(inputs: Inputs) -> dict[str, Any]:
+def observed(inputs: MergeInputs) -> dict[str, Any]:
     """The numbers of the first sighting."""
     o, at = inputs.observations[0], inputs.encounters[0]
     of = f", the first of {len(inputs.observations)}" if len(inputs.observations) > 1 else ""
@@ -153,7 +153,7 @@ def _typeset(rows: Iterable[tuple[str, ...]]) -> list[list[str]]:
     return [[name, *map(typeset, values)] for name, *values in rows]
 
 
-def _draw(story: Story, stage: Recorder, maps: MapView, inputs: Inputs, config: Any) -> None:
+def _draw(story: RunState, stage: Recorder, maps: MapView, inputs: MergeInputs, config: Any) -> None:
     detail = story.last.detail if story.last else None
     later = isinstance(detail, RefineDetail) and detail.index > 0
     stage.particles = LATER_PARTICLES if later else PARTICLES

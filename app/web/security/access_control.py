@@ -46,14 +46,14 @@ HEADERS = {
 
 
 @dataclass(frozen=True)
-class Asked:
+class HttpRequest:
     """What a request says. headers: names in lower case."""
 
     path: str
     headers: Mapping[str, str]
 
     @classmethod
-    def of(cls, path: str, headers: Iterable[tuple[str, str]]) -> Asked:
+    def of(cls, path: str, headers: Iterable[tuple[str, str]]) -> HttpRequest:
         """From its headers one by one; one that is said twice is a list, as anywhere, and so is no host."""
         said: dict[str, str] = {}
         for key, value in headers:
@@ -69,7 +69,7 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class Answer:
+class HttpReply:
     """What is answered in place of the page.
 
     body : HTML where it begins with "<", else a line of text
@@ -98,13 +98,13 @@ class Access:
         """Name of the cookie: browsers send those of one port to the other ones of a host, too."""
         return f"mapmeld_{sha256(self.token.encode()).hexdigest()[:8]}"
 
-    def answer(self, asked: Asked) -> Answer | None:
+    def answer(self, asked: HttpRequest) -> HttpReply | None:
         """What is said instead of what was asked for; None: come in."""
         host = asked.headers.get("host", "")
         if self.names is not None and _name(host) not in self.names:
-            return Answer(421, "this page does not answer to that name")
+            return HttpReply(421, "this page does not answer to that name")
         if asked.upgrade and not _same(asked.headers.get("origin"), host):
-            return Answer(403, "only the page itself may connect")
+            return HttpReply(403, "only the page itself may connect")
         path, _, query = asked.path.partition("?")
         if self.token and not self._known(asked.headers.get("cookie", "")):
             given = urllib.parse.parse_qs(query).get("token", [""])[0]
@@ -115,10 +115,10 @@ class Access:
             # No redirection either: whoever follows a link from elsewhere would come without the cookie.
             kept = f"{self.cookie}={self.token}; HttpOnly; SameSite=Strict{'; Secure' if secure else ''}"
             told = {"Set-Cookie": kept, "Cache-Control": "no-store", "Content-Security-Policy": ASKING_POLICY}
-            return Answer(200, _GO_ON, told)
+            return HttpReply(200, _GO_ON, told)
         if query and not asked.upgrade:
             # viser's page would connect to, or play, whatever another address in the query names
-            return Answer(303, headers={"Location": "./"})
+            return HttpReply(303, headers={"Location": "./"})
         return None
 
     def _known(self, cookies: str) -> bool:
@@ -258,7 +258,7 @@ _GO_ON = """<!doctype html><html lang="en"><meta charset="utf-8"><title>mapmeld<
 <meta http-equiv="refresh" content="0;url=./"><p><a href="./">Go on</a></html>"""
 
 
-def _asking(wrong: bool) -> Answer:
+def _asking(wrong: bool) -> HttpReply:
     """The page of those who have no token yet."""
     says = "That is not the token." if wrong else "This page is not open to everyone."
     body = f"""<!doctype html><html lang="en"><meta charset="utf-8"><title>mapmeld</title>
@@ -272,4 +272,4 @@ or give the token from it.</p>
 <input name="token" type="password" autocomplete="off" required aria-label="Token" autofocus>
 <button>Open</button></form></html>"""
     headers = {"Content-Security-Policy": ASKING_POLICY, "Cache-Control": "no-store"}
-    return Answer(401, body, headers)
+    return HttpReply(401, body, headers)

@@ -14,14 +14,14 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ProtocolError
 from websockets.frames import OP_BINARY, OP_CONT, OP_TEXT, Frame
 
-from app.web.security.message_filter import Gate
+from app.web.security.message_filter import MessageFilter
 
 MOST = 2048  # frames of one message; a browser cuts a megabyte into a hundred at most
 RATE, BURST = 100.0, 1000.0  # further frames and pings a second, and at once
 EARNS = 1024  # bytes that let another one come: a large file on a fast line has many
 
 
-class Allowance:
+class FrameLimit:
     """Counts the frames of one connection."""
 
     def __init__(self, clock: Callable[[], float] = monotonic) -> None:
@@ -42,13 +42,13 @@ class Allowance:
         return self._left >= 0 and self._parts <= MOST
 
 
-def bounded(gate: Gate) -> type[ServerConnection]:
+def bounded(gate: MessageFilter) -> type[ServerConnection]:
     """The connections of a server of ours: one that sends too many frames ends at once, and alone."""
 
     class Bounded(ServerConnection):
         def __init__(self, *what: Any, **how: Any) -> None:
             super().__init__(*what, **how)
-            take, allowance = self.protocol.recv_frame, Allowance()
+            take, allowance = self.protocol.recv_frame, FrameLimit()
 
             def recv_frame(frame: Frame) -> None:
                 if not allowance.bears(frame):

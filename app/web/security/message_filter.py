@@ -34,7 +34,7 @@ def listen_unseen(uuid: str, yes: bool = True) -> None:
     (_unseen.add if yes else _unseen.discard)(uuid)
 
 
-class Gate:
+class MessageFilter:
     """Lets through what a browser of ours could have sent.
 
     dropped : how often each kind of thing was not
@@ -57,7 +57,7 @@ class Gate:
         And ``send`` gives up a browser that takes nothing any more: what waits for it fills the memory.
         """
         hear = connection.recv
-        bucket = Bucket(self._clock)
+        bucket = RateLimit(self._clock)
 
         async def recv(*how: Any, **more: Any) -> Any:
             while True:
@@ -100,7 +100,7 @@ class Gate:
         return False
 
 
-class Bucket:
+class RateLimit:
     """Counts messages against a rate."""
 
     def __init__(self, clock: Callable[[], float]) -> None:

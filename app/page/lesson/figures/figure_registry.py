@@ -25,19 +25,19 @@ from algorithms.methods.steps import (
 from algorithms.optimisation.optimiser import SearchState
 from app.drawing.draw_items import Item, path
 from app.drawing.palette import Palette
-from app.drawing.scene_layout import Layout
-from app.model.run_state import Story
+from app.drawing.scene_layout import SceneLayout
+from app.model.run_state import RunState
 from app.page.lesson.figures import map_figures as maps
 from app.page.lesson.figures import search_figures as search
 from app.page.lesson.figures import spectra_figures as spectra
 from app.page.lesson.figures import verdict_figure as judgement
-from app.page.lesson.lesson_run import FEW, Study
+from app.page.lesson.lesson_run import FEW, LessonRun
 
 At = Sequence[int]
 
 
 @dataclass(frozen=True)
-class Dial:
+class FigureSlider:
     """One thing that can be moved in a picture.
 
     label       : what it is
@@ -53,16 +53,16 @@ class Dial:
     step: float = 1
 
 
-def _no_dials(study: Study) -> tuple[Dial, ...]:
+def _no_dials(study: LessonRun) -> tuple[FigureSlider, ...]:
     return ()
 
 
-def _no_ink(study: Study, at: At, layout: Layout, palette: Palette) -> list[Item]:
+def _no_ink(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
     return []
 
 
 @dataclass(frozen=True)
-class Picture:
+class LessonFigure:
     """How one step is drawn.
 
     needs : what the run must have come to
@@ -74,25 +74,27 @@ class Picture:
     """
 
     needs: tuple[type, ...]
-    draw: Callable[[Study, At, Palette], str]
-    story: Callable[[Study, At], Story]
-    dials: Callable[[Study], tuple[Dial, ...]] = _no_dials
-    ink: Callable[[Study, At, Layout, Palette], list[Item]] = _no_ink
-    turn: Callable[[Study, At], float] | None = None
+    draw: Callable[[LessonRun, At, Palette], str]
+    story: Callable[[LessonRun, At], RunState]
+    dials: Callable[[LessonRun], tuple[FigureSlider, ...]] = _no_dials
+    ink: Callable[[LessonRun, At, SceneLayout, Palette], list[Item]] = _no_ink
+    turn: Callable[[LessonRun, At], float] | None = None
 
 
-def _up_to(kind: type) -> Callable[[Study, At], Story]:
+def _up_to(kind: type) -> Callable[[LessonRun, At], RunState]:
     return lambda study, at: study.story(kind)
 
 
-def _nth(kind: type) -> Callable[[Study, At], Story]:
+def _nth(kind: type) -> Callable[[LessonRun, At], RunState]:
     return lambda study, at: study.story(kind, min(at[0], len(study.all(kind)) - 1))
 
 
-def _searching(states: Callable[[Study], list[SearchState]], ahead: int) -> Callable[[Study, At], Story]:
+def _searching(
+    states: Callable[[LessonRun], list[SearchState]], ahead: int
+) -> Callable[[LessonRun, At], RunState]:
     """The run up to the candidates, and then this search in the best one's box."""
 
-    def story(study: Study, at: At) -> Story:
+    def story(study: LessonRun, at: At) -> RunState:
         told = states(study)
         out = study.story(CandidatesDetail)
         state = told[min(at[0] + ahead, len(told) - 1)]
@@ -102,14 +104,14 @@ def _searching(states: Callable[[Study], list[SearchState]], ahead: int) -> Call
     return story
 
 
-def _looking(study: Study, at: At) -> Story:
+def _looking(study: LessonRun, at: At) -> RunState:
     """The run up to a look at the proof."""
     told = search.looks(study)
     wanted = told[min(at[0], len(told) - 1)]
     return study.story(ProofDetail, [detail is wanted for detail in study.all(ProofDetail)].index(True))
 
 
-def _lines(study: Study, at: At, layout: Layout, palette: Palette) -> list[Item]:
+def _lines(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
     """The strongest lines of both maps, the chosen one of each with its number."""
     detail, items = study.get(AugmentDetail), []
     reach = 2.0 * study.config.augment.spread
@@ -127,7 +129,7 @@ def _lines(study: Study, at: At, layout: Layout, palette: Palette) -> list[Item]
     return items
 
 
-def _moves(study: Study, at: At, layout: Layout, palette: Palette) -> list[Item]:
+def _moves(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
     """Every particle's last step, and the three pulls on the chosen one, end to end."""
     told, j = study.few, min(at[1], FEW - 1)
     k = min(at[0] + 1, len(told) - 1)
@@ -144,78 +146,80 @@ def _moves(study: Study, at: At, layout: Layout, palette: Palette) -> list[Item]
     return items
 
 
-def _line_dial(study: Study) -> tuple[Dial, ...]:
-    return (Dial("line", spectra.LINES),)
+def _line_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
+    return (FigureSlider("line", spectra.LINES),)
 
 
-def _slide_dial(study: Study) -> tuple[Dial, ...]:
-    return (Dial("slid by (°)", 180, spectra.first_turn(study), first=0),)
+def _slide_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
+    return (FigureSlider("slid by (°)", 180, spectra.first_turn(study), first=0),)
 
 
-def _turn_dial(study: Study) -> tuple[Dial, ...]:
-    return (Dial("candidate", len(study.get(HoughDetail).match.turns)),)
+def _turn_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
+    return (FigureSlider("candidate", len(study.get(HoughDetail).match.turns)),)
 
 
-def _shift_dial(study: Study) -> tuple[Dial, ...]:
-    return (Dial("candidate", len(study.all(ShiftDetail))),)
+def _shift_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
+    return (FigureSlider("candidate", len(study.all(ShiftDetail))),)
 
 
-def _off_dial(study: Study) -> tuple[Dial, ...]:
+def _off_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
     half = search.TURN_STEPS // 2
-    return (Dial("off the best (°)", search.TURN_STEPS, half, -half * search.TURN_STEP, search.TURN_STEP),)
+    return (
+        FigureSlider("off the best (°)", search.TURN_STEPS, half, -half * search.TURN_STEP, search.TURN_STEP),
+    )
 
 
-def _sample_dial(study: Study) -> tuple[Dial, ...]:
-    return (Dial("throws", len(study.samples), 1),)
+def _sample_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
+    return (FigureSlider("throws", len(study.samples), 1),)
 
 
-def _swarm_dials(study: Study) -> tuple[Dial, ...]:
+def _swarm_dials(study: LessonRun) -> tuple[FigureSlider, ...]:
     few = study.few
     # at first the particle with the longest way to go
     far = int(np.hypot(*(few[0].poses - few[0].best)[:, :2].T).argmax())
-    return (Dial("move", max(1, len(few) - 1), 1), Dial("particle", FEW, far))
+    return (FigureSlider("move", max(1, len(few) - 1), 1), FigureSlider("particle", FEW, far))
 
 
-def _look_dial(study: Study) -> tuple[Dial, ...]:
+def _look_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
     count = len(search.looks(study))
-    return (Dial("look", count, count - 1),)
+    return (FigureSlider("look", count, count - 1),)
 
 
-PICTURES: dict[str, Picture] = {
-    "observation": Picture((ObservationDetail,), maps.observation, _up_to(ObservationDetail)),
-    "augmentation": Picture((AugmentDetail,), maps.augmentation, _up_to(AugmentDetail)),
-    "dual": Picture((ObservationDetail,), maps.dual, _up_to(ObservationDetail)),
-    "hough": Picture((AugmentDetail,), spectra.hough, _up_to(AugmentDetail), _line_dial, _lines),
-    "spectrum": Picture((HoughDetail,), spectra.spectrum, _up_to(AugmentDetail)),
-    "correlation": Picture(
+PICTURES: dict[str, LessonFigure] = {
+    "observation": LessonFigure((ObservationDetail,), maps.observation, _up_to(ObservationDetail)),
+    "augmentation": LessonFigure((AugmentDetail,), maps.augmentation, _up_to(AugmentDetail)),
+    "dual": LessonFigure((ObservationDetail,), maps.dual, _up_to(ObservationDetail)),
+    "hough": LessonFigure((AugmentDetail,), spectra.hough, _up_to(AugmentDetail), _line_dial, _lines),
+    "spectrum": LessonFigure((HoughDetail,), spectra.spectrum, _up_to(AugmentDetail)),
+    "correlation": LessonFigure(
         (HoughDetail,), spectra.correlation, _up_to(HoughDetail), _slide_dial,
         turn=lambda study, at: radians(at[0]),
     ),
-    "turned": Picture(
+    "turned": LessonFigure(
         (HoughDetail,), maps.turned, _up_to(HoughDetail), _turn_dial,
         turn=lambda study, at: study.get(HoughDetail).match.turns[at[0]],
     ),
-    "shift": Picture((CandidatesDetail,), spectra.shift, _nth(ShiftDetail), _shift_dial),
-    "window": Picture((CandidatesDetail,), spectra.window, _up_to(CandidatesDetail)),
-    "objective": Picture((CandidatesDetail,), search.objective, _up_to(CandidatesDetail), _off_dial),
-    "samples": Picture(
+    "shift": LessonFigure((CandidatesDetail,), spectra.shift, _nth(ShiftDetail), _shift_dial),
+    "window": LessonFigure((CandidatesDetail,), spectra.window, _up_to(CandidatesDetail)),
+    "objective": LessonFigure((CandidatesDetail,), search.objective, _up_to(CandidatesDetail), _off_dial),
+    "samples": LessonFigure(
         (CandidatesDetail,), search.samples, _searching(lambda study: study.samples, 0), _sample_dial
     ),
-    "swarm": Picture(
+    "swarm": LessonFigure(
         (CandidatesDetail,), search.swarm, _searching(lambda study: study.few, 1), _swarm_dials, _moves
     ),
-    "proof": Picture((ProvenDetail,), search.proof, _looking, _look_dial),
-    "answers": Picture((MergeResult,), judgement.answers, _up_to(WeighedDetail)),
-    "merged": Picture((MergeResult,), maps.merged, _up_to(Fusion)),
-    "verdict": Picture((MergeResult,), judgement.verdict, _up_to(MergeResult)),
+    "proof": LessonFigure((ProvenDetail,), search.proof, _looking, _look_dial),
+    "answers": LessonFigure((MergeResult,), judgement.answers, _up_to(WeighedDetail)),
+    "merged": LessonFigure((MergeResult,), maps.merged, _up_to(Fusion)),
+    "verdict": LessonFigure((MergeResult,), judgement.verdict, _up_to(MergeResult)),
 }  # fmt: skip
 
 
-def shown(dial: Dial, place: int) -> float:
+def shown(dial: FigureSlider, place: int) -> float:
     """The number beside a dial that stands at a place."""
     return dial.first + dial.step * place
 
 
-def place_of(dial: Dial, number: float) -> int:
+def place_of(dial: FigureSlider, number: float) -> int:
     """The place of the number beside a dial."""
     return min(dial.count - 1, max(0, round((number - dial.first) / dial.step)))

@@ -16,19 +16,19 @@ from app.drawing.draw_items import ellipse
 from app.drawing.palette import VIRIDIS, Palette
 from app.drawing.svg.map_plot import robot, scale_bar, scene, view_of
 from app.drawing.svg.map_raster import draw_levels, draw_map, under
-from app.drawing.svg.svg_canvas import INK, Plot, Sheet, number, turn_label, worded
-from app.page.lesson.lesson_run import Study
+from app.drawing.svg.svg_canvas import INK, Plot, SvgCanvas, number, turn_label, worded
+from app.page.lesson.lesson_run import LessonRun
 
 HALF = 184.0  # width of one of two pictures side by side
 
 
-def observation(study: Study, at: Sequence[int], palette: Palette) -> str:
+def observation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The sighting in map 1, and the same place in map 2."""
     i, o = study.inputs, study.inputs.observations[0]
     met: Encounter = i.encounters[0]
     assert i.ref is not None
     assert i.mov is not None
-    sheet, side = Sheet(226), HALF
+    sheet, side = SvgCanvas(226), HALF
     half = max(3.0, 0.75 * o.range + 1.5)
     middle = (o.observer.xy + met.x_ref) / 2
     rows = (
@@ -78,7 +78,7 @@ def observation(study: Study, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Robot 1 and what it saw in map 1; the same place in map 2")
 
 
-def level_scale(sheet: Sheet, x: float, y: float, wide: float, peak: float, words: str) -> None:
+def level_scale(sheet: SvgCanvas, x: float, y: float, wide: float, peak: float, words: str) -> None:
     """The colour scale of the levels, from nothing to the peak."""
     sheet.image(np.ascontiguousarray(VIRIDIS[None]), x, y, wide, 9, smooth=True)
     sheet.rect(x, y, wide, 9, None, INK, 0.35)
@@ -88,10 +88,10 @@ def level_scale(sheet: Sheet, x: float, y: float, wide: float, peak: float, word
     sheet.text(x + wide + 8, y + 9, words, 10.5)
 
 
-def augmentation(study: Study, at: Sequence[int], palette: Palette) -> str:
+def augmentation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both maps with their levels, the rings of Σ_aug around x̂, and the scale."""
     detail, config = study.get(AugmentDetail), study.config.augment
-    sheet = Sheet(240)
+    sheet = SvgCanvas(240)
     half = 2.35 * config.spread * max(config.aspect, 1 / config.aspect) ** 0.5
     for x, lifted, title in ((0.0, detail.ref, "map 1"), (196.0, detail.mov, "map 2")):
         view = view_of(lifted.x_hat, half, HALF, HALF)
@@ -113,11 +113,11 @@ def augmentation(study: Study, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Both maps, their walls coloured by level around the meeting place")
 
 
-def dual(study: Study, at: Sequence[int], palette: Palette) -> str:
+def dual(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Some cells of map 1 from near by, their centres, and the first columns of the list."""
     grid, met = study.inputs.ref, study.inputs.encounters[0]
     assert grid is not None
-    sheet, side, across = Sheet(226), 200.0, 13
+    sheet, side, across = SvgCanvas(226), 200.0, 13
     cell = grid.resolution
     points = grid.points
     if not len(points):
@@ -163,11 +163,11 @@ def dual(study: Study, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Cells of map 1 and the list of their centres")
 
 
-def turned(study: Study, at: Sequence[int], palette: Palette) -> str:
+def turned(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Map 1 around x̂₁ beside map 2 around x̂₂, turned by the chosen candidate."""
     match, detail = study.get(HoughDetail).match, study.get(AugmentDetail)
     k = min(at[0], len(match.turns) - 1)
-    sheet = Sheet(232)
+    sheet = SvgCanvas(232)
     half = 2.0 * study.config.augment.spread
     about = Pose2(0.0, 0.0, match.turns[k]) @ Pose2(*(-detail.mov.x_hat).tolist())
     places = ((0.0, detail.ref, detail.ref.x_hat, None), (196.0, detail.mov, np.zeros(2), about))
@@ -193,12 +193,12 @@ def _class(cells: CellArray) -> np.ndarray:
     return np.where(cells >= OCCUPIED_FROM, 0, np.where((cells >= 0) & (cells <= FREE_UP_TO), 1, 2))
 
 
-def merged(study: Study, at: Sequence[int], palette: Palette) -> str:
+def merged(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The merged map around the meeting, and what became of every cell."""
     fusion, result = study.get(Fusion), study.get(MergeResult)
     first, second = _class(fusion.ref_cells), _class(fusion.mov_cells)
     counts = np.bincount((3 * first + second).ravel(), minlength=9).reshape(3, 3)
-    sheet = Sheet(218)
+    sheet = SvgCanvas(218)
     view = view_of(result.encounter.x_ref, 2.0 * study.config.augment.spread, HALF, HALF)
     plot = scene(sheet, 0, 18, HALF, HALF, view)
     sheet.text(0, 11, "around the meeting place", 11, bold=True)

@@ -14,10 +14,10 @@ from algorithms.optimisation.objective import PAD, Objective
 from algorithms.optimisation.optimiser import SearchState
 from app.drawing.draw_items import ellipse
 from app.drawing.palette import Palette, css, viridis
-from app.drawing.svg.svg_canvas import INK, Plot, Sheet, ticks
+from app.drawing.svg.svg_canvas import INK, Plot, SvgCanvas, ticks
 from app.model import chart_data as charts
-from app.model.objective_label import AGREEMENT, GAMMA, Measure, measure_of
-from app.page.lesson.lesson_run import FEW, Study
+from app.model.objective_label import AGREEMENT, GAMMA, ObjectiveLabel, measure_of
+from app.page.lesson.lesson_run import FEW, LessonRun
 
 SIDE = 61  # samples of a landscape along each axis
 TURN_STEPS, TURN_STEP = 41, 0.5  # of the slider; degrees
@@ -34,7 +34,7 @@ def transforms(x: FloatArray, y: FloatArray, turn: FloatArray | float, pivot: Fl
     return np.column_stack([x - c * px + s * py, y - s * px - c * py, turn])
 
 
-def best_of(study: Study) -> Pose2:
+def best_of(study: LessonRun) -> Pose2:
     """The best transform that the run has come to."""
     answer = study.story(type(study.steps[-1].detail)).answer if study.steps else None
     if answer is not None:
@@ -42,7 +42,7 @@ def best_of(study: Study) -> Pose2:
     return study.box.transform(study.box.centre)
 
 
-def _landscape(objective: Objective, study: Study, turn: float, half: float) -> FloatArray:
+def _landscape(objective: Objective, study: LessonRun, turn: float, half: float) -> FloatArray:
     """(SIDE, SIDE) values around x̂₁ at one turn, row 0 at the top."""
     coupled = study.get(WindowDetail).coupled
     x0, y0 = coupled.x_ref[0].tolist()
@@ -51,25 +51,25 @@ def _landscape(objective: Objective, study: Study, turn: float, half: float) -> 
     return objective(transforms(x.ravel(), y.ravel(), turn, coupled.pivot)).reshape(SIDE, SIDE)
 
 
-def _half(study: Study) -> float:
+def _half(study: LessonRun) -> float:
     coupled = study.get(WindowDetail).coupled
     return max(1.0, 0.75 * float((coupled.high - coupled.low).max()))
 
 
-def objective(study: Study, at: Sequence[int], palette: Palette) -> str:
+def objective(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Γ and the agreement over the shift at a turn, and over the turn at the best shift."""
     best, coupled, half = best_of(study), study.get(WindowDetail).coupled, _half(study)
     off = np.radians(TURN_STEP) * (at[0] - TURN_STEPS // 2)
     turn = best.theta + off
     place = best.apply(coupled.pivot)
     x0, y0 = coupled.x_ref[0].tolist()
-    sheet, side = Sheet(336), 124.0
+    sheet, side = SvgCanvas(336), 124.0
     turns = np.radians(np.arange(0.0, 360.0, 0.5))
     round_ = transforms(np.full(720, place[0]), np.full(720, place[1]), turns, coupled.pivot)
     order = np.argsort(np.mod(np.degrees(turns) + 180, 360))
     below = Plot(sheet, 42, 226, 324, 68, (-180, 180), (-0.35, 1.1))
     sheet.text(0, 219, "both over the turn (each of its highest)", 11, bold=True)
-    rows: tuple[tuple[float, Objective, Measure, str], ...] = (
+    rows: tuple[tuple[float, Objective, ObjectiveLabel, str], ...] = (
         (42.0, study.gamma, GAMMA, css(palette.best)),
         (226.0, study.agreement, AGREEMENT, css(palette.particle)),
     )
@@ -110,7 +110,7 @@ def _few(middle: float, half: float) -> list[float]:
     return [round(middle - half / 2, 1), round(middle + half / 2, 1)]
 
 
-def _box_plot(study: Study, sheet: Sheet, x: float, y: float, side: float) -> Plot:
+def _box_plot(study: LessonRun, sheet: SvgCanvas, x: float, y: float, side: float) -> Plot:
     """The box over x and y, a landscape of what is maximised behind it, its longer edge filling the plot."""
     box = study.box
     half = 0.5 * float((box.high - box.low)[:2].max()) * 1.02
@@ -131,9 +131,9 @@ def _box_plot(study: Study, sheet: Sheet, x: float, y: float, side: float) -> Pl
     return plot
 
 
-def samples(study: Study, at: Sequence[int], palette: Palette) -> str:
+def samples(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The darts so far in the box, the best of them, and how the best value climbed."""
-    told, sheet = study.samples, Sheet(232)
+    told, sheet = study.samples, SvgCanvas(232)
     k = min(at[0], len(told) - 1)
     plot = _box_plot(study, sheet, 42, 18, 160)
     shown = told[max(0, k - 3) : k + 1]  # the newest ones; all of them would be a blot
@@ -156,12 +156,12 @@ def samples(study: Study, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Samples in the box and the best of them")
 
 
-def swarm(study: Study, at: Sequence[int], palette: Palette) -> str:
+def swarm(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """One move of the swarm: all particles in the box, and the pulls on the chosen one from near by."""
     told = study.few
     k, j = min(at[0] + 1, len(told) - 1), min(at[1], FEW - 1)
     before, after = told[max(0, k - 1)], told[k]
-    sheet = Sheet(284)
+    sheet = SvgCanvas(284)
     plot = _box_plot(study, sheet, 42, 18, 160)
     sheet.text(0, 11, f"move {k} of {len(told) - 1}: all {FEW} particles", 11, bold=True)
     for n, (start, end) in enumerate(
@@ -178,7 +178,7 @@ def swarm(study: Study, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("A move of the swarm and what pulls at one particle")
 
 
-def _pulls(sheet: Sheet, before: SearchState, after: SearchState, j: int, palette: Palette) -> None:
+def _pulls(sheet: SvgCanvas, before: SearchState, after: SearchState, j: int, palette: Palette) -> None:
     """The three terms of eq. (21) on one particle, end to end, and the step they add up to."""
     assert after.pulls is not None
     here, there = before.poses[j], after.poses[j]
@@ -222,16 +222,16 @@ def _length(metres: float) -> str:
     return f"{100 * metres:.1f} cm" if metres >= 0.01 else f"{1000 * metres:.1f} mm"
 
 
-def looks(study: Study) -> list[ProofDetail]:
+def looks(study: LessonRun) -> list[ProofDetail]:
     """The proof from its beginning to its end, thinned."""
     told = study.all(ProofDetail)
     chosen = np.unique(np.linspace(0, len(told) - 1, LOOKS).round().astype(int)) if told else []
     return [told[k] for k in chosen]
 
 
-def proof(study: Study, at: Sequence[int], palette: Palette) -> str:
+def proof(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Map 1 pooled coarser and coarser, and what is left of every turn."""
-    told, sheet = looks(study), Sheet(318)
+    told, sheet = looks(study), SvgCanvas(318)
     detail = told[min(at[0], len(told) - 1)]
     table = study.gamma.sides[0].table[PAD:-PAD, PAD:-PAD]
     lifted = study.get(AugmentDetail).ref

@@ -14,9 +14,9 @@ from app.drawing.draw_items import ellipse, rectangle
 from app.drawing.palette import Palette, viridis
 from app.drawing.scene_layout import known_corners
 from app.drawing.svg.map_plot import scale_bar, scene
-from app.drawing.svg.map_raster import View, around, draw_map, walls
-from app.drawing.svg.svg_canvas import INK, Plot, Sheet, number, turn_label, worded
-from app.page.lesson.lesson_run import Study
+from app.drawing.svg.map_raster import RasterView, around, draw_map, walls
+from app.drawing.svg.svg_canvas import INK, Plot, SvgCanvas, number, turn_label, worded
+from app.page.lesson.lesson_run import LessonRun
 
 DEGREES = (0, 30, 60, 90, 120, 150, 180)
 LINES = 3  # the strongest ones of each map that are marked
@@ -51,7 +51,7 @@ def strongest(votes: FloatArray, step: float, count: int = LINES) -> list[tuple[
     return found
 
 
-def _reach(study: Study) -> float:
+def _reach(study: LessonRun) -> float:
     return 2.5 * float(study.config.augment.spread)
 
 
@@ -65,10 +65,10 @@ def _votes(plot: Plot, votes: FloatArray, step: float) -> None:
     plot.image(viridis(np.sqrt(columns / top if top > 0 else columns)))
 
 
-def hough(study: Study, at: Sequence[int], palette: Palette) -> str:
+def hough(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both accumulators, their strongest lines marked."""
     first, second, step = study.votes
-    reach, sheet = _reach(study), Sheet(308)
+    reach, sheet = _reach(study), SvgCanvas(308)
     rows = ((18.0, first, palette.ref, "map 1"), (164.0, second, palette.mov, "map 2"))
     for y, votes, colour, name in rows:
         plot = Plot(sheet, 42, y, 324, 100, (0, 180), (-reach, reach))
@@ -85,9 +85,9 @@ def hough(study: Study, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Hough accumulators of both maps over θ and ρ")
 
 
-def spectrum(study: Study, at: Sequence[int], palette: Palette) -> str:
+def spectrum(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The votes of each map, and below them what is left when each column is squared and summed."""
-    match, reach, sheet = study.get(HoughDetail).match, _reach(study), Sheet(286)
+    match, reach, sheet = study.get(HoughDetail).match, _reach(study), SvgCanvas(286)
     first, second, step = study.votes
     x = np.degrees(match.angles)
     for y, votes, name in ((14.0, first, "map 1"), (80.0, second, "map 2")):
@@ -106,9 +106,9 @@ def spectrum(study: Study, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Hough spectra of both maps")
 
 
-def correlation(study: Study, at: Sequence[int], palette: Palette) -> str:
+def correlation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Map 2's spectrum slid over map 1's by the chosen turn, and the correlation at every turn."""
-    match, sheet = study.get(HoughDetail).match, Sheet(282)
+    match, sheet = study.get(HoughDetail).match, SvgCanvas(282)
     size = len(match.angles)
     x, turn = np.degrees(match.angles), float(at[0])
     k = round(turn / 180 * size) % size
@@ -147,13 +147,13 @@ def _to_one(values: FloatArray) -> FloatArray:
     return np.asarray(values / top if top > 0 else values)
 
 
-def shift(study: Study, at: Sequence[int], palette: Palette) -> str:
+def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both maps at a candidate's turn and shift with their sums beside them, and the correlations."""
     told, lifted = study.all(ShiftDetail), study.get(AugmentDetail)
     candidate = told[min(at[0], len(told) - 1)].candidate
-    sheet, wide, high = Sheet(320), 210.0, 120.0
+    sheet, wide, high = SvgCanvas(320), 210.0, 120.0
     half = 2.2 * study.config.augment.spread
-    view = View(around(lifted.ref.x_hat, half, wide / high), int(2 * wide), int(2 * high))
+    view = RasterView(around(lifted.ref.x_hat, half, wide / high), int(2 * wide), int(2 * high))
     plot = scene(sheet, 42, 18, wide, high, view)
     pixels = draw_map(view, palette, lifted.ref.grid, palette.ref)
     pixels = draw_map(view, palette, lifted.mov.grid, palette.mov, candidate.T_ref_mov, pixels)
@@ -202,7 +202,7 @@ def shift(study: Study, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("X and Y spectra of map 1 and of the turned map 2, and their correlations")
 
 
-def window(study: Study, at: Sequence[int], palette: Palette) -> str:
+def window(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both windows to scale over map 1, and the coupled one from near by."""
     told, grid = study.get(WindowDetail), study.inputs.ref
     assert grid is not None
@@ -211,12 +211,12 @@ def window(study: Study, at: Sequence[int], palette: Palette) -> str:
     coupled, paper = told.coupled, told.paper
     off = rotation(turn) @ (coupled.pivot - paper.pivot)
     low, high = paper.low + off, paper.high + off
-    sheet, side = Sheet(236), 206.0
+    sheet, side = SvgCanvas(236), 206.0
     corners = known_corners(grid)
     ends = np.concatenate([[low, high], corners])
     middle = (ends.min(axis=0) + ends.max(axis=0)) / 2
     half = 0.54 * float(np.ptp(ends, axis=0).max())
-    view = View(around(middle, half), 2 * int(side), 2 * int(side))
+    view = RasterView(around(middle, half), 2 * int(side), 2 * int(side))
     plot = scene(sheet, 0, 18, side, side, view)
     sheet.text(0, 11, "the paper's window", 11, bold=True)
     plot.image(draw_map(view, palette, grid, palette.ref))
@@ -228,7 +228,7 @@ def window(study: Study, at: Sequence[int], palette: Palette) -> str:
     sheet.dot(px, py, 7, None, palette.best, width=2)
     small = 156.0
     near = max(0.6, 1.5 * float((coupled.high - coupled.low).max()) / 2)
-    view = View(around(x_hat, near), 2 * int(small), 2 * int(small))
+    view = RasterView(around(x_hat, near), 2 * int(small), 2 * int(small))
     inset = scene(sheet, 222, 18, small, small, view)
     sheet.text(222, 11, "the coupled one, near by", 11, bold=True)
     inset.image(draw_map(view, palette, grid, palette.ref))
@@ -256,7 +256,7 @@ def _towards(start: FloatArray, end: FloatArray, most: float) -> FloatArray:
     return np.asarray(start + way * min(1.0, most / length if length else 0.0))
 
 
-def first_turn(study: Study) -> int:
+def first_turn(study: LessonRun) -> int:
     """The turn that the correlation prefers; whole degrees in 0 … 179."""
     turn = study.get(HoughDetail).match.turns[0]
     return round(degrees(wrap_angle(turn))) % 180
@@ -269,7 +269,7 @@ def line_through(theta: float, rho: float, x_hat: FloatArray, reach: float) -> F
     return np.array([x_hat + rho * normal - reach * along, x_hat + rho * normal + reach * along])
 
 
-def candidate_place(study: Study, k: int) -> Pose2:
+def candidate_place(study: LessonRun, k: int) -> Pose2:
     """T of a candidate, in the order they were tried."""
     told = study.all(ShiftDetail)
     return told[min(k, len(told) - 1)].candidate.T_ref_mov

@@ -7,26 +7,26 @@ from collections.abc import Sequence
 from algorithms.methods.steps import MergeResult
 from algorithms.verdict.probability_model import probability
 from app.drawing.palette import Palette
-from app.drawing.svg.svg_canvas import WIDE, Sheet
+from app.drawing.svg.svg_canvas import WIDE, SvgCanvas
 from app.drawing.svg.verdict_bars import bars
 from app.model import status_text as words
-from app.page.lesson.lesson_run import Study
+from app.page.lesson.lesson_run import LessonRun
 
 ANSWER = 54.0  # height of an answer's row
 MOST_ANSWERS = 5
 
 
-def verdict(study: Study, at: Sequence[int], palette: Palette) -> str:
+def verdict(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The bars of the verdict of a run."""
     return bars(study.get(MergeResult).verdict, palette)
 
 
-def answers(study: Study, at: Sequence[int], palette: Palette) -> str:
+def answers(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The best few answers: what agrees with each on the whole maps, and what contradicts it."""
     result = study.get(MergeResult)
     told = result.weighed[:MOST_ANSWERS]
     most = max(each.evidence.shared_wall for each in told) or 1.0
-    sheet = Sheet(30 + ANSWER * len(told) + 22)
+    sheet = SvgCanvas(30 + ANSWER * len(told) + 22)
     sheet.text(0, 12, "place", 10.5, alpha=0.7)
     sheet.text(WIDE, 12, "how likely right, were there no other", 10.5, "end", alpha=0.7)
     for row, each in enumerate(told):
