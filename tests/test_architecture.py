@@ -54,6 +54,7 @@ LONG_MODULES = {
     "app.evaluation.dataset_evaluation",
     "app.jobs.worker_pool",
     "app.model.status_text",
+    "app.page.lesson.lesson_controller",
     "app.page.page",
     "app.page.panels.charts_panel",
 }

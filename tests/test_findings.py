@@ -14,7 +14,7 @@ from algorithms.methods.registry import METHODS
 from app.evaluation import sweep_axes as axes
 from app.evaluation.method_comparison import ComparedRun, tally
 from app.evaluation.method_run import MethodRun
-from app.evaluation.parameter_sweep import Axis, SweepPlan, SweepPoint
+from app.evaluation.parameter_sweep import SweepAxis, SweepPlan, SweepPoint
 
 ROOT = Path(__file__).parents[1]
 CONFIG = METHODS["spectra-swarm"].defaults
@@ -23,7 +23,9 @@ TRIAL = MethodRun((0.0, 0.0, 0.0), True, "Merged.", 0.9, 0.1, 0.01, True, True, 
 
 def swept(index, x=axes.PARTICLES, xs=(10, 100, 400), y=None, ys=(None,), seconds=None):
     """A sweep whose trials have the index (x, y, seed) tells."""
-    plan = SweepPlan("spectra-swarm", CONFIG, Axis(x, xs), None if y is None else Axis(y, ys), (0, 1))
+    plan = SweepPlan(
+        "spectra-swarm", CONFIG, SweepAxis(x, xs), None if y is None else SweepAxis(y, ys), (0, 1)
+    )
     points = [
         SweepPoint(
             *place,

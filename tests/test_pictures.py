@@ -20,7 +20,7 @@ from algorithms.spectra.hough_spectra import hough_transform
 from app.drawing.palette import DARK, LIGHT, css
 from app.drawing.scene_layout import lay_out
 from app.drawing.svg.map_raster import RasterView, around, walls
-from app.drawing.svg.svg_canvas import WIDE, Plot, SvgCanvas, ticks
+from app.drawing.svg.svg_canvas import WIDE, SvgCanvas, SvgPlot, ticks
 from app.drawing.svg.verdict_bars import FULL, bars, values
 from app.model.merge_inputs import MergeInputs
 from app.page.lesson import equations
@@ -216,7 +216,7 @@ def test_ticks_are_few_round_and_inside(low, width, most):
 
 
 def test_a_plot_puts_its_corners_on_its_corners():
-    plot = Plot(SvgCanvas(100), 10, 20, 200, 50, (-1, 1), (0, 5))
+    plot = SvgPlot(SvgCanvas(100), 10, 20, 200, 50, (-1, 1), (0, 5))
     assert plot.at([(-1, 0), (1, 5)]).tolist() == [[10, 70], [210, 20]]
 
 

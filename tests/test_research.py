@@ -20,7 +20,7 @@ from app.drawing.palette import DARK, LIGHT
 from app.drawing.svg.thumbnail import thumbnail
 from app.evaluation.evaluation_archive import contest_archive
 from app.evaluation.method_run import MethodRun
-from app.evaluation.parameter_sweep import Axis, SweepPlan, SweepPoint
+from app.evaluation.parameter_sweep import SweepAxis, SweepPlan, SweepPoint
 from app.jobs import background_job as background
 from app.jobs.background_job import BackgroundJob, beside_the_page
 from app.jobs.executor import Task
@@ -240,7 +240,7 @@ def test_every_setting_of_every_method_has_a_label_of_its_own_and_a_range_that_c
 
 def test_fields_make_a_plan_of_values_by_factor_and_of_all_choices():
     asked = planned(METHOD, DEFAULTS, SETTINGS, wanted(SPREAD), wanted(("window", "kind")), (3, 4))
-    assert asked.x == Axis(SPREAD, (1.0, 2.0, 4.0))
+    assert asked.x == SweepAxis(SPREAD, (1.0, 2.0, 4.0))
     assert set(asked.y.values) == {"coupled", "encounter", "origin"}
     assert asked.seeds == (3, 4)
 
@@ -269,7 +269,7 @@ def point(x, y=None, index=0.5, seconds=1.0):
 
 
 def swept(values, y=None):
-    return SweepPlan(METHOD, SMALL, Axis(SPREAD, tuple(values)), y, (0,))
+    return SweepPlan(METHOD, SMALL, SweepAxis(SPREAD, tuple(values)), y, (0,))
 
 
 spreads = st.lists(st.floats(0.2, 20.0).map(lambda v: round(v, 2)), min_size=1, max_size=9, unique=True)
@@ -311,13 +311,13 @@ def test_a_curve_rises_along_its_axis_and_holds_every_point_that_is_there(values
 def test_values_by_equal_factors_stand_at_equal_steps(first, factor, count):
     values = tuple(first * factor**k for k in range(count))
     assume(values[-1] <= 20)
-    axis = Axis(SPREAD, values)
+    axis = SweepAxis(SPREAD, values)
     steps = np.diff([curves.share_of(axis, value) for value in values])
     assert steps == pytest.approx(steps[0])
 
 
 def test_a_field_shows_what_is_there_and_each_cell_can_be_pressed():
-    plan = swept((1.0, 2.0), Axis(("refine", "optimiser"), ("pso", "mco")))
+    plan = swept((1.0, 2.0), SweepAxis(("refine", "optimiser"), ("pso", "mco")))
     points = {0: point(1.0, "pso"), 3: point(2.0, "mco", index=0.9)}
     told = curves.field(plan, points, curves.AGREEMENT)
     assert np.isfinite(told).tolist() == [[True, False], [False, True]]

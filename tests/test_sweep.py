@@ -15,7 +15,7 @@ from algorithms.methods.registry import METHODS
 from app.evaluation import parameter_sweep as sweeping
 from app.evaluation.checkpoint import Checkpoint
 from app.evaluation.method_run import MethodRun, run_method, true_fusion
-from app.evaluation.parameter_sweep import Axis, Spread, SweepPlan, in_order, point_keys, sweep
+from app.evaluation.parameter_sweep import Spread, SweepAxis, SweepPlan, in_order, point_keys, sweep
 from app.jobs.executor import Executor, SerialExecutor
 from app.system import version
 
@@ -29,7 +29,11 @@ SPREAD, INTENSITY = ("augment", "spread"), ("augment", "intensity")
 
 
 def plan(**more):
-    both = {"x": Axis(SPREAD, (0.5, 1.0, 3.0)), "y": Axis(INTENSITY, (10.0, 100.0)), "seeds": (0, 1)}
+    both = {
+        "x": SweepAxis(SPREAD, (0.5, 1.0, 3.0)),
+        "y": SweepAxis(INTENSITY, (10.0, 100.0)),
+        "seeds": (0, 1),
+    }
     return SweepPlan(METHOD, SMALL, **{**both, **more})
 
 
@@ -105,7 +109,9 @@ def test_a_trial_within_a_sweep_is_the_merge_alone_with_that_seed_and_those_sett
 
 
 def test_the_intensity_moves_no_answer(small_case):
-    points = list(sweep(small_case, plan(x=Axis(INTENSITY, (1.0, 30.0, 1000.0)), y=None), SerialExecutor()))
+    points = list(
+        sweep(small_case, plan(x=SweepAxis(INTENSITY, (1.0, 30.0, 1000.0)), y=None), SerialExecutor())
+    )
     first, *others = [point.index.mean for point in points]
     assert others == pytest.approx([first] * 2, abs=1e-3)
 
@@ -125,7 +131,7 @@ def test_an_interrupted_sweep_goes_on_where_it_was_and_ends_as_if_it_had_not_bee
 
 def test_points_of_an_earlier_sweep_serve_a_wider_one(small_case):
     journal = Checkpoint()
-    narrow = plan(x=Axis(SPREAD, (0.5, 1.0)), y=None)
+    narrow = plan(x=SweepAxis(SPREAD, (0.5, 1.0)), y=None)
     first = list(sweep(small_case, narrow, SerialExecutor(), journal))
     wide = list(sweep(small_case, plan(y=None), SerialExecutor(), journal))
     assert [point for point in wide if point in first] == wide[:2]
@@ -170,11 +176,13 @@ def test_the_code_that_a_method_stands_on_is_told_apart_from_all_other_code():
 
 def test_a_value_out_of_bounds_is_refused_before_anything_is_run():
     with pytest.raises(SettingError, match=r"must lie in \[0.2, 20\] m"):
-        plan(x=Axis(SPREAD, (1.0, 25.0)))
+        plan(x=SweepAxis(SPREAD, (1.0, 25.0)))
 
 
 def test_without_a_truth_the_index_is_that_of_the_estimate_and_nothing_is_called_right(small_case):
-    (point,) = sweep(replace(small_case, truth=None), plan(x=Axis(SPREAD, (1.0,)), y=None), SerialExecutor())
+    (point,) = sweep(
+        replace(small_case, truth=None), plan(x=SweepAxis(SPREAD, (1.0,)), y=None), SerialExecutor()
+    )
     assert point.right is None
     assert point.index.mean > 0.5
 
@@ -183,7 +191,7 @@ def test_a_method_that_cannot_be_run_says_so_and_is_tried_again_next_time(small_
     seen = replace(small_case.observations[0], bearing_back=None)
     case, journal = replace(small_case, observations=(seen,)), Checkpoint()
     asked = SweepPlan(
-        "bilateral", METHODS["bilateral"].defaults, Axis(("verdict", "bent_from"), (0.2,)), seeds=(0,)
+        "bilateral", METHODS["bilateral"].defaults, SweepAxis(("verdict", "bent_from"), (0.2,)), seeds=(0,)
     )
     (point,) = sweep(case, asked, SerialExecutor(), journal)
     assert "needs measurement.bearing_back" in point.failed

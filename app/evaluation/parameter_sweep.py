@@ -27,7 +27,7 @@ SEEDS = tuple(range(10))  # the paper averages over as many trials
 
 
 @dataclass(frozen=True)
-class Axis:
+class SweepAxis:
     """A setting and the values it is to take, each once."""
 
     path: SettingPath
@@ -48,8 +48,8 @@ class SweepPlan:
 
     method: str
     config: Any
-    x: Axis
-    y: Axis | None = None
+    x: SweepAxis
+    y: SweepAxis | None = None
     seeds: tuple[int, ...] = SEEDS
 
     def __post_init__(self) -> None:
@@ -65,7 +65,7 @@ class SweepPlan:
         config = with_value(self.config, self.x.path, x)
         return config if self.y is None else with_value(config, self.y.path, y)
 
-    def setting(self, axis: Axis) -> Setting:
+    def setting(self, axis: SweepAxis) -> Setting:
         """What the swept setting is called, in which unit."""
         return next(found for found in settings_of(self.config) if found.path == axis.path)
 

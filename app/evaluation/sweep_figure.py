@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from app.drawing.palette import LIGHT
 from app.evaluation.figure_style import COLOURS, MARKERS, colour, figure_files
-from app.evaluation.parameter_sweep import Axis, Spread, SweepPlan, SweepPoint, in_order
+from app.evaluation.parameter_sweep import Spread, SweepAxis, SweepPlan, SweepPoint, in_order
 from app.evaluation.sweep_axes import SPREAD, looks_even_by_factor
 
 INDEX = "agreeing share of the overlap, eq. (23)"
@@ -93,7 +93,7 @@ def _both(figure: Figure, plan: SweepPlan, points: list[SweepPoint], title: str,
 
 
 def _heat(
-    figure: Figure, axes: Axes, plan: SweepPlan, y: Axis, points: list[SweepPoint], cell: float
+    figure: Figure, axes: Axes, plan: SweepPlan, y: SweepAxis, points: list[SweepPoint], cell: float
 ) -> None:
     means = np.full((len(y.values), len(plan.x.values)), np.nan)
     for point in points:
@@ -162,7 +162,7 @@ def _no_closer(axes: Axes) -> None:
         axes.set_ylim(high - LEAST_SPAN, high)
 
 
-def _places(axis: Axis, points: Sequence[SweepPoint], beside: int = 0) -> list[float]:
+def _places(axis: SweepAxis, points: Sequence[SweepPoint], beside: int = 0) -> list[float]:
     """Where points stand: at their number, or in a row where the setting is a choice, a little beside
     those of another curve.
     """
@@ -171,11 +171,11 @@ def _places(axis: Axis, points: Sequence[SweepPoint], beside: int = 0) -> list[f
     return [axis.values.index(point.x) + 0.08 * beside for point in points]
 
 
-def _is_number(axis: Axis) -> bool:
+def _is_number(axis: SweepAxis) -> bool:
     return all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in axis.values)
 
 
-def _name_x(axes: Axes, plan: SweepPlan, axis: Axis, cell: float) -> None:
+def _name_x(axes: Axes, plan: SweepPlan, axis: SweepAxis, cell: float) -> None:
     axes.set_xlabel(_label(plan, axis))
     if not _is_number(axis):
         _ticks(axes.xaxis, axis.values)
@@ -188,7 +188,7 @@ def _name_x(axes: Axes, plan: SweepPlan, axis: Axis, cell: float) -> None:
         axes.xaxis.set_minor_locator(NullLocator())
 
 
-def _label(plan: SweepPlan, axis: Axis) -> str:
+def _label(plan: SweepPlan, axis: SweepAxis) -> str:
     return plan.setting(axis).label
 
 

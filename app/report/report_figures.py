@@ -21,7 +21,7 @@ from app.drawing.palette import LIGHT, Rgb, css
 from app.drawing.scene_layout import Rect, known_corners, rect_of
 from app.drawing.svg.map_plot import robot, scale_bar, scene
 from app.drawing.svg.map_raster import Pixels, RasterView, draw_map
-from app.drawing.svg.svg_canvas import Plot, SvgCanvas, ticks
+from app.drawing.svg.svg_canvas import SvgCanvas, SvgPlot, ticks
 from app.model import chart_data as charts
 from app.model.contradiction_text import MOST_PLACES
 from app.model.objective_label import ObjectiveLabel
@@ -128,7 +128,7 @@ def proof(state: ProofState, measure: ObjectiveLabel) -> str:
     low, high = charts.proof_range(state, float(finite.max()) if len(finite) else 0.0)
     x, ceiling, met, floor, best, rivals = charts.proof(state, high)
     sheet = SvgCanvas(252, FULL)
-    plot = Plot(sheet, 50, 8, FULL - 66, 180, (-180.0, 180.0), (low, high))
+    plot = SvgPlot(sheet, 50, 8, FULL - 66, 180, (-180.0, 180.0), (low, high))
     plot.curve(x, ceiling, css(LIGHT.margin), 1.5, fill=True)
     plot.curve(x, met, css(LIGHT.particle), 1, fill=True)
     plot.curve(x, floor, css(LIGHT.rival), 1.2, dash="3 4")
@@ -172,13 +172,13 @@ class _Raster:
             self.pixels[row[there], col[there]] = colour
 
 
-def _merged_plot(fusion: Fusion) -> tuple[Plot, _Raster]:
+def _merged_plot(fusion: Fusion) -> tuple[SvgPlot, _Raster]:
     rect, high = _fitted(known_corners(fusion.merged), FULL, 260.0, 620.0)
     view = RasterView(_widened(rect, FULL / high), int(FINE * FULL), int(FINE * high))
     return scene(SvgCanvas(high + 24, FULL), 0, 0, FULL, high, view), _Raster(view, fusion.merged)
 
 
-def _finish(plot: Plot, chips: Sequence[tuple[str, Rgb]], title: str) -> str:
+def _finish(plot: SvgPlot, chips: Sequence[tuple[str, Rgb]], title: str) -> str:
     sheet = plot.sheet
     sheet.rect(0, 0, FULL, plot.high, None, LIGHT.margin, 0.4)
     scale_bar(plot)
@@ -192,7 +192,7 @@ def _free(cells: NDArray[np.int8]) -> BoolArray:
     return np.asarray((cells >= FREE) & (cells <= FREE_UP_TO))
 
 
-def _name(plot: Plot, at: FloatArray, words: str, colour: Rgb) -> None:
+def _name(plot: SvgPlot, at: FloatArray, words: str, colour: Rgb) -> None:
     """Words beside a place: to its left where there is no room to its right."""
     x, y = plot.one(*at.tolist())
     left = x > plot.x + plot.wide - 70

@@ -179,7 +179,7 @@ class SvgCanvas:
 
 
 @dataclass(frozen=True)
-class Plot:
+class SvgPlot:
     """A rectangle of a sheet with a scale on both sides.
 
     x, y, wide, high : pixels of the sheet

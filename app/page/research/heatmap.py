@@ -8,7 +8,7 @@ import numpy as np
 
 from app.drawing.palette import VIRIDIS, Palette, css, viridis
 from app.drawing.svg.svg_canvas import SvgCanvas, worded
-from app.evaluation.parameter_sweep import Axis, SweepPlan
+from app.evaluation.parameter_sweep import SweepAxis, SweepPlan
 from app.page.research.sweep_curves import Points, field, reading, span, text_of, title_of, word_of
 
 WIDE, RIGHT, TOP = 296.0, 8.0, 24.0
@@ -59,7 +59,7 @@ def heat_svg(
     return sheet.svg(f"{title}: {plan.setting(plan.y).label} over {plan.setting(plan.x).label}")
 
 
-def _at(plan: SweepPlan, axis: Axis, number: int) -> str:
+def _at(plan: SweepPlan, axis: SweepAxis, number: int) -> str:
     return f"{plan.setting(axis).label}: {word_of(plan, axis, axis.values[number])}"
 
 

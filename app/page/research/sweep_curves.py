@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.evaluation.parameter_sweep import Axis, SweepPlan, SweepPoint
+from app.evaluation.parameter_sweep import SweepAxis, SweepPlan, SweepPoint
 from app.evaluation.sweep_axes import looks_even_by_factor
 from app.model.settings import word_for
 
@@ -71,12 +71,12 @@ def text_of(value: float, measure: str) -> str:
 # ---- where points stand
 
 
-def is_number(axis: Axis) -> bool:
+def is_number(axis: SweepAxis) -> bool:
     """Whether the setting is a number; a choice has its values side by side."""
     return all(isinstance(value, int | float) and not isinstance(value, bool) for value in axis.values)
 
 
-def by_factor(axis: Axis) -> bool:
+def by_factor(axis: SweepAxis) -> bool:
     """Whether the axis is logarithmic."""
     if len(axis.values) < 2 or not is_number(axis) or min(axis.values) <= 0:
         return False
@@ -85,12 +85,12 @@ def by_factor(axis: Axis) -> bool:
     return even or looks_even_by_factor(axis.values)
 
 
-def place_of(axis: Axis, value: Any) -> float:
+def place_of(axis: SweepAxis, value: Any) -> float:
     """Where a value stands on its axis."""
     return float(value) if is_number(axis) else float(axis.values.index(value))
 
 
-def reach(axis: Axis) -> tuple[float, float]:
+def reach(axis: SweepAxis) -> tuple[float, float]:
     """Both ends of an axis, a little beyond its values."""
     places = [place_of(axis, value) for value in axis.values]
     low, high = min(places), max(places)
@@ -101,7 +101,7 @@ def reach(axis: Axis) -> tuple[float, float]:
     return low - more, high + more
 
 
-def share_of(axis: Axis, value: Any) -> float:
+def share_of(axis: SweepAxis, value: Any) -> float:
     """How far along the axis a value stands, 0 … 1."""
     low, high = reach(axis)
     at = place_of(axis, value)
@@ -116,7 +116,7 @@ def nearest(plan: SweepPlan, points: Points, share: float) -> int | None:
     return min(points, key=lambda n: abs(share_of(plan.x, places[n][0]) - share), default=None)
 
 
-def word_of(plan: SweepPlan, axis: Axis, value: Any) -> str:
+def word_of(plan: SweepPlan, axis: SweepAxis, value: Any) -> str:
     """A value of a setting, as a person reads it."""
     if isinstance(value, bool):
         return "on" if value else "off"

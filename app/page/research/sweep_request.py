@@ -8,7 +8,7 @@ from typing import Any
 
 from algorithms.common.errors import SettingError
 from app.evaluation import sweep_axes as axes
-from app.evaluation.parameter_sweep import Axis, SweepPlan
+from app.evaluation.parameter_sweep import SweepAxis, SweepPlan
 from app.model.settings import Setting, value_at
 
 MOST_POINTS = 400  # of a sweep on the page; the command takes any number
@@ -52,14 +52,14 @@ def planned(
     return plan
 
 
-def _axis(setting: Setting, wanted: Wanted) -> Axis:
+def _axis(setting: Setting, wanted: Wanted) -> SweepAxis:
     if setting.bounds is None:
-        return Axis(setting.path, tuple(setting.choices.values()) if setting.choices else (False, True))
+        return SweepAxis(setting.path, tuple(setting.choices.values()) if setting.choices else (False, True))
     try:
         values = axes.spaced(setting, wanted.low, wanted.high, wanted.count, wanted.by_factor)
     except SettingError as error:  # by the name of its flag; here it has another
         raise SettingError(str(error).replace(".".join(setting.path), setting.label)) from error
-    return Axis(setting.path, values)
+    return SweepAxis(setting.path, values)
 
 
 def labelled(settings: Sequence[Setting]) -> dict[str, Setting]:

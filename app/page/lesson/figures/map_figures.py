@@ -16,7 +16,7 @@ from app.drawing.draw_items import ellipse
 from app.drawing.palette import VIRIDIS, Palette
 from app.drawing.svg.map_plot import robot, scale_bar, scene, view_of
 from app.drawing.svg.map_raster import draw_levels, draw_map, under
-from app.drawing.svg.svg_canvas import INK, Plot, SvgCanvas, number, turn_label, worded
+from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number, turn_label, worded
 from app.page.lesson.lesson_run import LessonRun
 
 HALF = 184.0  # width of one of two pictures side by side
@@ -126,7 +126,7 @@ def dual(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     centre = points[int(np.hypot(*(points - met.x_ref).T).argmin())]
     col, row = np.floor(grid.grid_coordinates(centre)).astype(int).tolist()
     low = np.array([col - across // 2, row - across // 2])
-    plot = Plot(sheet, 0, 18, side, side, (low[0], low[0] + across), (low[1], low[1] + across))
+    plot = SvgPlot(sheet, 0, 18, side, side, (low[0], low[0] + across), (low[1], low[1] + across))
     sheet.text(0, 11, f"{across} × {across} cells of map 1", 11, bold=True)
     patch = np.full((across, across), UNKNOWN, dtype=np.int8)
     r0, c0 = max(0, low[1]), max(0, low[0])

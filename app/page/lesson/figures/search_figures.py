@@ -14,7 +14,7 @@ from algorithms.optimisation.objective import PAD, Objective
 from algorithms.optimisation.optimiser import SearchState
 from app.drawing.draw_items import ellipse
 from app.drawing.palette import Palette, css, viridis
-from app.drawing.svg.svg_canvas import INK, Plot, SvgCanvas, ticks
+from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, ticks
 from app.model import chart_data as charts
 from app.model.objective_label import AGREEMENT, GAMMA, ObjectiveLabel, measure_of
 from app.page.lesson.lesson_run import FEW, LessonRun
@@ -67,7 +67,7 @@ def objective(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     turns = np.radians(np.arange(0.0, 360.0, 0.5))
     round_ = transforms(np.full(720, place[0]), np.full(720, place[1]), turns, coupled.pivot)
     order = np.argsort(np.mod(np.degrees(turns) + 180, 360))
-    below = Plot(sheet, 42, 226, 324, 68, (-180, 180), (-0.35, 1.1))
+    below = SvgPlot(sheet, 42, 226, 324, 68, (-180, 180), (-0.35, 1.1))
     sheet.text(0, 219, "both over the turn (each of its highest)", 11, bold=True)
     rows: tuple[tuple[float, Objective, ObjectiveLabel, str], ...] = (
         (42.0, study.gamma, GAMMA, css(palette.best)),
@@ -75,7 +75,7 @@ def objective(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     )
     for x, value, measure, colour in rows:
         grid = _landscape(value, study, turn, half)
-        plot = Plot(sheet, x, 18, side, side, (x0 - half, x0 + half), (y0 - half, y0 + half))
+        plot = SvgPlot(sheet, x, 18, side, side, (x0 - half, x0 + half), (y0 - half, y0 + half))
         top = float(value(best.array()[None])[0])
         highest = max(top, float(grid.max()), 1e-12)
         name = "Γ, eq. (17)" if measure is GAMMA else "A"
@@ -110,12 +110,12 @@ def _few(middle: float, half: float) -> list[float]:
     return [round(middle - half / 2, 1), round(middle + half / 2, 1)]
 
 
-def _box_plot(study: LessonRun, sheet: SvgCanvas, x: float, y: float, side: float) -> Plot:
+def _box_plot(study: LessonRun, sheet: SvgCanvas, x: float, y: float, side: float) -> SvgPlot:
     """The box over x and y, a landscape of what is maximised behind it, its longer edge filling the plot."""
     box = study.box
     half = 0.5 * float((box.high - box.low)[:2].max()) * 1.02
     cx, cy = box.centre[:2].tolist()
-    plot = Plot(sheet, x, y, side, side, (cx - half, cx + half), (cy - half, cy + half))
+    plot = SvgPlot(sheet, x, y, side, side, (cx - half, cx + half), (cy - half, cy + half))
     offset = (np.arange(SIDE) + 0.5) / SIDE * 2 * half - half
     gx, gy = np.meshgrid(cx + offset, cy - offset)
     value = study.agreement if study.config.refine.objective == "agreement" else study.gamma
@@ -148,7 +148,7 @@ def samples(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     known = np.where(np.isfinite(best), best, 0.0)
     low, high = float(known.min()), max(float(known.max()), 1e-12)
     low = min(low, 0.9 * high)
-    chart = Plot(sheet, 252, 18, 118, 160, (0, len(told)), (low, high + 0.08 * (high - low)))
+    chart = SvgPlot(sheet, 252, 18, 118, 160, (0, len(told)), (low, high + 0.08 * (high - low)))
     sheet.text(376, 11, f"best so far: {measure.text(float(best[k]))}", 11, "end", bold=True)
     chart.curve(np.arange(1.0, len(told) + 1), known, css(palette.margin), 1, alpha=0.6)
     chart.curve(np.arange(1.0, k + 2), known[: k + 1], css(palette.particle), 2.2)
@@ -188,7 +188,7 @@ def _pulls(sheet: SvgCanvas, before: SearchState, after: SearchState, j: int, pa
     low, high = places.min(axis=0), places.max(axis=0)
     half = max(0.004, 0.62 * float((high - low).max()))
     cx, cy = ((low + high) / 2).tolist()
-    plot = Plot(sheet, 216, 18, 158, 158, (cx - half, cx + half), (cy - half, cy + half))
+    plot = SvgPlot(sheet, 216, 18, 158, 158, (cx - half, cx + half), (cy - half, cy + half))
     sheet.text(216, 11, f"particle {j + 1}, near by", 11, bold=True)
     sheet.rect(plot.x, plot.y, plot.wide, plot.high, palette.free, INK, 0.35)
     sheet.rect(plot.x, plot.y, plot.wide, plot.high, None, INK, 0.35)
@@ -254,7 +254,7 @@ def proof(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     state = detail.state
     low, high = charts.proof_range(state, study.story(ProofDetail).ceiling)
     x, ceiling, met, floor, best, rivals = charts.proof(state, high)
-    plot = Plot(sheet, 42, 150, 324, 118, (-180, 180), (low, high))
+    plot = SvgPlot(sheet, 42, 150, 324, 118, (-180, 180), (low, high))
     measure = measure_of(study.config)
     left = "proven" if state.proven else f"nothing above {measure.text(state.ceiling)} is left"
     sheet.text(0, 143, f"{state.nodes:,} blocks looked at: {left}", 11, bold=True)

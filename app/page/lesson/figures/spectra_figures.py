@@ -15,7 +15,7 @@ from app.drawing.palette import Palette, viridis
 from app.drawing.scene_layout import known_corners
 from app.drawing.svg.map_plot import scale_bar, scene
 from app.drawing.svg.map_raster import RasterView, around, draw_map, walls
-from app.drawing.svg.svg_canvas import INK, Plot, SvgCanvas, number, turn_label, worded
+from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number, turn_label, worded
 from app.page.lesson.lesson_run import LessonRun
 
 DEGREES = (0, 30, 60, 90, 120, 150, 180)
@@ -55,7 +55,7 @@ def _reach(study: LessonRun) -> float:
     return 2.5 * float(study.config.augment.spread)
 
 
-def _votes(plot: Plot, votes: FloatArray, step: float) -> None:
+def _votes(plot: SvgPlot, votes: FloatArray, step: float) -> None:
     """The accumulator in a plot of θ in degrees and ρ in metres; brightness is the root of the votes."""
     bins, reach = votes.shape[1], plot.up[1]
     rho = (np.arange(bins) - bins // 2) * step
@@ -71,7 +71,7 @@ def hough(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     reach, sheet = _reach(study), SvgCanvas(308)
     rows = ((18.0, first, palette.ref, "map 1"), (164.0, second, palette.mov, "map 2"))
     for y, votes, colour, name in rows:
-        plot = Plot(sheet, 42, y, 324, 100, (0, 180), (-reach, reach))
+        plot = SvgPlot(sheet, 42, y, 324, 100, (0, 180), (-reach, reach))
         sheet.text(0, y - 7, name, 11, colour=worded(colour, palette), bold=True)
         sheet.text(380, y - 7, "votes of the wall cells (bright: many)", 10.5, "end", alpha=0.8)
         _votes(plot, votes, step)
@@ -91,12 +91,12 @@ def spectrum(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     first, second, step = study.votes
     x = np.degrees(match.angles)
     for y, votes, name in ((14.0, first, "map 1"), (80.0, second, "map 2")):
-        plot = Plot(sheet, 42, y, 324, 54, (0, 180), (-reach, reach))
+        plot = SvgPlot(sheet, 42, y, 324, 54, (0, 180), (-reach, reach))
         _votes(plot, votes, step)
         plot.axes("", "ρ (m)", (), (-5 * (reach // 5), 0, 5 * (reach // 5)) if reach >= 5 else (0,))
         sheet.text(46, y + 12, name, 11, colour="#fff", bold=True)
     top = max(float(match.ref.max()), float(match.mov.max()), 1e-12)
-    plot = Plot(sheet, 42, 154, 324, 88, (0, 180), (0, 1.08))
+    plot = SvgPlot(sheet, 42, 154, 324, 88, (0, 180), (0, 1.08))
     plot.curve(x, match.ref / top, palette.ref, 2, fill=True)
     plot.curve(x, match.mov / top, palette.mov, 2, fill=True)
     plot.axes("θ, direction of the normal (°)", "HS, of its highest", DEGREES, (0, 0.5, 1))
@@ -114,7 +114,7 @@ def correlation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     k = round(turn / 180 * size) % size
     top = max(float(match.ref.max()), float(match.mov.max()), 1e-12)
     ref, mov = match.ref / top, np.roll(match.mov, k) / top
-    plot = Plot(sheet, 42, 18, 324, 86, (0, 180), (0, 1.08))
+    plot = SvgPlot(sheet, 42, 18, 324, 86, (0, 180), (0, 1.08))
     sheet.text(0, 11, f"map 2's spectrum, slid by {turn:.0f}°", 11, bold=True)
     after = sheet.chip(238, 11, palette.ref, "map 1", "line")
     sheet.chip(after, 11, palette.mov, "map 2, slid", "line")
@@ -124,7 +124,7 @@ def correlation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     plot.axes("direction (°)", "HS", DEGREES, (0, 0.5, 1))
     low = float(match.correlation.min())
     low = low - 0.06 * (1 - low) if low < 0.99 else 0.0
-    plot = Plot(sheet, 42, 158, 324, 78, (0, 360), (low, 1 + 0.12 * (1 - low)))
+    plot = SvgPlot(sheet, 42, 158, 324, 78, (0, 360), (low, 1 + 0.12 * (1 - low)))
     sheet.text(0, 151, "their correlation CC; shaded: the same again, the twins", 11, bold=True)
     twice = np.concatenate([match.correlation, match.correlation])
     plot.band(180, 360, palette.margin, 0.12)
@@ -165,8 +165,8 @@ def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     words = f"candidate {min(at[0], len(told) - 1) + 1}: turned by {turn_label(candidate.T_ref_mov.theta)}"
     sheet.text(42, 11, words, 11, bold=True)
     x0, y0, x1, y1 = view.rect
-    below = Plot(sheet, 42, 18 + high + 4, wide, 40, (x0, x1), (0, 1.08))
-    beside = Plot(sheet, 42 + wide + 4, 18, 76, high, (0, 1.08), (y0, y1))
+    below = SvgPlot(sheet, 42, 18 + high + 4, wide, 40, (x0, x1), (0, 1.08))
+    beside = SvgPlot(sheet, 42 + wide + 4, 18, 76, high, (0, 1.08), (y0, y1))
     for curves, places, colour in (
         ((candidate.x.ref, candidate.y.ref), (candidate.x.ref_at, candidate.y.ref_at), palette.ref),
         (
@@ -188,7 +188,7 @@ def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     sheet.text(300, 184, "column, a row", 10, alpha=0.8)
     for x, match, name in ((30.0, candidate.x, "x"), (218.0, candidate.y, "y")):
         pad = max(3.0, 0.3 * (match.high - match.low))
-        plot = Plot(sheet, x, 208, 150, 70, (match.low - pad, match.high + pad), (0, 1.15))
+        plot = SvgPlot(sheet, x, 208, 150, 70, (match.low - pad, match.high + pad), (0, 1.15))
         sheet.text(x, 201, f"C{name.upper()}: sliding along {name}", 11, bold=True)
         plot.band(match.low, match.high, palette.margin, 0.3)
         near = (match.shifts >= plot.across[0]) & (match.shifts <= plot.across[1])
