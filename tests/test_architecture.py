@@ -76,6 +76,12 @@ def test_only_the_table_of_methods_knows_the_methods():
     assert [module for module in known if not module.startswith("algorithms.simulator")] == []
 
 
+def test_the_names_for_others_stand_on_algorithms_alone_and_nothing_stands_on_them():
+    """The command's launcher, a ``__main__``, is not asked: it has to import the command line."""
+    assert offenders("mapmeld", {"app", "viser", "tqdm"} | PLOTTERS) == {}
+    assert {**offenders("app", {"mapmeld"}), **offenders("algorithms", {"mapmeld"})} == {}
+
+
 @pytest.mark.parametrize("module", ["particle_swarm", "monte_carlo", "optimiser"])
 def test_an_optimiser_knows_nothing_of_maps(module):
     named = set(imports_of(f"algorithms.optimisation.{module}"))
@@ -141,7 +147,7 @@ def test_no_clock_that_can_be_set_decides_anything():
     for source in ("import time\ntime.time_ns()", "from time import time", "d = date.today"):
         assert list(clocks(source))
     asking = {}
-    for package in ("app", "algorithms"):
+    for package in ("mapmeld", "app", "algorithms"):
         for path in sorted((ROOT / package).rglob("*.py")):
             found = list(clocks(path.read_text("utf-8")))
             if found:
