@@ -166,7 +166,7 @@ def in_order(plan: Plan, points: Sequence[Point]) -> list[Point]:
 
 
 def _work(case: Case, order: tuple[str, Any, tuple[int, ...]]) -> list[dict[str, Any]]:
-    """All seeds of one point: what does not depend on luck is done once for all of them."""
+    """All seeds of one point: what does not depend on the seed is done once for all of them."""
     method, config, seeds = order
     true, memo = true_fusion(case), Memo()
     return [attempt(case, method, config, seed, true, memo).plain() for seed in seeds]
