@@ -80,7 +80,7 @@ results: $(VENV)/ready
 
 clean:
 	rm -rf $(VENV) build dist out *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis .benchmarks
-	find algorithms app tests -name __pycache__ -prune -exec rm -rf {} +
+	find mapmeld algorithms app tests -name __pycache__ -prune -exec rm -rf {} +
 
 # An environment whose Python has gone, or that was never finished, is made anew.
 ifneq ($(shell $(BIN)/python -c 'print("starts")' 2>/dev/null),starts)

@@ -149,7 +149,7 @@ def particles(sweeps: Sequence[Swept]) -> Finding:
 
 
 def luck(sweeps: Sequence[Swept]) -> Finding:
-    """Not in the paper: more particles, less luck."""
+    """Not in the paper: more particles, less difference between the seeds."""
     oks, told = [], []
     for swept in sweeps:
         few, many = (_known(point) for point in swept.ends())
@@ -158,7 +158,7 @@ def luck(sweeps: Sequence[Swept]) -> Finding:
             f"{swept.name}: ± {few.deviation:.4f} with the fewest, ± {many.deviation:.4f} with the most"
         )
     return Finding(
-        "More particles, less luck (not in the paper)",
+        "More particles, less difference between seeds (not in the paper)",
         f"Standard deviation of eq. (23) over the seeds:{_each(told)}",
         held(oks),
     )

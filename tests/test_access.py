@@ -244,8 +244,8 @@ def test_the_start_line_says_where_and_for_whom():
     assert reach("LOCALHOST", Access(token=TOKEN)) == "for this machine with the token"
     assert reach("0.0.0.0", locked) == "for everyone on the network with the token, unencrypted"
     assert reach("127.0.0.1", locked) == "for this machine with the token"
-    behind = reach("127.0.0.1", locked, ["robots.example"])
-    assert behind == "for this machine, and whom the proxy at robots.example lets through, with the token"
+    told = reach("127.0.0.1", locked, ["robots.example"])
+    assert told == "for this machine, and whom the proxy at robots.example lets through, with the token"
 
 
 @pytest.mark.parametrize(
@@ -271,7 +271,9 @@ def test_a_page_for_this_machine_answers_to_the_name_it_was_started_with(host):
     ["", "*", "*.example", "https://x.example/maps", "x.example/maps", "a b", "a,b", "u@x.example", "::1"],
 )
 def test_what_is_no_host_name_is_not_taken_for_that_of_a_proxy(name):
-    with pytest.raises(SettingError, match="this is no host name; give that of the proxy alone, such as"):
+    with pytest.raises(
+        SettingError, match=r"--proxy-host .* this is no host name; give that of the proxy alone"
+    ):
         access_for("127.0.0.1", names=("robots.example", name))
 
 

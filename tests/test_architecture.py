@@ -88,16 +88,21 @@ def modules(package: str) -> list[str]:
 @cache
 def imports_of(module: str) -> frozenset[str]:
     """What a module's source imports: our modules by name, others by the name that the source gives."""
+    return frozenset(imported(sources()[module]))
+
+
+def imported(tree: ast.AST) -> set[str]:
+    """What a source imports."""
     found = set()
-    for node in ast.walk(sources()[module]):
+    for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{module}: give the whole name in {ast.unparse(node)!r}"
+            assert node.level == 0, f"give the whole name in {ast.unparse(node)!r}"
             for alias in node.names:
                 full = f"{node.module}.{alias.name}"
                 found.add(full if full in paths() else str(node.module))
-    return frozenset(found)
+    return found
 
 
 def importers(*names: str) -> set[str]:
@@ -217,6 +222,14 @@ def test_only_the_table_of_methods_knows_the_methods():
     assert {module for module in inside if not module.startswith("algorithms.simulator")} == set()
 
 
+def test_the_names_for_others_stand_on_algorithms_alone_and_nothing_stands_on_them():
+    """The command's launcher, a ``__main__``, is not asked: it has to import the command line."""
+    for path in (ROOT / "mapmeld").glob("*.py"):
+        named = {name.split(".")[0] for name in imported(ast.parse(path.read_text("utf-8")))}
+        assert path.stem == "__main__" or not named & ({"app", "viser", "tqdm"} | PLOTTERS), path
+    assert importers("mapmeld") == set()
+
+
 @pytest.mark.parametrize("module", ["particle_swarm", "monte_carlo", "optimiser"])
 def test_an_optimiser_knows_nothing_of_maps(module):
     named = imports_of(f"algorithms.optimisation.{module}")
@@ -290,7 +303,9 @@ def test_no_clock_that_can_be_set_decides_anything():
     """Waits, rates and graces go by the monotonic clock; the time of day stands in the log alone."""
     for source in ("import time\ntime.time_ns()", "from time import time", "d = date.today"):
         assert clocks(ast.parse(source))
-    assert {module: clocks(tree) for module, tree in sources().items() if clocks(tree)} == {}
+    others = {path.stem: ast.parse(path.read_text("utf-8")) for path in (ROOT / "mapmeld").glob("*.py")}
+    asking = {module: clocks(tree) for module, tree in {**sources(), **others}.items()}
+    assert {module: found for module, found in asking.items() if found} == {}
 
 
 def test_contributing_lists_the_packages_that_there_are():

@@ -42,16 +42,17 @@ def installed(wheel, tmp_path_factory):
     return folder
 
 
-def run(installed, tmp_path, *words):
-    """Run Python in an empty folder, with the installed wheel before anything else."""
-    paths = [str(installed), sysconfig.get_paths()["purelib"]]
+def run(installed, tmp_path, *words, before=None):
+    """Run Python in an empty folder, with the installed wheel before anything else but ``before``."""
+    paths = [*([str(before)] if before else []), str(installed), sysconfig.get_paths()["purelib"]]
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
     return subprocess.run([sys.executable, *words], cwd=tmp_path, env=env, capture_output=True, text=True)
 
 
-def test_the_wheel_holds_both_packages_and_what_they_show(wheel):
+def test_the_wheel_holds_its_packages_and_what_they_show(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
-    assert {"app/cli/main.py", "algorithms/methods/registry.py"} <= names
+    assert {"mapmeld/__init__.py", "app/cli/main.py", "algorithms/methods/registry.py"} <= names
+    assert {"mapmeld/py.typed", "algorithms/py.typed"} <= names  # without the second all names are Any
     kinds = ("*.js", "*.css", "*.html")
     shown = {path.relative_to(ROOT).as_posix() for kind in kinds for path in (ROOT / "app").rglob(kind)}
     assert shown
@@ -72,6 +73,28 @@ def test_the_installed_command_explains_itself(installed, tmp_path):
     told = run(installed, tmp_path, str(script), "--help")
     assert told.returncode == 0, told.stderr
     assert "Examples:" in told.stdout
+
+
+def test_the_installed_command_tells_of_another_package_in_its_place(installed, tmp_path):
+    theirs = tmp_path / "theirs" / "app"
+    theirs.mkdir(parents=True)
+    (theirs / "__init__.py").write_text("")
+    script = installed / "bin" / "mapmeld"
+    told = run(installed, tmp_path, str(script), "--help", before=theirs.parent)
+    assert told.returncode == 2
+    assert f"another package named 'app' ({theirs / '__init__.py'}) stands in its place" in told.stderr
+    assert told.stderr.count("\n") == 1
+
+
+def test_a_program_imports_what_was_installed(installed, tmp_path):
+    code = (
+        "import mapmeld, app.system.data_paths as p\n"
+        "print(mapmeld.__file__, mapmeld.__version__)\n"
+        "print(mapmeld.read_map(next(iter(p.samples().values())) / 'map1.yaml').resolution)"
+    )
+    told = run(installed, tmp_path, "-c", code)
+    assert told.returncode == 0, told.stderr
+    assert told.stdout == f"{installed / 'mapmeld' / '__init__.py'} 0.1.0\n0.05\n"
 
 
 def test_the_installed_package_finds_its_samples_and_static_files(installed, tmp_path):

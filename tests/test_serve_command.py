@@ -6,9 +6,10 @@ import subprocess
 import sys
 import time
 import urllib.request
+from urllib.error import HTTPError
 
 import pytest
-from commandline import ROOT, as_in_a_terminal
+from commandline import ROOT, as_in_a_terminal, usage_error
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
@@ -63,6 +64,46 @@ def test_a_tab_of_another_version_is_told_to_reload_and_stops_nobody_where_no_on
         finally:
             if page.poll() is None:
                 page.kill()
+
+
+@pytest.mark.parametrize("flag", ["--proxy-host", "--behind"])
+def test_a_page_answers_to_the_name_of_its_proxy_and_an_old_flag_tells_its_new_name_once(flag):
+    words = [flag, "robots.example", f"{flag}=maps.example"]
+    command = [sys.executable, "-m", "app", "serve", "--no-browser", "--port", "0", *words]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT
+    ) as page:
+        try:
+            said = page.stdout.readline()
+            assert "whom the proxy at robots.example or maps.example lets through, with the token" in said
+            url = said.split()[3]
+            for name in ("robots.example", "maps.example"):
+                asked = urllib.request.Request(url, headers={"Host": name})
+                with urllib.request.urlopen(asked, timeout=20) as answer:
+                    assert answer.status == 200
+            with pytest.raises(HTTPError, match="421"):
+                urllib.request.urlopen(
+                    urllib.request.Request(url, headers={"Host": "evil.example"}), timeout=20
+                )
+            page.send_signal(signal.SIGTERM)
+            assert page.wait(timeout=20) in (0, 130)
+            told = [line for line in page.stderr.read().splitlines() if "--" in line]
+            old = ["mapmeld serve: --behind is now --proxy-host"]
+            assert told == (old if flag == "--behind" else [])
+        finally:
+            if page.poll() is None:
+                page.kill()
+
+
+def test_the_old_name_of_a_flag_is_in_no_help_and_recommended_to_nobody(capsys):
+    assert usage_error("serve", "--help") == 0
+    said = capsys.readouterr().out
+    assert "--proxy-host NAME" in said
+    assert "--behind" not in said
+    assert usage_error("serve", "--behnd", "robots.example") == 2
+    assert "--behind" not in capsys.readouterr().err
+    assert usage_error("serve", "--proxy-hots", "robots.example") == 2
+    assert "did you mean --proxy-host?" in capsys.readouterr().err
 
 
 def test_a_browser_is_opened_only_where_there_is_a_screen(monkeypatch):

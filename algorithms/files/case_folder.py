@@ -74,6 +74,7 @@ class Truth:
 class Case:
     """A folder with two maps, one sighting or several, and, where it is known, the answer.
 
+    ref, mov         : map1.yaml, the observer's, and map2.yaml, that of the robot it saw
     observation_file : name of the file that ``observations`` came from
     truth            : None where the folder holds no truth.yaml
     """
@@ -86,8 +87,8 @@ class Case:
     truth: Truth | None
 
 
-def read_observations(path: Path) -> tuple[Observation, ...]:
-    """Read an observation file; raises InputFileError."""
+def read_observations(path: Path | str) -> tuple[Observation, ...]:
+    """Read an observation file, of one sighting or a list of them; raises InputFileError."""
     path = Path(path)
     return observations_from_bytes(str(path), read_bytes(path, "an observation"))
 
@@ -135,7 +136,7 @@ def _observation(f: Fields) -> Observation:
     )
 
 
-def write_observations(path: Path, observations: Sequence[Observation]) -> None:
+def write_observations(path: Path | str, observations: Sequence[Observation]) -> None:
     """Write an observation file whole or not at all; raises OutputError, SettingError."""
     write_file(Path(path), observations_to_bytes(observations))
 
@@ -238,8 +239,8 @@ def truth_to_bytes(truth: Truth) -> bytes:
     return ("\n".join(lines) + "\n").encode()
 
 
-def read_case(folder: Path, rough: bool = False) -> Case:
-    """Read the case in a folder.
+def read_case(folder: Path | str, rough: bool = False) -> Case:
+    """Read the case in a folder: map1.yaml, map2.yaml, observation.yaml and, if it is there, truth.yaml.
 
     rough  : take the badly measured observations instead of the good ones
     raises : InputFileError, TooLargeError

@@ -80,7 +80,7 @@ class GreyImage:
         return cells, (meant, *told) if meant else told
 
 
-def read_map(path: Path, unknown_grey: int | None = None) -> GridMap:
+def read_map(path: Path | str, unknown_grey: int | None = None) -> GridMap:
     """Read a map from disk. What is odd about its greys is told in ``GridMap.remarks``.
 
     path         : its YAML file; or its image, where a YAML file of the same stem lies beside it
@@ -146,10 +146,11 @@ def grey_image(name: str, data: bytes | BinaryIO) -> GreyImage:
     return GreyImage(*read_pixels(name, _opened(data)))
 
 
-def write_map(yaml_path: Path, grid: GridMap) -> None:
+def write_map(yaml_path: Path | str, grid: GridMap) -> None:
     """Write a map: the YAML file, and a PGM of the same stem beside it, both whole or not at all.
 
-    raises : OutputError
+    yaml_path : ends in .yaml or .yml; folders that are not there are made
+    raises    : OutputError
     """
     yaml_path = Path(yaml_path)
     if yaml_path.suffix.lower() not in YAML_SUFFIXES:

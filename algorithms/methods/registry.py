@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Literal
 
+from algorithms.common.errors import SettingError
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods import refusal_causes
 from algorithms.methods import spectra_method as pipeline
@@ -125,11 +126,20 @@ def run(
     seed: int = 0,
     memo: Memo | None = None,
 ) -> Iterator[Step]:
-    """Yield the steps of one method of the table, at its defaults unless ``config`` is given.
+    """Yield the steps of one method of the table; the last one's detail is the MergeResult.
 
+    name         : a key of METHODS
+    ref, mov     : the observer's map, and that of the robot it saw
     observations : one sighting, or several between the makers of these two maps
-    raises       : SettingError, at once, where there is none or a robot stands far off its own map
+    config       : the method's ``defaults``, or a changed copy of them
+    seed         : of the random numbers; the same seed gives the same answer
+    memo         : keep it between runs: stages before the first changed setting are then not run again
+    raises       : SettingError, at once, where there is no such method or observation, or a robot stands far
+                   off its own map; while it runs NoAnswerError where the method finds no transform at
+                   all, and TooLargeError where the merged map would be
     """
+    if name not in METHODS:
+        raise SettingError(f"there is no method {name!r}; known are {', '.join(METHODS)}")
     seen = as_observations(observations)
     check_standing(seen, ref, mov)
     method = METHODS[name]
@@ -182,7 +192,11 @@ def merge(
     config: Any = None,
     seed: int = 0,
 ) -> MergeResult:
-    """The end of ``run``: the transform, the merged map and the verdict on it."""
+    """The end of ``run``: the transform, the merged map and the verdict on it.
+
+    A refused merge has a transform and a map as well: ask ``verdict.accepted``. Arguments and errors are
+    those of ``run``.
+    """
     *_, last = run(method, ref, mov, observations, config, seed)
     assert isinstance(last.detail, MergeResult)
     return last.detail

@@ -118,7 +118,7 @@ def run(
     """Yield every step of the merge; the last one's detail is the MergeResult.
 
     seed : the same seed gives the same answer. Every stage draws from a stream of its own, so that
-           a change of one stage's settings doesn't change the luck of another
+           a change of one stage's settings doesn't change the random numbers of another
     memo : keep it between runs: stages before the first changed setting are then not run again but
            told again (``Step.reused``)
     """

@@ -60,13 +60,15 @@ class Verdict:
     """One of three outcomes, with the numbers it rests on.
 
     accepted         : whether it is not refused
-    probability      : that the transform is right
-    quantities       : what the probability rests on, as ``verdict_model.QUANTITIES`` names them
+    probability      : that the transform is right, 0 … 1
+    reason           : the outcome and what it rests on, in a sentence
+    quantities       : what the probability rests on, as ``probability_model.QUANTITIES`` names them
     contributions    : log-odds by which each moves it from that of a typical right merge, and other answers
     typical_score    : log-odds of that
     acceptance_index : agreeing share of the cells known to both, 0 … 1
     overlap_cells    : cells known to both maps
     overlap_area     : the same; m²
+    conflicting_cells : those of them that are a wall in one map and free in the other
     shared_wall      : wall that both robots should have seen; m
     contradiction    : share of it that the other map denies, patches slipped
     rigid_contradiction : the same with the maps as they are

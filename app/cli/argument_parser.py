@@ -32,13 +32,19 @@ class Parser(argparse.ArgumentParser):
         """As usual, but an option that nobody knows is told first, with the nearest that there is."""
         words = list(sys.argv[1:] if args is None else args)
         known = [name for action in self._actions for name in action.option_strings]
+        shown = [
+            name
+            for action in self._actions
+            if action.help != argparse.SUPPRESS  # an old name is taken, but not recommended
+            for name in action.option_strings
+        ]
         for word in words[: words.index("--")] if "--" in words else words:
             flag = word.split("=", 1)[0]
             if self.strict and flag.startswith("--") and flag not in known:
                 became = self.what_became_of(flag)
                 if became:
                     self.error(f"there is no option {flag} any more: {became}")
-                self.error(f"there is no option {flag}{did_you_mean(flag, known)}{self.hint}")
+                self.error(f"there is no option {flag}{did_you_mean(flag, shown)}{self.hint}")
         return super().parse_known_args(words, namespace)
 
     def error(self, message: str) -> NoReturn:

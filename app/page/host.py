@@ -33,4 +33,4 @@ class RunHost(PageHost, Protocol):
 
     @property
     def seed(self) -> int:
-        """Where the luck of a run comes from."""
+        """Random seed of a run; the same seed gives the same answer."""

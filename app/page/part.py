@@ -88,7 +88,7 @@ class Part(ABC):
 
     @property
     def seed(self) -> int:
-        """Where the luck of a run comes from."""
+        """Random seed of a run; the same seed gives the same answer."""
         return self._run.seed
 
     @abstractmethod

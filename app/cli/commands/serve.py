@@ -36,9 +36,9 @@ Examples:
 
 The page is for this machine alone ({LOCAL}). At any other --host it is for those who have the
 token, which is part of the address that is printed: a new one at each start, or the one in
---token-file or ${TOKEN_VARIABLE}, which holds on this machine, too. With --behind it is for those
-who have the token and come through the proxy of that name. Without --certfile what is sent can be
-read on the network, the token with it. SECURITY.md tells more. Ctrl-C ends it."""
+--token-file or ${TOKEN_VARIABLE}, which holds on this machine, too. With --proxy-host it is for
+those who have the token and come through the proxy of that name. Without --certfile what is sent
+can be read on the network, the token with it. SECURITY.md tells more. Ctrl-C ends it."""
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
@@ -55,8 +55,14 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("--certfile", type=Path, metavar="FILE", help="PEM certificate: the page is https")
     parser.add_argument("--keyfile", type=Path, metavar="FILE", help="its PEM key, if not in the same file")
     parser.add_argument(
-        "--behind", action="append", default=[], metavar="NAME", help="host name of a proxy in front of it"
+        "--proxy-host",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="host name of a proxy in front of it, as browsers see it",
     )
+    # its name in earlier versions, still taken from those who wrote it into a script
+    parser.add_argument("--behind", action="append", default=[], help=argparse.SUPPRESS)
     parser.add_argument("--verbose", action="store_true", help="log who comes and what is run, too")
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
     parser.add_argument(
@@ -76,16 +82,19 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
 
     if (args.map1 is None) != (args.map2 is None) or (args.map1 is None) != (args.observation is None):
         parser.error("give MAP1, MAP2 and --observation FILE together, or none of them for a sample")
+    if args.behind:
+        print(f"{parser.prog}: --behind is now --proxy-host", file=sys.stderr)
+    proxies = (*args.proxy_host, *args.behind)
     logs.start(args.verbose)
     if args.lesson is not None:
         _check_lesson(args.lesson)
-    access = access_for(args.host, args.token_file, tuple(args.behind), args.certfile, args.keyfile)
+    access = access_for(args.host, args.token_file, proxies, args.certfile, args.keyfile)
     logs.hide(access.token)
     server = make_server(args.host, args.port, _case(args), args.lesson, access)
     port = server.get_port()
     url = address(args.host, port, access)
     try:
-        print(f"mapmeld is at {url}   ({reach(args.host, access, args.behind)}; Ctrl-C ends it)", flush=True)
+        print(f"mapmeld is at {url}   ({reach(args.host, access, proxies)}; Ctrl-C ends it)", flush=True)
         if everywhere(args.host):
             print(f"from other machines: {address(socket.gethostname(), port, access)}", flush=True)
         wanted = not args.no_browser and _has_display()
@@ -111,16 +120,16 @@ def everywhere(host: str) -> bool:
     return (numeric(host) or host) in ("", "0.0.0.0", "::")
 
 
-def reach(host: str, access: Access, behind: Sequence[str] = ()) -> str:
+def reach(host: str, access: Access, proxies: Sequence[str] = ()) -> str:
     """Who may open the page, in words.
 
-    behind : names of proxies in front of it
+    proxies : host names of proxies in front of it
     """
     if not access.token:
         return "for this machine alone"
     if not is_local(host):
         return f"for everyone on the network with the token{'' if access.tls else ', unencrypted'}"
-    whom = f", and whom the proxy at {' or '.join(behind)} lets through," if behind else ""
+    whom = f", and whom the proxy at {' or '.join(proxies)} lets through," if proxies else ""
     return f"for this machine{whom} with the token"
 
 

@@ -60,7 +60,12 @@ class RunPanel:
             )
             self._method.on_update(lambda _: wishes.method(titles[self._method.value]))
             self._seed = gui.add_number(
-                "Seed", 0, min=0, max=2**31 - 1, step=1, hint="The same seed gives the same swarm."
+                "Seed",
+                0,
+                min=0,
+                max=2**31 - 1,
+                step=1,
+                hint="Random seed: the same seed gives the same answer.",
             )
             # where it is set from here, nobody has wished for anything
             self._seed.on_update(lambda event: wishes.changed() if event.client_id is not None else None)
@@ -96,7 +101,7 @@ class RunPanel:
 
     @property
     def seed(self) -> int:
-        """Where the luck of the swarm comes from."""
+        """Random seed of a run; the same seed gives the same answer."""
         return int(self._seed.value)
 
     @property

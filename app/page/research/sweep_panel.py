@@ -115,7 +115,7 @@ class SweepPanel:
             AxisFields(gui, "setting", False, lambda: wishes.chose(0), first),
             AxisFields(gui, "second", True, lambda: wishes.chose(1), second),
         )
-        hint = "Merges per point, each with its own luck."
+        hint = "Merges per point, each with its own seed."
         self._seeds = gui.add_number("seeds", 5, min=1, max=50, step=1, hint=hint)
         icon = viser.Icon.CHART_DOTS
         self._run = gui.add_button("Run the sweep", color=LIGHT.ref, icon=icon, disabled=True)

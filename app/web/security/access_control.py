@@ -164,7 +164,7 @@ def access_for(
     for name in names:
         if not _name(name):
             raise SettingError(
-                f"--behind {name!r}: this is no host name; "
+                f"--proxy-host {name!r}: this is no host name; "
                 "give that of the proxy alone, such as robots.example"
             )
     token = _given_token(token_file)

@@ -1,0 +1,126 @@
+"""Merge two robots' grid maps: the names for programs of your own.
+
+``read_case``, or ``read_map`` and ``read_observations``, give what ``merge`` takes; ``merge`` gives a
+MergeResult, and ``run`` the same step by step. Metres and radians throughout, counter-clockwise; row 0 of a
+grid is the bottom. What a user can mend is raised as a MapMergeError.
+
+    import mapmeld
+
+    case = mapmeld.read_case("sample_maps/office_r2_r1")
+    result = mapmeld.merge(case.ref, case.mov, case.observations)
+    if result.verdict.accepted:
+        mapmeld.write_map("merged.yaml", result.fusion.merged)
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # type checkers and editors see the names here; at run time each is loaded when it is used
+    from algorithms.common.errors import (
+        InputFileError,
+        MapMergeError,
+        NoAnswerError,
+        OutputError,
+        SettingError,
+        TooLargeError,
+    )
+    from algorithms.common.pose import Pose2
+    from algorithms.files.case_folder import Case, read_case, read_observations, write_observations
+    from algorithms.files.map_file import read_map, write_map
+    from algorithms.maps.grid_map import GridMap
+    from algorithms.maps.map_fusion import Fusion
+    from algorithms.methods.registry import METHODS, Method, merge, run
+    from algorithms.methods.steps import MergeResult, Step
+    from algorithms.observations.observation import Observation
+    from algorithms.verdict.decision import Outcome, Verdict
+
+    __version__: str
+
+__all__ = [
+    "METHODS",
+    "Case",
+    "Fusion",
+    "GridMap",
+    "InputFileError",
+    "MapMergeError",
+    "MergeResult",
+    "Method",
+    "NoAnswerError",
+    "Observation",
+    "Outcome",
+    "OutputError",
+    "Pose2",
+    "SettingError",
+    "Step",
+    "TooLargeError",
+    "Verdict",
+    "__version__",
+    "merge",
+    "read_case",
+    "read_map",
+    "read_observations",
+    "run",
+    "write_map",
+    "write_observations",
+]
+
+_MODULES = {
+    "algorithms.common.errors": (
+        "InputFileError",
+        "MapMergeError",
+        "NoAnswerError",
+        "OutputError",
+        "SettingError",
+        "TooLargeError",
+    ),
+    "algorithms.common.pose": ("Pose2",),
+    "algorithms.files.case_folder": ("Case", "read_case", "read_observations", "write_observations"),
+    "algorithms.files.map_file": ("read_map", "write_map"),
+    "algorithms.maps.grid_map": ("GridMap",),
+    "algorithms.maps.map_fusion": ("Fusion",),
+    "algorithms.methods.registry": ("METHODS", "Method", "merge", "run"),
+    "algorithms.methods.steps": ("MergeResult", "Step"),
+    "algorithms.observations.observation": ("Observation",),
+    "algorithms.verdict.decision": ("Outcome", "Verdict"),
+}
+_MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
+
+# ``mapmeld --help`` passes here on its way to mapmeld/__main__.py, and whoever only reads maps needs no
+# compiled kernels: so a name is loaded when it is first used. Hidden from type checkers, which would take
+# any misspelt name for one of these.
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> object:
+        """A name of ``__all__``, on its first use.
+
+        raises : AttributeError for any other; ImportError where another package has taken a place of ours
+        """
+        if name == "__version__":
+            value = _version()
+        elif name in _MODULE_OF:
+            from importlib import import_module
+
+            from mapmeld.own_packages import intruder
+
+            if complaint := intruder("algorithms"):
+                raise ImportError(complaint)
+            value = getattr(import_module(_MODULE_OF[name]), name)
+        else:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        globals()[name] = value
+        return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
+def _version() -> str:
+    """Version of mapmeld; "unknown" where it runs from a folder that was never installed."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("mapmeld")
+    except PackageNotFoundError:
+        return "unknown"
