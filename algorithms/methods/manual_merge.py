@@ -15,9 +15,9 @@ from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
 from algorithms.methods.merge_result import conclude
-from algorithms.methods.spectra_method import (
+from algorithms.methods.spectra_config import PipelineConfig
+from algorithms.methods.spectra_stages import (
     OPTIMISERS,
-    PipelineConfig,
     augment_both,
     covariance_at,
     objective_of,

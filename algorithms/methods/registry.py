@@ -25,7 +25,7 @@ from algorithms.methods.baselines.feature_detectors import (
     SurfConfig,
 )
 from algorithms.methods.baselines.feature_matching import FeatureConfig
-from algorithms.methods.spectra_method import PipelineConfig, RefineConfig
+from algorithms.methods.spectra_config import PipelineConfig, RefineConfig
 from algorithms.methods.stage_runner import Memo
 from algorithms.methods.steps import CauseDetail, MergeResult, Step
 from algorithms.observations.observation import Observation, as_observations, check_standing

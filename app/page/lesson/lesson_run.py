@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from algorithms.common.pose import FloatArray
-from algorithms.methods.spectra_method import values_in
+from algorithms.methods.spectra_stages import values_in
 from algorithms.methods.steps import AugmentDetail, CandidatesDetail, RefineDetail, Step, WindowDetail
 from algorithms.observations.search_window import Box, box_around
 from algorithms.optimisation.likelihood_field import make_agreement
