@@ -4,10 +4,10 @@ import pytest
 from algorithms.methods import stage_runner as chain
 from algorithms.methods.stage_runner import Chain
 from algorithms.methods.steps import RefineDetail
-from algorithms.observations.search_window import Box
 from algorithms.optimisation.particle_swarm import SwarmConfig, settled_within, swarm
+from algorithms.optimisation.search_box import SearchBox
 
-BOX = Box(-np.ones(3), np.ones(3), np.zeros(2))
+BOX = SearchBox(-np.ones(3), np.ones(3), np.zeros(2))
 
 
 def snapshots():

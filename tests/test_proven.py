@@ -15,9 +15,9 @@ from algorithms.files.case_folder import Case, read_case
 from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
 from algorithms.methods.registry import METHODS, merge, run
 from algorithms.methods.steps import AnswersDetail, ProofDetail, ProvenDetail
-from algorithms.observations.search_window import BoxConfig
 from algorithms.optimisation import branch_and_bound as certificate
 from algorithms.optimisation.particle_swarm import SwarmConfig
+from algorithms.optimisation.search_box import BoxConfig
 from algorithms.spectra.augmented_map import AugmentConfig
 from algorithms.spectra.candidates import CandidateConfig
 

@@ -40,10 +40,11 @@ from algorithms.observations.observation import (
     encounters_of,
     robots_of,
 )
-from algorithms.observations.search_window import Box, CoupledWindow, WindowConfig, coupled_window
+from algorithms.observations.search_window import CoupledWindow, WindowConfig, coupled_window
 from algorithms.optimisation.likelihood_field import AgreementConfig
 from algorithms.optimisation.objective import Lookup, Objective
 from algorithms.optimisation.particle_swarm import settled_within
+from algorithms.optimisation.search_box import SearchBox
 from algorithms.optimisation.subcell_peak import peak_at, polish
 from algorithms.verdict.probability_model import shipped_model
 from algorithms.verdict.ranking import Weighed, better_beside, elsewhere, weigh
@@ -145,13 +146,13 @@ class Scales:
         """The coupled window, but without an end: a person may know better than the sighting."""
         return replace(coupled_window(self.encounters, self.config.window), k=inf)
 
-    def box(self, T_ref_mov: Pose2) -> Box:
+    def box(self, T_ref_mov: Pose2) -> SearchBox:
         """The optimiser's box around a transform, eqs. (18)–(20), not cut to any window."""
         margins = self.config.box
         half = np.array([margins.sigma_x, margins.sigma_y, radians(margins.sigma_theta)])
         pivot = self.encounters[0].x_mov
         centre = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
-        return Box(centre - half, centre + half, pivot)
+        return SearchBox(centre - half, centre + half, pivot)
 
 
 def known_answers(result: MergeResult | None) -> tuple[Weighed, ...]:

@@ -7,14 +7,12 @@ from typing import Annotated, Literal
 
 from algorithms.common.setting_bounds import Bounds, check_bounds
 from algorithms.maps.map_fusion import Conflict
-from algorithms.observations.search_window import (
-    BoxConfig,
-    WindowConfig,
-)
+from algorithms.observations.search_window import WindowConfig
 from algorithms.optimisation.branch_and_bound import ProofConfig
 from algorithms.optimisation.likelihood_field import AgreementConfig
 from algorithms.optimisation.objective import Lookup
 from algorithms.optimisation.particle_swarm import SwarmConfig
+from algorithms.optimisation.search_box import BoxConfig
 from algorithms.spectra.augmented_map import AugmentConfig
 from algorithms.spectra.candidates import CandidateConfig
 from algorithms.spectra.hough_spectra import SpectraConfig

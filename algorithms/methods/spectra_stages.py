@@ -27,10 +27,8 @@ from algorithms.methods.steps import (
 )
 from algorithms.observations.observation import Encounter
 from algorithms.observations.search_window import (
-    Box,
     CoupledWindow,
     Window,
-    box_around,
     coupled_window,
     paper_window,
     shift_window,
@@ -42,6 +40,7 @@ from algorithms.optimisation.monte_carlo import monte_carlo
 from algorithms.optimisation.objective import Lookup, Objective, make_objective
 from algorithms.optimisation.optimiser import Optimiser, SearchState
 from algorithms.optimisation.particle_swarm import settled_within, swarm
+from algorithms.optimisation.search_box import SearchBox, box_around
 from algorithms.optimisation.subcell_peak import Peak, covariance_of, peak_at, polish
 from algorithms.spectra.augmented_map import AugmentConfig, augment
 from algorithms.spectra.candidates import shift_candidates
@@ -128,7 +127,7 @@ def objective_of(
 
 
 def values_in(
-    objective: Objective, window: Window | CoupledWindow, box: Box, poses: FloatArray
+    objective: Objective, window: Window | CoupledWindow, box: SearchBox, poses: FloatArray
 ) -> FloatArray:
     """(P,) values of (P, 3) coordinates in a box; −inf outside a coupled window."""
     transforms = box.transforms(poses)
@@ -160,7 +159,7 @@ def refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Iterat
         box = box_around(candidate.T_ref_mov, found.window, config.box)
         rng = np.random.default_rng([seed, 1, index])
 
-        def value(poses: FloatArray, box: Box = box) -> FloatArray:
+        def value(poses: FloatArray, box: SearchBox = box) -> FloatArray:
             return values_in(found.objective, found.window, box, poses)
 
         for state in optimise(value, box, config.swarm, settled, rng):

@@ -9,10 +9,11 @@ from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import BoolArray
 from algorithms.maps.map_fusion import Fusion
 from algorithms.observations.observation import Encounter
-from algorithms.observations.search_window import Box, CoupledWindow, Window
+from algorithms.observations.search_window import CoupledWindow, Window
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.optimisation.objective import Objective
 from algorithms.optimisation.optimiser import SearchState
+from algorithms.optimisation.search_box import SearchBox
 from algorithms.optimisation.subcell_peak import Peak
 from algorithms.spectra.augmented_map import AugmentedMap
 from algorithms.spectra.candidates import Candidate
@@ -89,7 +90,7 @@ class RefineDetail:
 
     index: int  # which of the ranked candidates, from 0
     total: int  # how many of them are refined
-    box: Box
+    box: SearchBox
     state: SearchState
 
 

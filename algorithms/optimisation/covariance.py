@@ -8,11 +8,11 @@ from math import pi
 import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2, rotation
-from algorithms.observations.search_window import Box
 from algorithms.optimisation.objective import Objective
+from algorithms.optimisation.search_box import SearchBox
 
 
-def peak_covariance(objective: Objective, T_ref_mov: Pose2, box: Box, reach: float) -> FloatArray:
+def peak_covariance(objective: Objective, T_ref_mov: Pose2, box: SearchBox, reach: float) -> FloatArray:
     """Width of the peak of Γ: inverse of the curvature of −log Γ at the transform.
 
     It takes Γ for a likelihood, which it is not: this is the width of the peak, about a wall's

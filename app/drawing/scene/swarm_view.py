@@ -8,7 +8,7 @@ import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2, pose_error, wrap_angle
 from algorithms.methods.steps import ProvenDetail, RefineDetail
-from algorithms.observations.search_window import Box
+from algorithms.optimisation.search_box import SearchBox
 from app.drawing.browser_messages import Item, Stage, cloud, mark, path
 from app.drawing.palette import Palette, css
 from app.model import status_text as words
@@ -28,7 +28,7 @@ def to_cube(poses: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     return np.asarray((2 * (poses - low) / width - 1) @ _AXES, dtype=np.float64)
 
 
-def in_box(T_ref_mov: Pose2, box: Box) -> FloatArray:
+def in_box(T_ref_mov: Pose2, box: SearchBox) -> FloatArray:
     """(3,) coordinates of a transform in a box: where the pivot goes, and the turn nearest to the box's."""
     middle = float(box.centre[2])
     turn = middle + wrap_angle(T_ref_mov.theta - middle)
@@ -61,7 +61,7 @@ class SwarmSpaceView:
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
         self._trail: list[FloatArray] = []
-        self._of: tuple[Box, Palette] | None = None  # whose frame is drawn
+        self._of: tuple[SearchBox, Palette] | None = None  # whose frame is drawn
 
     def hide(self) -> None:
         """Take everything away."""
