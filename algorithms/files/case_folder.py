@@ -1,73 +1,21 @@
-"""The files about a pair of maps: observations, truth of a test case, and the folder of a case."""
+"""A case: the folder with two maps, the sightings between them and, where it is known, the truth."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf, pi, radians
 from pathlib import Path
-from typing import Literal
 
 from algorithms.common.display_text import visible
-from algorithms.common.errors import InputFileError, SettingError, unreadable
-from algorithms.common.pose import Pose2
-from algorithms.files import yaml_fields as fields
-from algorithms.files.atomic_write import write_file
-from algorithms.files.map_file import read_bytes, read_map
-from algorithms.files.yaml_fields import Fields, number_text, quoted
+from algorithms.common.errors import InputFileError, unreadable
+from algorithms.files.map_file import read_map
+from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, read_observations
+from algorithms.files.truth_file import TRUTH_FILE, Truth, read_truth
 from algorithms.maps.grid_map import GridMap
-from algorithms.observations.observation import (
-    MOST_RANGE,
-    SIGMA_BEARING,
-    SIGMA_BEARINGS,
-    SIGMA_RANGE,
-    SIGMA_RANGES,
-    Observation,
-)
+from algorithms.observations.observation import Observation
 
-OBSERVATION_FILE = "observation.yaml"
-ROUGH_OBSERVATION_FILE = "observation_rough.yaml"
-TRUTH_FILE = "truth.yaml"
 FIRST_MAP_FILE = "map1.yaml"
 SECOND_MAP_FILE = "map2.yaml"
-
-MOST_OBSERVATIONS = 64  # of one pair; their YAML stays far below what the parser takes
-
-OBSERVER_POSE = "give [x, y, yaw] of robot 1 in map 1; m, m, rad"
-OBSERVED_POSE = "give [x, y] or [x, y, yaw] of robot 2 in map 2; m, m, rad"
-
-
-@dataclass(frozen=True)
-class Truth:
-    """The known answer of a test case.
-
-    T_ref_mov     : takes points of map 2's frame to map 1's; None where the maps share no place
-    tolerance_m   : metres; how near counts as right, at the observed robot
-    tolerance_rad : radians
-    expected      : what a merge should end with
-    overlap       : share of the smaller map's occupied cells that both maps hold; None: not known
-    truth_rms     : metres; residual of the truth itself; None: not known
-    """
-
-    T_ref_mov: Pose2 | None
-    tolerance_m: float = 0.5
-    tolerance_rad: float = radians(3)
-    expected: Literal["merge", "refuse"] = "merge"
-    overlap: float | None = None
-    truth_rms: float | None = None
-    source: str = ""
-    licence: str = ""
-
-    def __post_init__(self) -> None:
-        if self.expected == "merge" and self.T_ref_mov is None:
-            raise SettingError("truth: a case that should merge needs its T_ref_mov")
-        if not (self.tolerance_m > 0 and self.tolerance_rad > 0):
-            raise SettingError("truth: both tolerances must be positive")
-
-    def allows(self, distance: float, angle: float) -> bool:
-        """Whether a transform that is off by so much is right; metres at the observed robot, radians."""
-        return distance <= self.tolerance_m and angle <= self.tolerance_rad
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,158 +32,6 @@ class Case:
     observations: tuple[Observation, ...]
     observation_file: str
     truth: Truth | None
-
-
-def read_observations(path: Path) -> tuple[Observation, ...]:
-    """Read an observation file; raises InputFileError."""
-    path = Path(path)
-    return observations_from_bytes(str(path), read_bytes(path, "an observation"))
-
-
-def observations_from_bytes(name: str, data: bytes) -> tuple[Observation, ...]:
-    """What a file or an upload holds: one observation, or a list of them.
-
-    A key that is not known is an error: a misspelt sigma_bearing would change the answer unseen.
-
-    name   : of the file, as the user knows it
-    raises : InputFileError, which names the entry where the file is a list
-    """
-    entries = fields.parse_entries(name, data, "an observation's YAML file", "observation", MOST_OBSERVATIONS)
-    return tuple(_observation(entry) for entry in entries)
-
-
-def _observation(f: Fields) -> Observation:
-    f.refuse_unknown("observer", "observed", "measurement")
-    observer = f.section("observer", "add observer: {pose: [x, y, yaw]}, robot 1 in map 1")
-    observer.refuse_unknown("pose")
-    observed = f.section("observed", "add observed: {pose: [x, y, yaw]}, robot 2 in map 2")
-    observed.refuse_unknown("pose")
-    m = f.section("measurement", "add measurement: {range: m, bearing: rad}")
-    m.refuse_unknown("range", "bearing", "sigma_range", "sigma_bearing", "bearing_back")
-    where = observed.pose("pose", (2, 3), OBSERVED_POSE)
-    distance = m.number("range", "give the distance of robot 2 from robot 1 in metres")
-    if distance < 0:
-        raise m.error("range", f"is {distance:g} m", "a distance cannot be negative")
-    if distance > MOST_RANGE:
-        raise m.error("range", f"is {distance:g} m", f"give metres; {MOST_RANGE:,.0f} m is the most")
-    return Observation(
-        observer=Pose2(*observer.pose("pose", (3,), OBSERVER_POSE)),
-        observed_x=where[0],
-        observed_y=where[1],
-        observed_heading=where[2] if len(where) == 3 else None,
-        range=distance,
-        bearing=_bearing(m, "bearing", "give the direction of robot 2 from robot 1's heading in radians"),
-        sigma_range=_positive(m, "sigma_range", "m", SIGMA_RANGE, SIGMA_RANGES),
-        sigma_bearing=_positive(m, "sigma_bearing", "rad", SIGMA_BEARING, SIGMA_BEARINGS),
-        bearing_back=(
-            _bearing(m, "bearing_back", "give radians, or leave it out")
-            if "bearing_back" in m.values
-            else None
-        ),
-    )
-
-
-def write_observations(path: Path, observations: Sequence[Observation]) -> None:
-    """Write an observation file whole or not at all; raises OutputError, SettingError."""
-    write_file(Path(path), observations_to_bytes(observations))
-
-
-def observations_to_bytes(observations: Sequence[Observation]) -> bytes:
-    """The content of an observation file; it reads back to equal Observations.
-
-    A single one is written as it is, several as a list.
-
-    raises : SettingError where there are none, or more than a file may hold
-    """
-    if not 1 <= len(observations) <= MOST_OBSERVATIONS:
-        raise SettingError(f"a file holds 1 to {MOST_OBSERVATIONS} observations, not {len(observations)}")
-    lines: list[str] = []
-    for o in observations:
-        first, *rest = _lines(o)
-        several = len(observations) > 1
-        lines += [f"- {first}", *(f"  {line}" for line in rest)] if several else [first, *rest]
-    return ("\n".join(lines) + "\n").encode()
-
-
-def _lines(o: Observation) -> list[str]:
-    where = [o.observed_x, o.observed_y]
-    if o.observed_heading is not None:
-        where.append(o.observed_heading)
-    lines = [
-        f"observer: {{pose: {_list(o.observer.array().tolist())}}}  # robot 1 in map 1: m, m, rad",
-        f"observed: {{pose: {_list(where)}}}  # robot 2 in map 2",
-        "measurement:  # of robot 2, as robot 1 saw it",
-        f"  range: {number_text(o.range)}  # m",
-        f"  bearing: {number_text(o.bearing)}  # rad, counter-clockwise from robot 1's heading",
-        f"  sigma_range: {number_text(o.sigma_range)}  # m, one standard deviation",
-        f"  sigma_bearing: {number_text(o.sigma_bearing)}  # rad",
-    ]
-    if o.bearing_back is not None:
-        lines.append(f"  bearing_back: {number_text(o.bearing_back)}  # rad, robot 1 as robot 2 saw it")
-    return lines
-
-
-def read_truth(path: Path) -> Truth:
-    """Read a truth file; raises InputFileError.
-
-    Keys that resemble none of ours are passed over: people note more about a case than we read.
-    """
-    path = Path(path)
-    f = fields.parse(str(path), read_bytes(path, "a truth"), "a truth's YAML file")
-    f.refuse_unknown(
-        *("T_ref_mov", "tolerance", "expected", "overlap", "truth_rms", "source", "licence"),
-        near_only=True,
-    )
-    expected: Literal["merge", "refuse"] = "merge"
-    if f.values.get("expected") == "refuse":
-        expected = "refuse"
-    elif f.values.get("expected", "merge") != "merge":
-        found = fields.shown(f.values["expected"])
-        raise f.error("expected", f"is {found}", "give merge or refuse")
-    T_ref_mov = None
-    if expected == "merge" or "T_ref_mov" in f.values:
-        t = f.section("T_ref_mov", "add T_ref_mov: {x: m, y: m, theta: rad}, or expected: refuse")
-        t.refuse_unknown("x", "y", "theta")
-        T_ref_mov = Pose2(
-            t.number("x", "give metres"),
-            t.number("y", "give metres"),
-            t.number("theta", "give radians"),
-        )
-    usual = Truth(None, expected="refuse")
-    tolerance = Fields(f.source, {}, "tolerance.")
-    if "tolerance" in f.values:
-        tolerance = f.section("tolerance", "give {distance: m, angle: rad}")
-        tolerance.refuse_unknown("distance", "angle")
-    return Truth(
-        T_ref_mov=T_ref_mov,
-        tolerance_m=_positive(tolerance, "distance", "m", usual.tolerance_m),
-        tolerance_rad=_positive(tolerance, "angle", "rad", usual.tolerance_rad),
-        expected=expected,
-        overlap=_optional(f, "overlap", "give a share in [0, 1], or leave it out"),
-        truth_rms=_optional(f, "truth_rms", "give metres, or leave it out"),
-        source=str(f.values.get("source", "")),
-        licence=str(f.values.get("licence", "")),
-    )
-
-
-def truth_to_bytes(truth: Truth) -> bytes:
-    """The content of a truth file; it reads back to an equal Truth."""
-    n = number_text
-    lines = []
-    if truth.T_ref_mov is not None:
-        T = truth.T_ref_mov
-        lines.append(f"T_ref_mov: {{x: {n(T.x)}, y: {n(T.y)}, theta: {n(T.theta)}}}")
-    lines.append(f"tolerance: {{distance: {n(truth.tolerance_m)}, angle: {n(truth.tolerance_rad)}}}")
-    if truth.overlap is not None:
-        lines.append(f"overlap: {n(truth.overlap)}")
-    if truth.truth_rms is not None:
-        lines.append(f"truth_rms: {n(truth.truth_rms)}")
-    lines.append(f"expected: {truth.expected}")
-    if truth.source:
-        lines.append(f"source: {quoted(truth.source)}")
-    if truth.licence:
-        lines.append(f"licence: {quoted(truth.licence)}")
-    return ("\n".join(lines) + "\n").encode()
 
 
 def read_case(folder: Path, rough: bool = False) -> Case:
@@ -279,33 +75,3 @@ def case_folders(root: Path) -> list[Path]:
             f"a case is a folder of {FIRST_MAP_FILE}, {SECOND_MAP_FILE} and {OBSERVATION_FILE}",
         )
     return folders
-
-
-def _bearing(f: Fields, key: str, remedy: str) -> float:
-    value = f.number(key, remedy)
-    if abs(value) > 2 * pi:
-        raise f.error(key, f"is {value:g} rad, more than a whole turn", "it looks like degrees: give radians")
-    return value
-
-
-def _optional(f: Fields, key: str, remedy: str) -> float | None:
-    return f.number(key, remedy) if key in f.values else None
-
-
-def _positive(
-    f: Fields, key: str, unit: str, default: float, limits: tuple[float, float] = (0.0, inf)
-) -> float:
-    value = _optional(f, key, f"give a positive number of {unit}, or leave it out")
-    if value is None:
-        return default
-    if value <= 0:
-        raise f.error(key, f"is {value:g} {unit}", "it must be positive; or leave it out")
-    low, high = limits
-    if not low <= value <= high:
-        remedy = f"it must be {low:g} to {high:.5g} {unit}; or leave it out"
-        raise f.error(key, f"is {value:g} {unit}", remedy)
-    return value
-
-
-def _list(numbers: list[float]) -> str:
-    return f"[{', '.join(number_text(number) for number in numbers)}]"

@@ -8,17 +8,10 @@ from itertools import permutations, product
 from pathlib import Path
 
 from algorithms.files.atomic_write import write_files
-from algorithms.files.case_folder import (
-    FIRST_MAP_FILE,
-    OBSERVATION_FILE,
-    ROUGH_OBSERVATION_FILE,
-    SECOND_MAP_FILE,
-    TRUTH_FILE,
-    Truth,
-    observations_to_bytes,
-    truth_to_bytes,
-)
+from algorithms.files.case_folder import FIRST_MAP_FILE, SECOND_MAP_FILE
 from algorithms.files.map_file import map_to_bytes
+from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, observations_to_bytes
+from algorithms.files.truth_file import TRUTH_FILE, Truth, truth_to_bytes
 from algorithms.simulator.path_planning import Drift
 from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import Case, simulate

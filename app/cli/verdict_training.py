@@ -22,7 +22,9 @@ import numpy as np
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.files.atomic_write import write_files
-from algorithms.files.case_folder import ROUGH_OBSERVATION_FILE, Case, Truth, case_folders, read_case
+from algorithms.files.case_folder import Case, case_folders, read_case
+from algorithms.files.observation_file import ROUGH_OBSERVATION_FILE
+from algorithms.files.truth_file import Truth
 from algorithms.methods import registry as methods
 from algorithms.methods.refusal_causes import NO_SWARM
 from algorithms.methods.steps import MergeResult

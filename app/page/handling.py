@@ -9,7 +9,7 @@ import viser
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import OBSERVATION_FILE, observations_to_bytes
+from algorithms.files.observation_file import OBSERVATION_FILE, observations_to_bytes
 from algorithms.methods.manual_merge import Scales, known_answers, refine
 from algorithms.methods.steps import MergeResult, ObservationDetail, Step
 from algorithms.observations.observation import Observation

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from algorithms.files.case_folder import OBSERVATION_FILE, observations_to_bytes
+from algorithms.files.observation_file import OBSERVATION_FILE, observations_to_bytes
 from algorithms.methods.steps import MergeResult
 from app.model.merge_inputs import Inputs
 from app.page.cancellable_task import Check, unwatched

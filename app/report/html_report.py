@@ -7,7 +7,7 @@ from html import escape
 from math import degrees
 from typing import Any
 
-from algorithms.files.case_folder import observations_to_bytes
+from algorithms.files.observation_file import observations_to_bytes
 from algorithms.methods.registry import METHODS
 from algorithms.methods.steps import MergeResult
 from algorithms.verdict.contradictions import Conflicts, find_conflicts

@@ -21,8 +21,8 @@ import numpy as np
 import pytest
 
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import write_observations
 from algorithms.files.map_file import write_map
+from algorithms.files.observation_file import write_observations
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
 from algorithms.observations.observation import encounter

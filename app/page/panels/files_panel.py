@@ -12,8 +12,9 @@ import viser
 
 from algorithms.common.display_text import visible
 from algorithms.common.errors import MapMergeError
-from algorithms.files.case_folder import observations_from_bytes, read_case
+from algorithms.files.case_folder import read_case
 from algorithms.files.map_file import map_from_bytes, parse_meta
+from algorithms.files.observation_file import observations_from_bytes
 from algorithms.maps.grid_map import GridMap
 from app.drawing.palette import QUIET
 from app.model.merge_inputs import Files, Inputs, Upload
