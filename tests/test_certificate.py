@@ -14,6 +14,7 @@ from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.observations.observation import Encounter, encounter
 from algorithms.observations.search_window import WindowConfig, coupled_window
 from algorithms.optimisation import branch_and_bound as certificate
+from algorithms.optimisation import open_blocks
 from algorithms.optimisation.branch_and_bound import MOST_RIVALS, ProofConfig, prove
 from algorithms.optimisation.likelihood_field import AgreementConfig, make_agreement
 from algorithms.optimisation.objective import Lookup, make_objective
@@ -106,7 +107,7 @@ def last(states):
 def small_batches():
     """A small map has few blocks; opened a few hundred at a time, none would ever be left out."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(certificate, "BATCH", 16)
+        patch.setattr(open_blocks, "BATCH", 16)
         yield
 
 
