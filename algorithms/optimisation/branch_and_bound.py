@@ -20,7 +20,7 @@ from algorithms.maps.grid_map import BoolArray
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.objective import Objective
 from algorithms.optimisation.open_blocks import BlockSearch
-from algorithms.optimisation.upper_bounds import IntArray
+from algorithms.optimisation.transform_lattice import IntArray
 
 NODES = 100_000  # in one unit of patience
 MOST_RIVALS = 5

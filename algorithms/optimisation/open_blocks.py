@@ -11,7 +11,8 @@ from algorithms.common.pose import FloatArray
 from algorithms.maps.grid_map import BoolArray
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.objective import Objective
-from algorithms.optimisation.upper_bounds import Bounder, IntArray
+from algorithms.optimisation.transform_lattice import IntArray
+from algorithms.optimisation.upper_bounds import UpperBounds
 
 BATCH = 256  # blocks opened between two looks at the best value, at least
 
@@ -70,8 +71,8 @@ class BlockSearch:
     """The open blocks and what has been found; one of them for both passes."""
 
     def __init__(self, objective: Objective, window: CoupledWindow) -> None:
-        self.bounder = Bounder(objective, window)
-        self.lattice = self.bounder.lattice
+        self.upper_bounds = UpperBounds(objective, window)
+        self.lattice = self.upper_bounds.lattice
         self.levels = self.lattice.levels
         self.open = [OpenBlocks.empty() for _ in range(self.levels + 1)]
         self.shut = [OpenBlocks.empty() for _ in range(self.levels + 1)]  # no better than what was sought
@@ -107,7 +108,7 @@ class BlockSearch:
 
     def _add(self, nodes: IntArray, level: int, at_most: FloatArray | float) -> None:
         """Bound blocks, and keep them open; at_most: the bounds of the blocks they are in."""
-        values = self.bounder(nodes, level)
+        values = self.upper_bounds(nodes, level)
         possible = values > -np.inf
         values, nodes = np.minimum(values, at_most)[possible], nodes[possible]
         self.nodes += len(nodes)

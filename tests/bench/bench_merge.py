@@ -30,7 +30,7 @@ from algorithms.observations.search_window import CoupledWindow, coupled_window
 from algorithms.optimisation.branch_and_bound import ProofConfig, ProofState, prove
 from algorithms.optimisation.likelihood_field import make_agreement
 from algorithms.optimisation.objective import Lookup, Objective, make_objective
-from algorithms.optimisation.upper_bounds import Lattice
+from algorithms.optimisation.transform_lattice import TransformLattice
 from algorithms.simulator.large_pair import simulate_large
 from algorithms.simulator.scenario import Case, simulate
 from algorithms.spectra.augmented_map import AugmentedMap, augment
@@ -174,7 +174,7 @@ def bench_proof_against_exhaustive_search(which, pair, benchmark):
     """Every transform of the lattice in the window, by the same kernel; a sample of them is timed."""
     case = pair if which == "500 × 500" else simulate_large(1500)
     objective, window = search_of(case)
-    lattice = Lattice(objective, window)
+    lattice = TransformLattice(objective, window)
     shifts = np.array([(0, column, row) for column, row in product(range(lattice.side), repeat=2)])
     inside = window.contains(lattice.poses(lattice.coordinates(shifts, 0)))
     shifts = shifts[inside]
