@@ -18,7 +18,7 @@ from algorithms.observations.observation import bilateral_transform, encounter
 from algorithms.simulator.buildings.building_types import BUILDINGS, build
 from algorithms.simulator.buildings.floor_plan import AIR, DARK, WALL, Building, Canvas
 from algorithms.simulator.lidar import Lidar, first_hit, scan, sees, true_ranges
-from algorithms.simulator.path_planning import STEP, Planner
+from algorithms.simulator.path_planning import STEP, PathPlanner
 from algorithms.simulator.portable_random import COSINES, SINES, TRIG_GRID, TURN, normals, radians, stream
 from algorithms.simulator.robot import drive, make_body
 from algorithms.simulator.room_tours import Surveyor
@@ -160,7 +160,7 @@ def test_glass_returns_few_beams_and_open_space_none():
 @pytest.mark.parametrize("kind", KINDS)
 def test_robots_keep_off_the_walls_and_step_evenly(kind):
     building = build(kind, 2)
-    planner = Planner(building)
+    planner = PathPlanner(building)
     track = planner.drive(list(range(0, len(planner.stops), 2)))
     room = ndimage.distance_transform_edt(~building.solid) * building.resolution
     cols, rows = (track.xy / building.resolution).astype(int).T
@@ -197,7 +197,7 @@ def test_a_map_shows_the_building_and_nothing_else(flat):
 
 
 def test_what_no_beam_touched_stays_unknown(two_rooms):
-    planner = Planner(two_rooms)
+    planner = PathPlanner(two_rooms)
     body = make_body("R1", 0, "test", reach=9.0, resolution=0.05)
     tour = Surveyor(two_rooms, planner, 9.0).tour([0, 1, 2, 3], 0)
     robot = drive(two_rooms, planner, tour, body)

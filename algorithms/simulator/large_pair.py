@@ -8,7 +8,7 @@ import numpy as np
 
 from algorithms.common.pose import FloatArray
 from algorithms.simulator.buildings.building_types import campus
-from algorithms.simulator.path_planning import Planner
+from algorithms.simulator.path_planning import PathPlanner
 from algorithms.simulator.portable_random import stream, ticks_of_degrees, whole
 from algorithms.simulator.robot import drive, make_body
 from algorithms.simulator.room_tours import Surveyor
@@ -30,7 +30,7 @@ def simulate_large(cells: int = 4000, seed: int = 0) -> Case:
     metres = cells * RESOLUTION / 1.03  # a turn by 1.5° makes the raster 3 % wider
     building = campus(stream(seed, "campus", "building"), metres)
     chosen = _spread_out(building.stops, rng)
-    planner = Planner(replace(building, stops=building.stops[chosen]))
+    planner = PathPlanner(replace(building, stops=building.stops[chosen]))
     reach = 9.0
     surveyor = Surveyor(building, planner, reach)
     n = len(planner.stops)

@@ -12,7 +12,7 @@ from algorithms.files.case_folder import FIRST_MAP_FILE, SECOND_MAP_FILE
 from algorithms.files.map_file import map_to_bytes
 from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, observations_to_bytes
 from algorithms.files.truth_file import TRUTH_FILE, Truth, truth_to_bytes
-from algorithms.simulator.path_planning import Drift
+from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import Case, simulate
 from algorithms.simulator.wrong_pairs import mismatch
@@ -26,7 +26,7 @@ class Sample:
 
     overlaps : asked for, of R2 → R1 and R3 → R2
     stories  : one sentence for a person about each case that ships
-    bend     : of R1's map, as ``Drift`` has it
+    bend     : of R1's map, as ``OdometryDrift`` has it
     title    : what the folders' names begin with; the kind unless given
     """
 
@@ -49,7 +49,7 @@ class Sample:
 
     def cases(self) -> tuple[Case, ...]:
         """Let the three robots drive; the cases that ship."""
-        bent = Conditions(Drift(bend=self.bend))
+        bent = Conditions(OdometryDrift(bend=self.bend))
         scenario = simulate(
             self.kind,
             self.seed,

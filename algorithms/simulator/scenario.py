@@ -13,7 +13,7 @@ from algorithms.observations.observation import Observation
 from algorithms.simulator.buildings.building_types import build
 from algorithms.simulator.buildings.floor_plan import Building
 from algorithms.simulator.changes import with_pillars
-from algorithms.simulator.path_planning import Planner
+from algorithms.simulator.path_planning import PathPlanner
 from algorithms.simulator.portable_random import chance, stream, uniform
 from algorithms.simulator.robot import Conditions, Robot, drive, make_body
 from algorithms.simulator.room_tours import Surveyor
@@ -155,7 +155,7 @@ def simulate(
     building = build(kind, seed, floor)
     if pillars:
         building = with_pillars(building, stream(seed, kind, f"pillars of floor {floor}"))
-    planner = Planner(building)
+    planner = PathPlanner(building)
     surveyor = Surveyor(building, planner, reach)
     stops = len(planner.stops)
     fewest, most = sizes or (max(3, stops // 7), max(5, stops * 2 // 5))
@@ -187,7 +187,7 @@ def simulate(
 
 def _nearest_pair(
     building: Building,
-    planner: Planner,
+    planner: PathPlanner,
     propose: Callable[[float, np.random.Generator], tuple[Robot, Robot]],
     target: float,
     tolerance: float,
@@ -216,7 +216,7 @@ def _nearest_pair(
 
 
 def pair_up(
-    building: Building, planner: Planner, observer: Robot, observed: Robot, sightings: int = 1
+    building: Building, planner: PathPlanner, observer: Robot, observed: Robot, sightings: int = 1
 ) -> Pair | None:
     """Let two robots meet and find how their frames truly lie; None where they never do."""
     walls = _walls(planner, observer, observed)
@@ -233,7 +233,7 @@ def pair_up(
     return Pair(observer, observed, meetings, T_ref_mov, round(rms, 4), round(overlap, 3))
 
 
-def _walls(planner: Planner, a: Robot, b: Robot) -> FloatArray:
+def _walls(planner: PathPlanner, a: Robot, b: Robot) -> FloatArray:
     """(M, 2) wall nodes both robots had in view; metres, world frame."""
     nodes = np.argwhere(a.tour.seen & b.tour.seen)[:, ::-1].astype(np.float64)
     return np.asarray((nodes + 0.5) * planner.node)

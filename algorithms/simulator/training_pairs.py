@@ -15,7 +15,7 @@ import numpy as np
 
 from algorithms.observations.observation import Observation
 from algorithms.simulator.buildings.building_types import BUILDINGS
-from algorithms.simulator.path_planning import Drift
+from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.portable_random import chance, pick, stream, uniform, whole
 from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import Case, simulate
@@ -129,5 +129,5 @@ def _survey(rng: np.random.Generator, hard: float) -> Conditions:
     return Conditions(drift, changed=chance(rng, 0.6 * hard), wear=Wear(thicker=whole(rng, 0, 2)))
 
 
-def _drift(wander: float, bend: float) -> Drift:
-    return Drift(metres=0.025 * wander, degrees=0.22 * wander, bend=bend)
+def _drift(wander: float, bend: float) -> OdometryDrift:
+    return OdometryDrift(metres=0.025 * wander, degrees=0.22 * wander, bend=bend)
