@@ -16,7 +16,7 @@ from algorithms.common.pose import Pose2, pose_error, wrap_angle
 from algorithms.files.case_folder import read_case
 from algorithms.observations.observation import bilateral_transform, encounter
 from algorithms.simulator.buildings.building_types import BUILDINGS, build
-from algorithms.simulator.buildings.floor_plan import AIR, DARK, WALL, Building, Canvas
+from algorithms.simulator.buildings.floor_plan import AIR, DARK, WALL, Building, FloorPlan
 from algorithms.simulator.lidar import Lidar, first_hit, scan, sees, true_ranges
 from algorithms.simulator.path_planning import STEP, PathPlanner
 from algorithms.simulator.portable_random import COSINES, SINES, TRIG_GRID, TURN, normals, radians, stream
@@ -42,11 +42,11 @@ def flat() -> Scenario:
 @pytest.fixture(scope="module")
 def two_rooms() -> Building:
     """Two rooms of 5 m x 5 m side by side, without a door, and a stop in each corner of the left."""
-    canvas = Canvas(11.2, 6.2, 0.025)
-    canvas.outline(0.6, 0.6, 5.6, 5.6, 0.2)
-    canvas.outline(5.6, 0.6, 10.6, 5.6, 0.2)
-    canvas.stops += [(1.6, 1.6), (4.6, 1.6), (4.6, 4.6), (1.6, 4.6)]
-    return canvas.finish("two rooms")
+    plan = FloorPlan(11.2, 6.2, 0.025)
+    plan.outline(0.6, 0.6, 5.6, 5.6, 0.2)
+    plan.outline(5.6, 0.6, 10.6, 5.6, 0.2)
+    plan.stops += [(1.6, 1.6), (4.6, 1.6), (4.6, 4.6), (1.6, 4.6)]
+    return plan.finish("two rooms")
 
 
 @pytest.fixture(scope="module")
@@ -144,12 +144,12 @@ def test_range_to_a_straight_wall_is_exact(two_rooms):
 
 
 def test_glass_returns_few_beams_and_open_space_none():
-    canvas = Canvas(20, 20, 0.05)
-    canvas.box(12, 0, 13, 20, DARK)
+    plan = FloorPlan(20, 20, 0.05)
+    plan.box(12, 0, 13, 20, DARK)
     lidar = Lidar(beams=2000, field=30, reach=8, lost=0.0, lost_on_dark=0.8)
     poses = np.array([[10.0, 10.0]]), np.array([0])
-    towards = scan(canvas.finish("glass"), *poses, lidar, stream(0, "test")).ranges
-    away = scan(canvas.finish("glass"), poses[0], poses[1] + TURN // 2, lidar, stream(0, "test"))
+    towards = scan(plan.finish("glass"), *poses, lidar, stream(0, "test")).ranges
+    away = scan(plan.finish("glass"), poses[0], poses[1] + TURN // 2, lidar, stream(0, "test"))
     assert 0.75 < np.isnan(towards).mean() < 0.85
     assert np.isinf(away.ranges).all()
 
