@@ -45,7 +45,7 @@ from algorithms.optimisation.likelihood_field import AgreementConfig
 from algorithms.optimisation.objective import Lookup, Objective
 from algorithms.optimisation.particle_swarm import settled_within
 from algorithms.optimisation.search_box import SearchBox
-from algorithms.optimisation.subcell_peak import peak_at, polish
+from algorithms.optimisation.subcell_peak import climb_to_peak, peak_at
 from algorithms.verdict.probability_model import shipped_model
 from algorithms.verdict.ranking import Weighed, better_beside, elsewhere, weigh
 from algorithms.verdict.whole_maps import WholeMaps, make_whole_maps
@@ -161,7 +161,7 @@ def known_answers(result: MergeResult | None) -> tuple[Weighed, ...]:
 
 
 def refine(scales: Scales, T_ref_mov: Pose2, seed: int = 0) -> Iterator[Step]:
-    """Yield the steps of the method's own optimiser in a box around a transform, then of a polish.
+    """Yield the steps of the method's own optimiser in a box around a transform, then climb to the peak.
 
     The last step's detail is the MergeResult; its answer is worth no less than ``T_ref_mov``.
 
@@ -200,7 +200,7 @@ def _search(scales: Scales, objective: Objective, T: Pose2, seed: int) -> Iterat
     searched = Answer(box.transform(state.best), state.best_value, state.stopped or "")
     start = max(searched, begun, key=lambda answer: answer.value)
     smooth = replace(objective, lookup=Lookup.BILINEAR)
-    peak = polish(smooth, start.T_ref_mov, scales.window, config.augment.spread)
+    peak = climb_to_peak(smooth, start.T_ref_mov, scales.window, config.augment.spread)
     polished = Answer(peak.T_ref_mov, float(objective(peak.T_ref_mov.array()[None])[0]), "polished")
     answers: Sequence[Answer] = sorted((polished, searched, begun), key=lambda answer: -answer.value)
     yield AnswersDetail(tuple(answers))

@@ -34,14 +34,14 @@ from algorithms.observations.search_window import (
     shift_window,
 )
 from algorithms.optimisation.branch_and_bound import MOST_RIVALS, prove
-from algorithms.optimisation.covariance import peak_covariance
+from algorithms.optimisation.covariance import covariance_of, peak_covariance
 from algorithms.optimisation.likelihood_field import make_agreement
 from algorithms.optimisation.monte_carlo import monte_carlo
 from algorithms.optimisation.objective import Lookup, Objective, make_objective
 from algorithms.optimisation.optimiser import Optimiser, SearchState
 from algorithms.optimisation.particle_swarm import settled_within, swarm
 from algorithms.optimisation.search_box import SearchBox, box_around
-from algorithms.optimisation.subcell_peak import Peak, covariance_of, peak_at, polish
+from algorithms.optimisation.subcell_peak import Peak, climb_to_peak, peak_at
 from algorithms.spectra.augmented_map import AugmentConfig, augment
 from algorithms.spectra.candidates import shift_candidates
 from algorithms.verdict.decision import is_bent
@@ -202,7 +202,7 @@ def prove_optimum(
     searched = refined.answers[0].T_ref_mov
     start = searched if state.best is None else Pose2.from_array(state.best)
     smooth = replace(found.objective, lookup=Lookup.BILINEAR)
-    peak = polish(smooth, start, window, config.augment.spread)
+    peak = climb_to_peak(smooth, start, window, config.augment.spread)
     distance, angle = pose_error(searched, peak.T_ref_mov, window.pivot)
     found_it = distance <= config.proof.distance and angle <= radians(config.proof.angle)
     yield ProvenDetail(state, peak, found_it and state.best is not None)
