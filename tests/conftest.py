@@ -21,8 +21,8 @@ from algorithms.files.map_file import map_to_bytes
 from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, observations_to_bytes
 from algorithms.files.truth_file import TRUTH_FILE, Truth, truth_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import merge
-from algorithms.methods.steps import MergeResult
 from app.model.merge_inputs import Inputs
 from app.web.security.access_control import Access
 from app.web.viser_server import guarded_server

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.methods.manual_merge import BY_HAND, Scales, known_answers, refine
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
-from algorithms.methods.steps import MergeResult, RefineDetail
+from algorithms.methods.steps import RefineDetail
 
 DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 

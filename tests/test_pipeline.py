@@ -9,9 +9,10 @@ from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import Conflict
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS, merge, run
 from algorithms.methods.spectra_config import PipelineConfig, RefineConfig
-from algorithms.methods.steps import CandidatesDetail, HoughDetail, MergeResult, RefineDetail, ShiftDetail
+from algorithms.methods.steps import CandidatesDetail, HoughDetail, RefineDetail, ShiftDetail
 from algorithms.observations.search_window import WindowConfig
 from algorithms.optimisation.particle_swarm import SwarmConfig
 from algorithms.spectra.augmented_map import AugmentConfig

@@ -15,8 +15,8 @@ import yaml
 from algorithms.common.pose import Pose2
 from algorithms.files.map_file import read_map
 from algorithms.files.observation_file import observations_from_bytes
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
-from algorithms.methods.steps import MergeResult
 from algorithms.verdict.decision import Outcome
 from app.model.merge_inputs import Inputs
 from app.page.panels.html_widgets import box

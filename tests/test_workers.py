@@ -23,8 +23,9 @@ from algorithms.common.errors import NoAnswerError, SettingError
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, GridMap
 from algorithms.methods.manual_merge import Scales, refine
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
-from algorithms.methods.steps import MergeResult, ObservationDetail, Step
+from algorithms.methods.steps import ObservationDetail, Step
 from app.jobs.incremental_pickle import Parcels
 from app.jobs.runner import Asker
 from app.jobs.worker_pool import WorkerDiedError, Workers

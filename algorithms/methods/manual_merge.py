@@ -14,7 +14,7 @@ from algorithms.common.errors import SettingError
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
-from algorithms.methods.merge_result import conclude
+from algorithms.methods.merge_result import Answer, MergeResult, finish_merge
 from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.spectra_stages import (
     OPTIMISERS,
@@ -24,15 +24,7 @@ from algorithms.methods.spectra_stages import (
     whole_maps_of,
 )
 from algorithms.methods.stage_runner import Chain
-from algorithms.methods.steps import (
-    Answer,
-    AnswersDetail,
-    Detail,
-    MergeResult,
-    ObservationDetail,
-    RefineDetail,
-    Step,
-)
+from algorithms.methods.steps import AnswersDetail, Detail, ObservationDetail, RefineDetail, Step
 from algorithms.observations.observation import (
     Encounter,
     Observation,
@@ -101,18 +93,18 @@ class Scales:
         raises : TooLargeError where the merged map would be over the bound
         """
         fusion = self.fused(T_ref_mov)
-        return self._conclude(T_ref_mov, fusion, answers, seed)
+        return self._finish(T_ref_mov, fusion, answers, seed)
 
     def fused(self, T_ref_mov: Pose2) -> Fusion:
         """Both maps merged under a transform."""
         robots = robots_of(self.encounters, self.config.verdict.robot_size)
         return fuse(self.ref, self.mov, T_ref_mov, self.config.conflict, robots)
 
-    def _conclude(self, T: Pose2, fusion: Fusion, answers: tuple[Answer, ...], seed: int) -> MergeResult:
+    def _finish(self, T: Pose2, fusion: Fusion, answers: tuple[Answer, ...], seed: int) -> MergeResult:
         value, model = self.value(T), shipped_model()
         named = weigh(self.whole, T, model)
         rivals = elsewhere(self.whole, named, self.others, *ELSEWHERE)
-        return conclude(
+        return finish_merge(
             named,
             (*better_beside(self.whole, named, model), *rivals),
             fusion,
@@ -178,7 +170,7 @@ def refine(scales: Scales, T_ref_mov: Pose2, seed: int = 0) -> Iterator[Step]:
     best = found.answers[0].T_ref_mov
     fusion: Fusion = yield from chain.stage("fuse", (), lambda: [scales.fused(best)])
     yield from chain.stage(
-        "verdict", (), lambda: [_timed(scales._conclude(best, fusion, found.answers, seed), chain)]
+        "verdict", (), lambda: [_timed(scales._finish(best, fusion, found.answers, seed), chain)]
     )
 
 

@@ -17,8 +17,9 @@ from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap, remarks_on
 from algorithms.methods import spectra_method
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.spectra_config import PipelineConfig
-from algorithms.methods.steps import CauseDetail, MergeResult, TriedDetail
+from algorithms.methods.steps import CauseDetail, TriedDetail
 from algorithms.observations import observation
 from algorithms.observations.observation import Observation, check_standing
 from algorithms.optimisation.particle_swarm import SwarmConfig

@@ -25,9 +25,10 @@ from algorithms.methods.baselines.feature_detectors import (
     SurfConfig,
 )
 from algorithms.methods.baselines.feature_matching import FeatureConfig
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.spectra_config import PipelineConfig, RefineConfig
 from algorithms.methods.stage_runner import Memo
-from algorithms.methods.steps import CauseDetail, MergeResult, Step
+from algorithms.methods.steps import CauseDetail, Step
 from algorithms.observations.observation import Observation, as_observations, check_standing
 from algorithms.observations.search_window import WindowConfig
 from algorithms.optimisation.branch_and_bound import ProofConfig

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
-from algorithms.methods.merge_result import conclude
+from algorithms.methods.merge_result import finish_merge
 from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.spectra_stages import (
     augment_both,
@@ -120,7 +120,7 @@ def run(
     def judged() -> list[Detail]:
         named, *others = weighed.answers
         return [
-            conclude(
+            finish_merge(
                 named,
                 others,
                 fusion,

@@ -10,9 +10,9 @@ import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2, pose_error
 from algorithms.maps.grid_map import GridMap
+from algorithms.methods.merge_result import Answer
 from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.steps import (
-    Answer,
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,

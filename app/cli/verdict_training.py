@@ -26,8 +26,8 @@ from algorithms.files.case_folder import Case, case_folders, read_case
 from algorithms.files.observation_file import ROUGH_OBSERVATION_FILE
 from algorithms.files.truth_file import Truth
 from algorithms.methods import registry as methods
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.refusal_causes import NO_SWARM
-from algorithms.methods.steps import MergeResult
 from algorithms.simulator.training_pairs import training_pairs
 from algorithms.verdict.calibration import brier_score, calibration_error
 from algorithms.verdict.model_fit import Example, Told, cross_validated, fit, most_likely_wrong, told_by

@@ -23,7 +23,7 @@ from algorithms.files.case_folder import Case, case_folders, read_case
 from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE
 from algorithms.files.truth_file import TRUTH_FILE, Truth, read_truth
 from algorithms.methods import registry as methods
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
 from algorithms.simulator.wrong_pairs import crossed
 from algorithms.verdict.calibration import brier_score, calibration_error, reliability
 from app.jobs.executor import Executor, Here, Lost, Task

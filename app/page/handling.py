@@ -11,7 +11,8 @@ from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
 from algorithms.files.observation_file import OBSERVATION_FILE, observations_to_bytes
 from algorithms.methods.manual_merge import Scales, known_answers, refine
-from algorithms.methods.steps import MergeResult, ObservationDetail, Step
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.steps import ObservationDetail, Step
 from algorithms.observations.observation import Observation
 from app.drawing.legend import legend
 from app.drawing.scene_layout import Layout

@@ -11,7 +11,7 @@ import viser
 
 from algorithms.common.errors import InputFileError, MapMergeError, TooLargeError
 from algorithms.files.case_folder import Case
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.contradictions import Conflicts
 from app.drawing.browser_messages import Stage, TabStage
 from app.drawing.legend import legend

@@ -11,7 +11,7 @@ import viser
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
 from algorithms.methods.manual_merge import Scales
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.contradictions import Conflicts
 from app.drawing.browser_messages import Stage
 from app.drawing.palette import Palette

@@ -9,7 +9,8 @@ from typing import Any
 from algorithms.common.errors import MapMergeError, NoAnswerError
 from algorithms.methods import registry as methods
 from algorithms.methods.manual_merge import BY_HAND
-from algorithms.methods.steps import AugmentDetail, CauseDetail, MergeResult, Step, TriedDetail
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.steps import AugmentDetail, CauseDetail, Step, TriedDetail
 from algorithms.verdict.contradictions import Conflicts, find_conflicts
 from app.drawing.legend import in_hand, legend
 from app.jobs.worker_pool import WorkerDiedError

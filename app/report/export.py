@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from algorithms.files.observation_file import OBSERVATION_FILE, observations_to_bytes
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
 from app.model.merge_inputs import Inputs
 from app.page.cancellable_task import Check, unwatched
 from app.report.result_files import (

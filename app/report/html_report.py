@@ -8,8 +8,8 @@ from math import degrees
 from typing import Any
 
 from algorithms.files.observation_file import observations_to_bytes
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
-from algorithms.methods.steps import MergeResult
 from algorithms.verdict.contradictions import Conflicts, find_conflicts
 from algorithms.verdict.decision import Outcome, merges_of
 from app.drawing.palette import LIGHT

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from algorithms.common.pose import FloatArray
 from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap, where
 from algorithms.maps.map_fusion import Fusion
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
 from algorithms.observations.observation import Encounter, Observation
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.verdict.contradictions import Conflicts

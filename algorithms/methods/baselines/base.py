@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import Conflict, Fusion, fuse
-from algorithms.methods.merge_result import conclude
+from algorithms.methods.merge_result import finish_merge
 from algorithms.methods.stage_runner import Chain, Memo
 from algorithms.methods.steps import AnswersDetail, ObservationDetail, Step, WeighedDetail
 from algorithms.observations.observation import Encounter, Observation, encounters_of, robots_of
@@ -74,7 +74,7 @@ def run_direct(
         "verdict",
         (fusion, weighed, config.verdict, method),
         lambda: [
-            conclude(
+            finish_merge(
                 named,
                 beside or None,
                 fusion,

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.baselines.base import DirectConfig, Found, run_direct
+from algorithms.methods.merge_result import Answer
 from algorithms.methods.stage_runner import Chain, Memo
-from algorithms.methods.steps import Answer, AnswersDetail, Step
+from algorithms.methods.steps import AnswersDetail, Step
 from algorithms.observations.observation import Observation, bilateral_covariance, bilateral_transform
 
 

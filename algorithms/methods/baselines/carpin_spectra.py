@@ -20,8 +20,9 @@ from algorithms.common.setting_bounds import Bounds, check_bounds
 from algorithms.maps.grid_map import UNKNOWN, GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
 from algorithms.methods.baselines.base import DirectConfig, Found, run_direct
+from algorithms.methods.merge_result import Answer
 from algorithms.methods.stage_runner import Chain, Memo
-from algorithms.methods.steps import Answer, AnswersDetail, Detail, HoughDetail, ShiftDetail, Step
+from algorithms.methods.steps import AnswersDetail, Detail, HoughDetail, ShiftDetail, Step
 from algorithms.observations.observation import Observation
 from algorithms.observations.search_window import Window
 from algorithms.spectra.augmented_map import AugmentedMap

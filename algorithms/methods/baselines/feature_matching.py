@@ -19,8 +19,9 @@ from algorithms.maps.grid_map import GridMap
 from algorithms.methods.baselines.base import DirectConfig, Found, run_direct
 from algorithms.methods.baselines.distance_image import MARGIN, PictureConfig, common_cell, picture
 from algorithms.methods.baselines.feature_detectors import DetectorConfig, SiftConfig, describe
+from algorithms.methods.merge_result import Answer
 from algorithms.methods.stage_runner import Chain, Memo
-from algorithms.methods.steps import Answer, AnswersDetail, Detail, MatchesDetail, Step
+from algorithms.methods.steps import AnswersDetail, Detail, MatchesDetail, Step
 from algorithms.observations.observation import Observation
 
 LEAST = 2  # matches that a transform follows from

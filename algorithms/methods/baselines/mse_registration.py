@@ -31,8 +31,9 @@ from algorithms.methods.baselines.distance_image import (
     pose_of,
 )
 from algorithms.methods.baselines.overlap_error import Overlap, extent
+from algorithms.methods.merge_result import Answer
 from algorithms.methods.stage_runner import Chain, Memo
-from algorithms.methods.steps import Answer, AnswersDetail, Detail, Step, TurnsDetail
+from algorithms.methods.steps import AnswersDetail, Detail, Step, TurnsDetail
 from algorithms.observations.observation import Observation
 
 TOLD_EVERY = 10  # turns

@@ -31,8 +31,9 @@ from algorithms.methods.baselines.distance_image import (
 )
 from algorithms.methods.baselines.mse_registration import check_walls, raster_covariance
 from algorithms.methods.baselines.overlap_error import UNLIKE, Overlap
+from algorithms.methods.merge_result import Answer
 from algorithms.methods.stage_runner import Chain, Memo
-from algorithms.methods.steps import Answer, AnswersDetail, Detail, Step, TurnsDetail
+from algorithms.methods.steps import AnswersDetail, Detail, Step, TurnsDetail
 from algorithms.observations.observation import Observation
 from algorithms.spectra.candidates import circular_peaks
 

@@ -16,7 +16,7 @@ from app.cli.argument_parser import Parser
 
 if TYPE_CHECKING:
     from algorithms.maps.grid_map import GridMap
-    from algorithms.methods.steps import MergeResult
+    from algorithms.methods.merge_result import MergeResult
     from algorithms.observations.observation import Observation
 
 USAGE = "MAP1 MAP2 --observation FILE --out DIR [--json] [--force] [--strict] [options]"

@@ -13,8 +13,8 @@ import viser
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2, wrap_angle
 from algorithms.methods.manual_merge import Scales
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.spectra_config import PipelineConfig
-from algorithms.methods.steps import MergeResult
 from algorithms.verdict.cell_agreement import Walls
 from app.drawing.browser_messages import Stage
 from app.drawing.scene.map_view import MapView
