@@ -23,7 +23,7 @@ from algorithms.methods.spectra_stages import (
     objective_of,
     whole_maps_of,
 )
-from algorithms.methods.stage_runner import Chain
+from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import AnswersDetail, Detail, ObservationDetail, RefineDetail, Step
 from algorithms.observations.observation import (
     Encounter,
@@ -48,7 +48,7 @@ UNSURE = np.diag([1.0, 1.0, radians(5)]) ** 2  # (3, 3) of a method without an o
 
 
 @dataclass(frozen=True, eq=False)
-class Scales:
+class ManualMerge:
     """Two maps and their sightings, on which any transform can be weighed.
 
     config : of a method of the table
@@ -61,9 +61,9 @@ class Scales:
     config: Any
     others: tuple[Weighed, ...] = ()
 
-    def __reduce__(self) -> tuple[type[Scales], tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[type[ManualMerge], tuple[Any, ...]]:
         """What travels to another process: nothing that was worked out here."""
-        return Scales, (self.ref, self.mov, self.observations, self.config, self.others)
+        return ManualMerge, (self.ref, self.mov, self.observations, self.config, self.others)
 
     def __post_init__(self) -> None:
         if not self.observations:
@@ -152,7 +152,7 @@ def known_answers(result: MergeResult | None) -> tuple[Weighed, ...]:
     return () if result is None or result.method == BY_HAND else result.weighed
 
 
-def refine(scales: Scales, T_ref_mov: Pose2, seed: int = 0) -> Iterator[Step]:
+def refine(scales: ManualMerge, T_ref_mov: Pose2, seed: int = 0) -> Iterator[Step]:
     """Yield the steps of the method's own optimiser in a box around a transform, then climb to the peak.
 
     The last step's detail is the MergeResult; its answer is worth no less than ``T_ref_mov``.
@@ -162,23 +162,23 @@ def refine(scales: Scales, T_ref_mov: Pose2, seed: int = 0) -> Iterator[Step]:
     objective = scales.objective
     if objective is None:
         raise SettingError("this method maximises nothing; choose one that does, then refine")
-    chain = Chain({})
-    yield from chain.stage("observe", (), lambda: [ObservationDetail(scales.encounters)])
-    found: AnswersDetail = yield from chain.stage(
+    runner = StageRunner({})
+    yield from runner.stage("observe", (), lambda: [ObservationDetail(scales.encounters)])
+    found: AnswersDetail = yield from runner.stage(
         "refine", (), lambda: _search(scales, objective, T_ref_mov, seed)
     )
     best = found.answers[0].T_ref_mov
-    fusion: Fusion = yield from chain.stage("fuse", (), lambda: [scales.fused(best)])
-    yield from chain.stage(
-        "verdict", (), lambda: [_timed(scales._finish(best, fusion, found.answers, seed), chain)]
+    fusion: Fusion = yield from runner.stage("fuse", (), lambda: [scales.fused(best)])
+    yield from runner.stage(
+        "verdict", (), lambda: [_timed(scales._finish(best, fusion, found.answers, seed), runner)]
     )
 
 
-def _timed(result: MergeResult, chain: Chain) -> MergeResult:
-    return replace(result, timings_s=chain.timings_s)
+def _timed(result: MergeResult, runner: StageRunner) -> MergeResult:
+    return replace(result, timings_s=runner.timings_s)
 
 
-def _search(scales: Scales, objective: Objective, T: Pose2, seed: int) -> Iterator[Detail]:
+def _search(scales: ManualMerge, objective: Objective, T: Pose2, seed: int) -> Iterator[Detail]:
     config, box = scales.config, scales.box(T)
     rng = np.random.default_rng([seed, 2])
 

@@ -19,7 +19,7 @@ from algorithms.methods.spectra_stages import (
     value_of,
     weigh_answers,
 )
-from algorithms.methods.stage_runner import Chain, Memo
+from algorithms.methods.stage_runner import StageCache, StageRunner
 from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
@@ -41,7 +41,7 @@ def run(
     observations: tuple[Observation, ...],
     config: PipelineConfig,
     seed: int = 0,
-    memo: Memo | None = None,
+    memo: StageCache | None = None,
     method: str = "spectra-swarm",
 ) -> Iterator[Step]:
     """Yield every step of the merge; the last one's detail is the MergeResult.
@@ -51,23 +51,23 @@ def run(
     memo : keep it between runs: stages before the first changed setting are then not run again but
            told again (``Step.reused``)
     """
-    chain = Chain({} if memo is None else memo)
-    seen: ObservationDetail = yield from chain.stage(
+    runner = StageRunner({} if memo is None else memo)
+    seen: ObservationDetail = yield from runner.stage(
         "observe",
         (observations, ref.resolution, mov.resolution),
         lambda: [ObservationDetail(encounters_of(observations, ref, mov))],
     )
-    augmented: AugmentDetail = yield from chain.stage(
+    augmented: AugmentDetail = yield from runner.stage(
         "augment",
         (ref, mov, seen, config.augment),
         lambda: [augment_both(ref, mov, seen.encounter, config.augment)],
     )
-    hough: HoughDetail = yield from chain.stage(
+    hough: HoughDetail = yield from runner.stage(
         "spectra",
         (augmented, config.spectra, config.candidates),
         lambda: [HoughDetail(match_turns(augmented.ref, augmented.mov, config.spectra, config.candidates))],
     )
-    found: CandidatesDetail = yield from chain.stage(
+    found: CandidatesDetail = yield from runner.stage(
         "search",
         (
             augmented,
@@ -84,17 +84,17 @@ def run(
         ),
         lambda: search(ref, mov, seen.encounters, augmented, hough, config, seed),
     )
-    refined: AnswersDetail = yield from chain.stage(
+    refined: AnswersDetail = yield from runner.stage(
         "refine",
         (found, config.box, config.swarm, config.refine, seed),
         lambda: refine(found, config, seed),
     )
     proven: ProvenDetail | None = None
     if config.proof.whole_circle:
-        proven = yield from chain.stage(
+        proven = yield from runner.stage(
             "prove", (refined, config.proof), lambda: prove_optimum(found, refined, seen.encounters, config)
         )
-    weighed: WeighedDetail = yield from chain.stage(
+    weighed: WeighedDetail = yield from runner.stage(
         "weigh",
         (
             ref,
@@ -109,7 +109,7 @@ def run(
         lambda: [weigh_answers(ref, mov, seen.encounters, refined, proven, config)],
     )
     best = weighed.answers[0].T_ref_mov
-    fusion: Fusion = yield from chain.stage(
+    fusion: Fusion = yield from runner.stage(
         "fuse",
         (ref, mov, weighed, config.conflict),
         lambda: [
@@ -136,8 +136,8 @@ def run(
                 doubts=doubts(refined, proven),
                 proof=proven.state if proven else None,
                 search_found_it=proven.search_found_it if proven else None,
-                timings_s=chain.timings_s,
+                timings_s=runner.timings_s,
             )
         ]
 
-    yield from chain.stage("verdict", (fusion, refined, proven, config.verdict, method), judged)
+    yield from runner.stage("verdict", (fusion, refined, proven, config.verdict, method), judged)

@@ -17,7 +17,7 @@ from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
 from algorithms.methods import registry as methods
 from algorithms.methods.merge_result import MergeResult
-from algorithms.methods.stage_runner import Memo
+from algorithms.methods.stage_runner import StageCache
 from algorithms.observations.observation import Observation
 from algorithms.verdict.decision import Outcome
 from algorithms.verdict.performance_index import performance_index
@@ -86,7 +86,7 @@ def true_fusion(case: Case) -> Fusion | None:
 
 
 def attempt(
-    case: Case, method: str, config: Any, seed: int, true: Fusion | None, memo: Memo | None = None
+    case: Case, method: str, config: Any, seed: int, true: Fusion | None, memo: StageCache | None = None
 ) -> Trial:
     """Run a method and judge it; what goes wrong with it is in the answer.
 

@@ -15,7 +15,7 @@ from algorithms.files.observation_file import observations_to_bytes
 from algorithms.files.truth_file import truth_to_bytes
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import METHODS
-from algorithms.methods.stage_runner import Memo
+from algorithms.methods.stage_runner import StageCache
 from algorithms.verdict import performance_index as merit
 from app.evaluation.checkpoint import Journal
 from app.evaluation.method_run import Trial, attempt, true_fusion
@@ -170,7 +170,7 @@ def in_order(plan: Plan, points: Sequence[Point]) -> list[Point]:
 def _work(case: Case, order: tuple[str, Any, tuple[int, ...]]) -> list[dict[str, Any]]:
     """All seeds of one point: what does not depend on luck is done once for all of them."""
     method, config, seeds = order
-    true, memo = true_fusion(case), Memo()
+    true, memo = true_fusion(case), StageCache()
     return [attempt(case, method, config, seed, true, memo).plain() for seed in seeds]
 
 

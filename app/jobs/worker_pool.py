@@ -24,7 +24,7 @@ from typing import Any
 
 from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import MapMergeError
-from algorithms.methods.stage_runner import Memo
+from algorithms.methods.stage_runner import StageCache
 from algorithms.methods.steps import Step
 from app.jobs.fair_semaphore import Turns
 from app.jobs.incremental_pickle import Parcels
@@ -317,7 +317,7 @@ atexit.register(COMMON.close)
 @dataclass
 class _Tab:
     parcels: Parcels = field(default_factory=lambda: Parcels("worker"))
-    memo: Memo = field(default_factory=dict)
+    memo: StageCache = field(default_factory=dict)
     runs: dict[int, Iterator[Step]] = field(default_factory=dict)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
-from algorithms.methods.baselines.carpin_spectra import SmmConfig
+from algorithms.methods.baselines.carpin_spectra import CarpinConfig
 from algorithms.methods.baselines.feature_matching import FeatureConfig
 from algorithms.methods.baselines.mse_registration import MseConfig
 from algorithms.methods.baselines.phase_correlation import PhaseCorrelationConfig
@@ -46,7 +46,7 @@ _OWN = {
     FeatureConfig: Measure("agreeing matches", "matches that agree", ""),
     MseConfig: _SIMILARITY,
     PhaseCorrelationConfig: _SIMILARITY,
-    SmmConfig: Measure("acceptance index", "acceptance index of the search", ""),
+    CarpinConfig: Measure("acceptance index", "acceptance index of the search", ""),
 }
 
 

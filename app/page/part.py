@@ -10,7 +10,7 @@ import viser
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
-from algorithms.methods.manual_merge import Scales
+from algorithms.methods.manual_merge import ManualMerge
 from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.contradictions import Conflicts
 from app.drawing.browser_messages import Stage
@@ -74,7 +74,7 @@ class Part(ABC):
     _turn: RLock
     _files: FilesPanel
     _errand: Errand
-    _refining: tuple[Scales, Pose2] | None
+    _refining: tuple[ManualMerge, Pose2] | None
 
     @property
     def inputs(self) -> Inputs:
