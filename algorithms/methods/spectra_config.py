@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from algorithms.common.setting_bounds import Bounds, check_bounds
-from algorithms.maps.map_fusion import Conflict
+from algorithms.maps.map_fusion import ConflictRule
 from algorithms.observations.search_window import WindowConfig
 from algorithms.optimisation.branch_and_bound import ProofConfig
 from algorithms.optimisation.likelihood_field import AgreementConfig
@@ -53,5 +53,5 @@ class PipelineConfig:
     whole_maps: bool = False
     """Hold the best few answers against the walls of the whole maps, and name the likeliest: what lies around
     the encounter looks like many other places, and bent maps fit there alone."""
-    conflict: Conflict = Conflict.OCCUPIED_WINS
+    conflict: ConflictRule = ConflictRule.OCCUPIED_WINS
     """Which map is believed where one says wall and the other says free."""

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, CellArray
 from algorithms.maps.map_fusion import Fusion
 from algorithms.spectra.augmented_map import AugmentedMap
-from algorithms.verdict.cell_agreement import AGREES, CONTRADICTS, Touch, Walls
-from algorithms.verdict.contradictions import Conflicts
+from algorithms.verdict.cell_agreement import AGREES, CONTRADICTS, CellAgreement, WallLookup
+from algorithms.verdict.contradictions import Contradictions
 from app.drawing.palette import Palette, Rgb, viridis
 
 Pixels = NDArray[np.uint8]
@@ -102,11 +102,11 @@ def sheet(cells: CellArray, colour: Rgb, palette: Palette, most: int = MOST_PIXE
 
 
 def touches(
-    walls: Walls, told: Touch, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE
+    walls: WallLookup, told: CellAgreement, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE
 ) -> Picture:
     """The walls of one map that the other one agrees with or denies; the rest transparent.
 
-    told : (N,) for every wall cell, as ``Walls.told`` gives it
+    told : (N,) for every wall cell, as ``WallLookup.told`` gives it
     """
     shape = walls.grid.cells[part].shape
     factor = pooling(shape, most)
@@ -158,7 +158,7 @@ def merged_walls(fusion: Fusion, palette: Palette, most: int = MOST_PIXELS, part
 
 
 def denied_walls(
-    fusion: Fusion, found: Conflicts, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE
+    fusion: Fusion, found: Contradictions, palette: Palette, most: int = MOST_PIXELS, part: Part = WHOLE
 ) -> Picture:
     """Walls that the other map denies, in the colour of the map they are of; all other walls faint."""
     ref, mov = fusion.ref_cells[part], fusion.mov_cells[part]

@@ -12,7 +12,7 @@ import viser
 from algorithms.common.errors import InputFileError, MapMergeError, TooLargeError
 from algorithms.files.case_folder import Case
 from algorithms.methods.merge_result import MergeResult
-from algorithms.verdict.contradictions import Conflicts
+from algorithms.verdict.contradictions import Contradictions
 from app.drawing.browser_messages import Stage, TabStage
 from app.drawing.legend import legend
 from app.drawing.palette import LIGHT, Palette
@@ -79,7 +79,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         self._story = Story()
         self._notice: viser.NotificationHandle | None = None
         self._result: MergeResult | None = None  # of the last run that came to its end
-        self._conflicts: Conflicts | None = None  # of this result
+        self._conflicts: Contradictions | None = None  # of this result
         self._config: Any = None  # it ran with
         self._merged = False  # from the first Merge on, a moved slider runs the whole method again
         self._asked = False  # whether anything was asked for at all

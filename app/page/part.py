@@ -12,7 +12,7 @@ from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
 from algorithms.methods.manual_merge import ManualMerge
 from algorithms.methods.merge_result import MergeResult
-from algorithms.verdict.contradictions import Conflicts
+from algorithms.verdict.contradictions import Contradictions
 from app.drawing.browser_messages import Stage
 from app.drawing.palette import Palette
 from app.drawing.scene.height_view import HeightsView
@@ -62,7 +62,7 @@ class Part(ABC):
     _story: Story
     _result: MergeResult | None
     _config: Any
-    _conflicts: Conflicts | None
+    _conflicts: Contradictions | None
     _method: Story | None
     _hand: ByHand
     _placing: Placing

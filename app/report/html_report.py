@@ -10,7 +10,7 @@ from typing import Any
 from algorithms.files.observation_file import observations_to_bytes
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
-from algorithms.verdict.contradictions import Conflicts, find_conflicts
+from algorithms.verdict.contradictions import Contradictions, find_conflicts
 from algorithms.verdict.decision import Outcome, merges_of
 from app.drawing.palette import LIGHT
 from app.model import chart_data as charts
@@ -107,7 +107,7 @@ def _bare(reason: str) -> str:
     return rest[:1].upper() + rest[1:]
 
 
-def _pictures(result: MergeResult, inputs: Inputs, found: Conflicts, check: Check) -> str:
+def _pictures(result: MergeResult, inputs: Inputs, found: Contradictions, check: Check) -> str:
     figures = []
     check(0.3)
     if inputs.ref is not None and inputs.mov is not None:
@@ -154,7 +154,7 @@ def _likely(result: MergeResult) -> list[str]:
     return [f"<p>{escape(said)}</p>", figure, cleared]
 
 
-def _places(found: Conflicts) -> list[str]:
+def _places(found: Contradictions) -> list[str]:
     said = f"<p>{escape(summary(found))}</p>"
     if not found.places:
         return [said]

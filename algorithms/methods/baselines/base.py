@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import GridMap
-from algorithms.maps.map_fusion import Conflict, Fusion, fuse
+from algorithms.maps.map_fusion import ConflictRule, Fusion, fuse
 from algorithms.methods.merge_result import finish_merge
 from algorithms.methods.stage_runner import StageCache, StageRunner
 from algorithms.methods.steps import AnswersDetail, ObservationDetail, Step, WeighedDetail
@@ -30,7 +30,7 @@ class BaselineConfig:
     """What follows the transform, whoever has found it."""
 
     verdict: VerdictConfig = field(default_factory=VerdictConfig)
-    conflict: Conflict = Conflict.OCCUPIED_WINS
+    conflict: ConflictRule = ConflictRule.OCCUPIED_WINS
     """Which map is believed where one says wall and the other says free."""
 
 

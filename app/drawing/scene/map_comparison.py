@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, get_args
 
 from algorithms.common.pose import FloatArray
-from algorithms.verdict.contradictions import Conflicts, Place
+from algorithms.verdict.contradictions import Contradiction, Contradictions
 from app.drawing.browser_messages import Stage
 from app.drawing.palette import Palette, css
 from app.drawing.scene.map_layers import Mode
@@ -15,7 +15,7 @@ from app.page.panels.places import MOST_PLACES
 MODES: tuple[Mode, ...] = get_args(Mode)
 
 
-def rings(places: tuple[Place, ...], anchor: FloatArray) -> list[dict[str, Any]]:
+def rings(places: tuple[Contradiction, ...], anchor: FloatArray) -> list[dict[str, Any]]:
     """The places that are ringed on the map, as map_comparison.js draws them; metres of the scene."""
     return [
         {"n": n, "at": [place.x - float(anchor[0]), place.y - float(anchor[1])], "r": place.radius}
@@ -28,11 +28,11 @@ class Comparison:
 
     def __init__(self, stage: Stage, maps: MapView) -> None:
         self._stage, self._maps = stage, maps
-        self._conflicts: Conflicts | None = None
+        self._conflicts: Contradictions | None = None
         self._modes: tuple[Mode, ...] = ()
         self.mode: Mode = "overlay"
 
-    def offer(self, conflicts: Conflicts | None, palette: Palette) -> None:
+    def offer(self, conflicts: Contradictions | None, palette: Palette) -> None:
         """Map 2 lies over map 1: there is something to compare.
 
         conflicts : of the merged map; None where the cells are not merged

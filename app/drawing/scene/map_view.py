@@ -25,8 +25,8 @@ from algorithms.methods.steps import (
     WindowDetail,
 )
 from algorithms.observations.search_window import CoupledWindow
-from algorithms.verdict.cell_agreement import Touch, Walls
-from algorithms.verdict.contradictions import Conflicts
+from algorithms.verdict.cell_agreement import CellAgreement, WallLookup
+from algorithms.verdict.contradictions import Contradictions
 from app.drawing.browser_messages import Stage, cloud, mark
 from app.drawing.palette import LIGHT, Palette, css
 from app.drawing.scene import search_symbols as signs
@@ -115,7 +115,7 @@ class MapView:
         """The page has moved map 2 by itself."""
         self._mov_at = at
 
-    def touch(self, walls: tuple[Walls, Walls], told: tuple[Touch, Touch]) -> None:
+    def touch(self, walls: tuple[WallLookup, WallLookup], told: tuple[CellAgreement, CellAgreement]) -> None:
         """Show which walls coincide and which are denied; see ``Ground.touch``."""
         self.ground.touch(walls, told)
 
@@ -131,7 +131,7 @@ class MapView:
         """Whether map 2 lies over map 1, as it is."""
         return self._inputs.complete and self.ground.which != "levels" and self._mov_at != self.layout.apart
 
-    def compare(self, mode: Mode, conflicts: Conflicts | None) -> None:
+    def compare(self, mode: Mode, conflicts: Contradictions | None) -> None:
         """Show both maps in this way where they lie over each other; a rival would be one map too many."""
         self._mode = mode
         self.ground.compare(mode, conflicts)

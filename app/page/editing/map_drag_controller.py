@@ -15,7 +15,7 @@ from algorithms.common.pose import Pose2, wrap_angle
 from algorithms.methods.manual_merge import ManualMerge
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.spectra_config import PipelineConfig
-from algorithms.verdict.cell_agreement import Walls
+from algorithms.verdict.cell_agreement import WallLookup
 from app.drawing.browser_messages import Stage
 from app.drawing.scene.map_view import MapView
 from app.jobs.latest_request import Newest
@@ -82,7 +82,7 @@ class ByHand:
     ) -> None:
         self._stage, self._maps, self._turn, self._drawing, self._host = stage, maps, turn, drawing, host
         self._scales: ManualMerge | None = None
-        self._walls: tuple[Walls, Walls] | None = None
+        self._walls: tuple[WallLookup, WallLookup] | None = None
         self._at = Pose2()  # where map 2's anchor lies; scene
         self._slow = 0.0  # seconds that weighing took last
         self.active = False
@@ -117,7 +117,7 @@ class ByHand:
         """The same on these scales; whoever calls is drawing."""
         self._scales = scales
         if self._walls is None or (self._walls[0].grid, self._walls[1].grid) != (scales.ref, scales.mov):
-            self._walls = Walls(scales.ref), Walls(scales.mov)
+            self._walls = WallLookup(scales.ref), WallLookup(scales.mov)
         self._at = self._maps.mov_at if T_ref_mov is None else self._maps.layout.placed(T_ref_mov)
         self.active = True
         searches = isinstance(scales.config, PipelineConfig)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from algorithms.verdict.contradictions import Conflicts, Place
+from algorithms.verdict.contradictions import Contradiction, Contradictions
 
 MOST_PLACES = 12  # that are listed, and ringed on the map; the smaller ones are told in sum
 
 
-def places_html(found: Conflicts, faded: bool = False) -> str:
+def places_html(found: Contradictions, faded: bool = False) -> str:
     """HTML of the list, most wall first; faded and without effect where it is out of date."""
     dim = ' style="opacity:.4"' if faded else ""
     if not found.places:
@@ -23,7 +23,7 @@ def places_html(found: Conflicts, faded: bool = False) -> str:
     return f'<div class="mm-places"{dim}><p>{summary(found)}</p>{"".join(rows)}</div>'
 
 
-def summary(found: Conflicts) -> str:
+def summary(found: Contradictions) -> str:
     """How many places there are, how much wall, and what is not listed."""
     many = len(found.places)
     if found.wall == 0:
@@ -36,7 +36,7 @@ def summary(found: Conflicts) -> str:
     return f"{found.wall:.1f} m of wall contradict: {many}{further}. Where, in metres of map 1's frame:"
 
 
-def whose(place: Place) -> str:
+def whose(place: Contradiction) -> str:
     """Whose wall it is that the other map denies."""
     if min(place.ref_wall, place.mov_wall) >= 0.2 * place.wall:
         return "both maps' wall"

@@ -11,7 +11,7 @@ from algorithms.common.pose import pose_error
 from algorithms.maps.map_fusion import fuse
 from algorithms.methods.manual_merge import BY_HAND
 from algorithms.methods.merge_result import MergeResult
-from algorithms.verdict.contradictions import Conflicts
+from algorithms.verdict.contradictions import Contradictions
 from algorithms.verdict.decision import Verdict
 from algorithms.verdict.performance_index import performance_index
 from app.drawing.palette import LIGHT
@@ -41,7 +41,7 @@ def result_html(
     result: MergeResult,
     inputs: Inputs,
     config: Any = None,
-    found: Conflicts | None = None,
+    found: Contradictions | None = None,
     faded: bool = False,
 ) -> str:
     """HTML of the whole result; faded where it is out of date.
