@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from algorithms.common.display_text import visible
+from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError, unreadable
 from algorithms.files.map_file import read_map
 from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, read_observations
@@ -44,7 +44,7 @@ def read_case(folder: Path, rough: bool = False) -> Case:
     observation_file = ROUGH_OBSERVATION_FILE if rough else OBSERVATION_FILE
     truth_path = folder / TRUTH_FILE
     return Case(
-        name=visible(folder.resolve().name),
+        name=show_hidden(folder.resolve().name),
         ref=read_map(folder / FIRST_MAP_FILE),
         mov=read_map(folder / SECOND_MAP_FILE),
         observations=read_observations(folder / observation_file),

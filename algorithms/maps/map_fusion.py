@@ -8,7 +8,7 @@ from math import ceil, cos, floor, sin
 
 import numpy as np
 
-from algorithms.common.parallel_kernels import kernel, spread
+from algorithms.common.parallel_kernels import kernel, run_in_threads
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import (
     FREE,
@@ -160,7 +160,7 @@ def _look_up(source: GridMap, T_source_target: Pose2, cell: float, target: CellA
     def work(start: int, stop: int) -> None:
         _look_up_rows(source.cells, c, s, x, y, start, stop, target)
 
-    spread(work, len(target), at_least=1 + 1_000_000 // target.shape[1])
+    run_in_threads(work, len(target), at_least=1 + 1_000_000 // target.shape[1])
 
 
 @kernel

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.common.parallel_kernels import fast_kernel, spread
+from algorithms.common.parallel_kernels import fast_kernel, run_in_threads
 from algorithms.common.pose import FloatArray
 from algorithms.maps.grid_map import Float32Array
 from algorithms.observations.search_window import CoupledWindow
@@ -124,7 +124,7 @@ class _Pyramid:
         def work(start: int, stop: int) -> None:
             _bound(self.flat, rows, cols, x, y, weights, offset, single[start:stop], values[start:stop])
 
-        spread(work, len(poses), at_least=1 + _LOOKUPS_WORTH_A_THREAD // (1 + len(x)))
+        run_in_threads(work, len(poses), at_least=1 + _LOOKUPS_WORTH_A_THREAD // (1 + len(x)))
         return values
 
 

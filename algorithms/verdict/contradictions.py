@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, BoolArray, CellArray, where
 from algorithms.maps.map_fusion import Fusion
-from algorithms.maps.wall_distance import distances, near
+from algorithms.maps.wall_distance import distances, is_near_wall
 from algorithms.verdict.wall_map import SAME_WALL
 
 IntArray = NDArray[np.intp]
@@ -141,7 +141,7 @@ def _places(
     rows, cols = where(denied)
     if len(rows) == 0:
         return (), 0.0
-    reach = near(denied, distances(ceil(gap / 2 / cell)) * cell <= gap / 2)
+    reach = is_near_wall(denied, distances(ceil(gap / 2 / cell)) * cell <= gap / 2)
     count, labels = cv2.connectedComponents(reach.view(np.uint8), connectivity=8)
     ref_wall, mov_wall = (
         np.bincount(labels[only][seen], minlength=count) * cell

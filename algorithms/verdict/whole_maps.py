@@ -17,7 +17,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from algorithms.common.parallel_kernels import spread
+from algorithms.common.parallel_kernels import run_in_threads
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.robots import Robots
@@ -186,7 +186,7 @@ def _each(count: int, make: Callable[[int], Made]) -> list[Made]:
         for n in range(start, stop):
             made[n] = make(n)
 
-    spread(work, count)
+    run_in_threads(work, count)
     return [made[n] for n in range(count)]
 
 
