@@ -21,7 +21,7 @@ from algorithms.simulator.lidar import Lidar, first_hit, scan, sees, true_ranges
 from algorithms.simulator.path_planning import STEP, PathPlanner
 from algorithms.simulator.portable_random import COSINES, SINES, TRIG_GRID, TURN, normals, radians, stream
 from algorithms.simulator.robot import drive, make_body
-from algorithms.simulator.room_tours import Surveyor
+from algorithms.simulator.room_tours import TourPlanner
 from algorithms.simulator.samples import DESCRIPTIONS, SAMPLES, case_files, generate_cases, write_case
 from algorithms.simulator.scenario import Scenario, simulate
 from algorithms.simulator.sighting import APART, FURTHEST, NEAREST, measured_overlap
@@ -199,7 +199,7 @@ def test_a_map_shows_the_building_and_nothing_else(flat):
 def test_what_no_beam_touched_stays_unknown(two_rooms):
     planner = PathPlanner(two_rooms)
     body = make_body("R1", 0, "test", reach=9.0, resolution=0.05)
-    tour = Surveyor(two_rooms, planner, 9.0).tour([0, 1, 2, 3], 0)
+    tour = TourPlanner(two_rooms, planner, 9.0).tour([0, 1, 2, 3], 0)
     robot = drive(two_rooms, planner, tour, body)
     T_robot_world = Pose2(*body.shift.tolist(), radians(body.turn))
     x, y = np.meshgrid(np.arange(0.9, 10.4, 0.1), np.arange(0.9, 5.4, 0.1))

@@ -73,7 +73,7 @@ def shared(a: Seen, b: Seen) -> float:
     return int(np.count_nonzero(a & b)) / max(1, fewer)
 
 
-class Surveyor:
+class TourPlanner:
     """Tours through one building and what is seen on them; a way is looked at once and kept."""
 
     def __init__(self, building: Building, planner: PathPlanner, reach: float) -> None:

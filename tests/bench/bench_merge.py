@@ -32,7 +32,7 @@ from algorithms.optimisation.likelihood_field import make_agreement
 from algorithms.optimisation.objective import Lookup, Objective, make_objective
 from algorithms.optimisation.transform_lattice import TransformLattice
 from algorithms.simulator.large_pair import simulate_large
-from algorithms.simulator.scenario import Case, simulate
+from algorithms.simulator.scenario import SimulatedCase, simulate
 from algorithms.spectra.augmented_map import AugmentedMap, augment
 
 SIDE, WALLS, PARTICLES = 1000, 8_000, 400
@@ -151,7 +151,7 @@ def bench_whole_merge(pair, benchmark):
     )
 
 
-def search_of(case: Case) -> tuple[Objective, CoupledWindow]:
+def search_of(case: SimulatedCase) -> tuple[Objective, CoupledWindow]:
     """What the default method proves the best of."""
     config = METHODS[DEFAULT_METHOD].defaults
     seen = [encounter(observation) for observation in case.observations]
