@@ -16,17 +16,12 @@ from strangers import TOKEN, Stand, standing
 
 from algorithms.common.pose import Pose2
 from algorithms.files.atomic_write import write_files
-from algorithms.files.case_folder import (
-    OBSERVATION_FILE,
-    ROUGH_OBSERVATION_FILE,
-    TRUTH_FILE,
-    Case,
-    Truth,
-    observations_to_bytes,
-    truth_to_bytes,
-)
+from algorithms.files.case_folder import Case
 from algorithms.files.map_file import map_to_bytes
+from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, observations_to_bytes
+from algorithms.files.truth_file import TRUTH_FILE, Truth, truth_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import merge
 from algorithms.methods.steps import MergeResult
 from app.model.merge_inputs import MergeInputs

@@ -19,8 +19,9 @@ from mapfiles import encoded
 from PIL import Image
 
 from algorithms.common.errors import MapMergeError
-from algorithms.files.case_folder import observations_from_bytes, read_truth
 from algorithms.files.map_file import grey_image, map_from_bytes, parse_meta
+from algorithms.files.observation_file import observations_from_bytes
+from algorithms.files.truth_file import read_truth
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_texts import read_exhibit, read_step
 from app.page.lesson.placeholders import NUMBERS

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from algorithms.common.errors import SettingError
-from algorithms.maps.map_fusion import Conflict
+from algorithms.maps.map_fusion import ConflictRule
 from algorithms.methods.registry import METHODS
 from algorithms.observations.search_window import WindowConfig
 from app.evaluation import sweep_axes as axes
@@ -28,7 +28,7 @@ NUMBERS = [setting for setting in settings_of(CONFIG) if setting.bounds is not N
         ("swarm.particles=200", (200,)),
         ("refine.optimiser=pso,mco", ("pso", "mco")),
         ("candidates.twins=yes,no", (True, False)),
-        ("conflict=map1-wins", (Conflict.REF_WINS,)),
+        ("conflict=map1-wins", (ConflictRule.REF_WINS,)),
         ("box.sigma-x=1,2", (1.0, 2.0)),
         ("box.sigma_x=1,2", (1.0, 2.0)),
     ],

@@ -26,7 +26,8 @@ from algorithms.observations.observation import Encounter, encounter
 from algorithms.observations.search_window import WindowConfig, coupled_window
 from algorithms.optimisation.likelihood_field import AgreementConfig, make_agreement
 from algorithms.optimisation.objective import Lookup
-from algorithms.optimisation.upper_bounds import Bounder, Lattice
+from algorithms.optimisation.transform_lattice import TransformLattice
+from algorithms.optimisation.upper_bounds import UpperBounds
 from algorithms.spectra.augmented_map import AugmentConfig
 
 
@@ -46,13 +47,16 @@ def values_of(problem, lattice, numbers):
 
 def check_bounds(problem, seed):
     """Every block of every level against all that it holds."""
-    bounder = Bounder(problem.objective, problem.window)
-    numbers = transforms_of(bounder.lattice, seed)
-    values = values_of(problem, bounder.lattice, numbers)
-    assert np.array_equal(bounder(numbers, 0), values)
-    for level in range(1, bounder.lattice.levels + 1):
-        shape = np.array([bounder.lattice.turns, bounder.lattice.side, bounder.lattice.side]) >> level
-        bounds = bounder(np.indices(shape).reshape(3, -1).T, level).reshape(shape)
+    upper_bounds = UpperBounds(problem.objective, problem.window)
+    numbers = transforms_of(upper_bounds.lattice, seed)
+    values = values_of(problem, upper_bounds.lattice, numbers)
+    assert np.array_equal(upper_bounds(numbers, 0), values)
+    for level in range(1, upper_bounds.lattice.levels + 1):
+        shape = (
+            np.array([upper_bounds.lattice.turns, upper_bounds.lattice.side, upper_bounds.lattice.side])
+            >> level
+        )
+        bounds = upper_bounds(np.indices(shape).reshape(3, -1).T, level).reshape(shape)
         assert np.all(values <= bounds[tuple((numbers >> level).T)])
 
 
@@ -85,14 +89,14 @@ def members_of(nodes, level):
 @given(st.integers(1, 4), st.tuples(*3 * [st.integers(0, 1000)]))
 def test_the_children_of_a_block_hold_its_transforms_each_once(level, node):
     block = np.array([node])
-    theirs = members_of(Lattice.children(block), level - 1)
+    theirs = members_of(TransformLattice.children(block), level - 1)
     assert sorted(map(tuple, theirs)) == sorted(map(tuple, members_of(block, level)))
 
 
 @settings(max_examples=20)
 @given(problems(side=8))
 def test_the_coarsest_blocks_hold_every_transform_once(problem):
-    lattice = Lattice(problem.objective, problem.window)
+    lattice = TransformLattice(problem.objective, problem.window)
     numbers = members_of(lattice.roots(), lattice.levels)
     flat = np.ravel_multi_index(tuple(numbers.T), (lattice.turns, lattice.side, lattice.side))
     assert np.array_equal(np.sort(flat), np.arange(lattice.turns * lattice.side**2))
@@ -102,7 +106,7 @@ def test_the_coarsest_blocks_hold_every_transform_once(problem):
 @given(problems(side=8), st.floats(1e6, 1e9))
 def test_a_window_of_more_blocks_than_memory_holds_is_refused_with_a_remedy(problem, wide):
     # the disc of a sighting of metres, in cells of a tenth of a millimetre
-    lattice = Lattice(problem.objective, replace(problem.window, k=wide))
+    lattice = TransformLattice(problem.objective, replace(problem.window, k=wide))
     with pytest.raises(
         TooLargeError, match=r"blocks of transforms .* coarser resolution, or smaller deviations"
     ):
@@ -112,7 +116,7 @@ def test_a_window_of_more_blocks_than_memory_holds_is_refused_with_a_remedy(prob
 @settings(max_examples=60)
 @given(problems(), angles, angles, st.floats(0, 1))
 def test_no_shift_and_no_turn_of_the_window_is_left_out(problem, turn, towards, share):
-    lattice = Lattice(problem.objective, problem.window)
+    lattice = TransformLattice(problem.objective, problem.window)
     direction = problem.window.k * share * np.array([np.cos(towards), np.sin(towards)])
     off = np.linalg.solve(problem.window.whitening[0], direction)
     whole = np.trunc(off / lattice.cell) * lattice.cell
@@ -127,7 +131,7 @@ def test_no_shift_and_no_turn_of_the_window_is_left_out(problem, turn, towards, 
 @settings(max_examples=40)
 @given(problems())
 def test_between_neighbours_no_wall_moves_by_more_than_a_cell(problem):
-    lattice = Lattice(problem.objective, problem.window)
+    lattice = TransformLattice(problem.objective, problem.window)
     middle = np.array([0, lattice.side // 2, lattice.side // 2])
     for beside in ((1, 0, 0), (0, 1, 0), (0, 0, 1)):
         numbers = np.array([middle, middle + beside])
@@ -147,9 +151,9 @@ def test_however_exact_a_sighting_and_coarse_a_map_the_lattice_has_a_transform_f
     seen = Encounter(np.array([3.0, 4.0]), np.array([2.0, 5.0]), np.eye(2) * 1e-8)
     window = coupled_window([seen], WindowConfig("coupled", margin=0.0, deviations=1.0))
     objective = make_agreement(grid, grid, [seen], AugmentConfig(), AgreementConfig(), window)
-    bounder = Bounder(objective, window)
-    numbers = members_of(bounder.lattice.roots(), bounder.lattice.levels)
-    assert np.isfinite(bounder(numbers, 0)).sum() == bounder.lattice.turns
+    upper_bounds = UpperBounds(objective, window)
+    numbers = members_of(upper_bounds.lattice.roots(), upper_bounds.lattice.levels)
+    assert np.isfinite(upper_bounds(numbers, 0)).sum() == upper_bounds.lattice.turns
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3, 7])
@@ -157,11 +161,13 @@ def test_the_same_bounds_on_any_number_of_threads(threads, monkeypatch):
     ref, mov = drawn_map(T_REF_WORLD), drawn_map(T_MOV_WORLD)
     met = [encounter(sighting(T_REF_WORLD, T_MOV_WORLD, OBSERVER, OBSERVED))]
     window = coupled_window(met, WindowConfig("coupled"))
-    bounder = Bounder(make_agreement(ref, mov, met, AugmentConfig(), AgreementConfig(), window), window)
-    lattice = bounder.lattice
+    upper_bounds = UpperBounds(
+        make_agreement(ref, mov, met, AugmentConfig(), AgreementConfig(), window), window
+    )
+    lattice = upper_bounds.lattice
     for level in range(lattice.levels + 1):
         numbers = transforms_of(lattice, seed=0, most=1000)
         monkeypatch.setattr(kernels, "cores", lambda: 1)
-        alone = bounder(numbers >> level, level)
+        alone = upper_bounds(numbers >> level, level)
         monkeypatch.setattr(kernels, "cores", lambda: threads)
-        assert np.array_equal(alone, bounder(numbers >> level, level))
+        assert np.array_equal(alone, upper_bounds(numbers >> level, level))

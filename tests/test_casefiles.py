@@ -14,19 +14,16 @@ from hypothesis import strategies as st
 
 from algorithms.common.errors import InputFileError, SettingError
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import (
+from algorithms.files.case_folder import case_folders, read_case
+from algorithms.files.map_file import write_map
+from algorithms.files.observation_file import (
     MOST_OBSERVATIONS,
-    Truth,
-    case_folders,
     observations_from_bytes,
     observations_to_bytes,
-    read_case,
     read_observations,
-    read_truth,
-    truth_to_bytes,
     write_observations,
 )
-from algorithms.files.map_file import write_map
+from algorithms.files.truth_file import Truth, read_truth, truth_to_bytes
 from algorithms.maps.grid_map import FARTHEST, MOST_TURN, GridMap
 from algorithms.observations.observation import (
     MOST_RANGE,

@@ -14,10 +14,12 @@ from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.observations.observation import Encounter, encounter
 from algorithms.observations.search_window import WindowConfig, coupled_window
 from algorithms.optimisation import branch_and_bound as certificate
+from algorithms.optimisation import open_blocks
 from algorithms.optimisation.branch_and_bound import MOST_RIVALS, ProofConfig, prove
 from algorithms.optimisation.likelihood_field import AgreementConfig, make_agreement
 from algorithms.optimisation.objective import Lookup, make_objective
-from algorithms.optimisation.upper_bounds import Bounder, Lattice
+from algorithms.optimisation.transform_lattice import TransformLattice
+from algorithms.optimisation.upper_bounds import UpperBounds
 from algorithms.spectra.augmented_map import AugmentConfig, augment
 
 NEAR = ProofConfig(angle=20, distance=0.3)
@@ -30,7 +32,7 @@ class Everything:
     """All the transforms of a lattice, looked at one by one."""
 
     def __init__(self, objective, window):
-        lattice = Lattice(objective, window)
+        lattice = TransformLattice(objective, window)
         numbers = np.indices((lattice.turns, lattice.side, lattice.side)).reshape(3, -1).T
         self.coordinates = lattice.coordinates(numbers, 0)
         self.poses = lattice.poses(self.coordinates)
@@ -41,7 +43,7 @@ class Everything:
     @classmethod
     def few_of(cls, problem):
         """Those of a problem that has not too many of them; of another, hypothesis makes another problem."""
-        lattice = Lattice(problem.objective, problem.window)
+        lattice = TransformLattice(problem.objective, problem.window)
         assume(lattice.turns * lattice.side**2 <= 40_000)
         return cls(problem.objective, problem.window)
 
@@ -106,7 +108,7 @@ def last(states):
 def small_batches():
     """A small map has few blocks; opened a few hundred at a time, none would ever be left out."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(certificate, "BATCH", 16)
+        patch.setattr(open_blocks, "BATCH", 16)
         yield
 
 
@@ -192,7 +194,7 @@ def test_the_gap_only_shrinks_and_is_nothing_at_the_end(problem, config):
 def test_a_flat_is_proven_from_a_small_share_of_its_transforms():
     objective, window = coarse_flat(Pose2(3, -4, 0.3), Pose2(-12, 5, -1.7), range=0.05)
     rough = replace(window, covariances=np.eye(2)[None] * 0.3**2)
-    lattice = Lattice(objective, rough)
+    lattice = TransformLattice(objective, rough)
     numbers = np.indices((lattice.turns, lattice.side, lattice.side)).reshape(3, -1).T
     all_of_them = np.count_nonzero(rough.contains(lattice.poses(lattice.coordinates(numbers, 0))))
     state = next(state for state in prove(objective, rough, NEAR) if state.proven)
@@ -236,14 +238,14 @@ def test_of_many_rivals_the_best_are_told_and_the_ceiling_covers_the_others():
 
 def test_nothing_is_bounded_before_it_is_asked_for_or_after_the_caller_has_left(monkeypatch):
     bounded = []
-    plain = Bounder.__call__
+    plain = UpperBounds.__call__
 
     def counting(self, nodes, level):
         values = plain(self, nodes, level)
         bounded.append(int(np.isfinite(values).sum()))
         return values
 
-    monkeypatch.setattr(Bounder, "__call__", counting)
+    monkeypatch.setattr(UpperBounds, "__call__", counting)
     for wanted in (1, 3):
         bounded.clear()
         states = prove(*dusty(), ProofConfig())

@@ -2,12 +2,12 @@ import numpy as np
 import pytest
 
 from algorithms.methods import stage_runner as chain
-from algorithms.methods.stage_runner import Chain
+from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import RefineDetail
-from algorithms.observations.search_window import Box
 from algorithms.optimisation.particle_swarm import SwarmConfig, settled_within, swarm
+from algorithms.optimisation.search_box import SearchBox
 
-BOX = Box(-np.ones(3), np.ones(3), np.zeros(2))
+BOX = SearchBox(-np.ones(3), np.ones(3), np.zeros(2))
 
 
 def snapshots():
@@ -24,7 +24,7 @@ def snapshots():
 
 
 def told(memo, inputs=("same",)):
-    return list(Chain(memo).stage("refine", inputs, snapshots))
+    return list(StageRunner(memo).stage("refine", inputs, snapshots))
 
 
 def test_what_was_told_once_is_told_again_and_not_made_again():
@@ -55,7 +55,7 @@ def test_a_long_search_is_told_whole_once_and_with_gaps_again(monkeypatch):
 
 def test_a_stage_returns_its_last_detail_whether_made_or_remembered():
     def last_of(memo):
-        stage = Chain(memo).stage("refine", (), snapshots)
+        stage = StageRunner(memo).stage("refine", (), snapshots)
         while True:
             try:
                 step = next(stage)
@@ -75,5 +75,5 @@ def test_a_stage_that_fails_is_not_remembered():
 
     memo = {}
     with pytest.raises(ValueError, match="half-way"):
-        list(Chain(memo).stage("refine", (), broken))
+        list(StageRunner(memo).stage("refine", (), broken))
     assert memo == {}

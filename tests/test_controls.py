@@ -11,7 +11,7 @@ import pytest
 from algorithms.common.errors import SettingError
 from algorithms.common.setting_bounds import Bounds, check_bounds
 from algorithms.methods.registry import METHODS
-from algorithms.methods.spectra_method import PipelineConfig
+from algorithms.methods.spectra_config import PipelineConfig
 from app.model.settings import field_docs, in_cells, settings_of, value_at, with_value, word_for
 from app.page.panels.settings_panel import idle
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import observations_from_bytes, observations_to_bytes
+from algorithms.files.observation_file import observations_from_bytes, observations_to_bytes
 from algorithms.observations.observation import Observation, encounter
 from app.model.observation_draft import ObservationDraft
 

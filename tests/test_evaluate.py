@@ -10,7 +10,7 @@ import pytest
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import Truth
+from algorithms.files.truth_file import Truth
 from algorithms.methods import registry as methods
 from app.cli.main import main
 from app.evaluation import dataset_evaluation as evaluate

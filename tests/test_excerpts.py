@@ -16,7 +16,7 @@ from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.maps.map_fusion import fuse
 from algorithms.spectra.augmented_map import augment
-from algorithms.verdict.cell_agreement import Walls
+from algorithms.verdict.cell_agreement import WallLookup
 from algorithms.verdict.contradictions import find_conflicts
 from app.drawing import grid_pixels as render
 from app.drawing.browser_messages import BrowserMessages
@@ -76,7 +76,7 @@ def drawings():
     """Everything that is drawn of a grid, with the grid's shape."""
     ref, mov = speckled(50, 70), speckled(60, 45, seed=1)
     fusion = fuse(ref, mov, Pose2(0.5, 1.0, 0.4))
-    walls = Walls(ref), Walls(mov)
+    walls = WallLookup(ref), WallLookup(mov)
     lifted = augment(ref, ref.origin.apply(np.array([3.0, 2.0])), np.eye(2), 100.0)
     told = walls[0].told(walls[1], Pose2(0.5, 1.0, 0.4).inverse())
     whole, merged = ref.cells.shape, fusion.merged.cells.shape

@@ -8,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 from algorithms.common.errors import TooLargeError
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.maps.map_fusion import Conflict, fuse
+from algorithms.maps.map_fusion import ConflictRule, fuse
 from algorithms.maps.robots import Robots
 
 classes = st.sampled_from([UNKNOWN, FREE, OCCUPIED])
@@ -45,7 +45,7 @@ def test_no_wall_of_either_map_is_lost(ref, mov, T):
 
 
 @settings(deadline=None)
-@given(grids(), grids(), near, st.sampled_from(list(Conflict)))
+@given(grids(), grids(), near, st.sampled_from(list(ConflictRule)))
 def test_a_cell_is_free_only_where_a_map_knows_it_to_be_free(ref, mov, T, rule):
     fusion = fuse(ref, mov, T, rule)
     free = fusion.merged.cells == FREE
@@ -94,7 +94,11 @@ def test_every_pair_of_answers_is_counted_once():
 
 @pytest.mark.parametrize(
     ("rule", "expected"),
-    [(Conflict.OCCUPIED_WINS, [100, 100]), (Conflict.REF_WINS, [0, 100]), (Conflict.MOV_WINS, [100, 0])],
+    [
+        (ConflictRule.OCCUPIED_WINS, [100, 100]),
+        (ConflictRule.REF_WINS, [0, 100]),
+        (ConflictRule.MOV_WINS, [100, 0]),
+    ],
 )
 def test_a_conflict_is_settled_by_the_rule(rule, expected):
     assert fuse(row(0, 100), row(100, 0), Pose2(), rule).merged.cells.tolist() == [expected]

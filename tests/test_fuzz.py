@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from mapfiles import pgm
 from readers import READERS, SHAPES, SLOWER, reads
 
-from algorithms.common.display_text import visible
+from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import MapMergeError
 from algorithms.files import image_decoder as image
 
@@ -74,7 +74,7 @@ def test_any_file_is_read_or_refused_in_words(name, data):
         reader(bad)
     except MapMergeError as error:
         said = str(error)
-    assert visible(said) == said
+    assert show_hidden(said) == said
     assert len(said) < 1000
 
 

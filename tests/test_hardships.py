@@ -17,7 +17,7 @@ from algorithms.observations.observation import encounter
 from algorithms.simulator.buildings.building_types import BUILDINGS, build
 from algorithms.simulator.buildings.floor_plan import WALL
 from algorithms.simulator.changes import AROUND, rearranged, with_pillars
-from algorithms.simulator.path_planning import Drift
+from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.portable_random import stream
 from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import simulate
@@ -118,7 +118,7 @@ def test_another_floor_has_the_same_outer_walls_and_other_rooms(kind):
 
 
 def test_no_transform_lays_a_bent_map_on_a_straight_one_as_well_as_another_straight_one():
-    bent = Conditions(drift=Drift(bend=1.0))
+    bent = Conditions(drift=OdometryDrift(bend=1.0))
     straight = simulate("apartment", 2, (0.7, 0.7))
     curved = simulate("apartment", 2, (0.7, 0.7), conditions=(bent, Conditions(), Conditions()))
     assert curved.cases[0].truth_rms > straight.cases[0].truth_rms + 0.05

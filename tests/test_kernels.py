@@ -15,7 +15,7 @@ def test_the_work_is_covered_once_whatever_the_number_of_items(n, at_least):
         for item in range(start, stop):
             done[item] += 1
 
-    kernels.spread(work, n, at_least)
+    kernels.run_in_threads(work, n, at_least)
     assert done == [1] * n
 
 
@@ -27,7 +27,7 @@ def test_a_mistake_in_a_part_of_the_work_is_not_swallowed(monkeypatch):
             raise ValueError("in a thread")
 
     with pytest.raises(ValueError, match="in a thread"):
-        kernels.spread(work, 100)
+        kernels.run_in_threads(work, 100)
 
 
 def test_two_threads_may_share_the_cores_at_once():
@@ -36,7 +36,7 @@ def test_two_threads_may_share_the_cores_at_once():
     def caller():
         counts = []
         for _ in range(200):
-            kernels.spread(lambda start, stop: counts.append(stop - start), 50)
+            kernels.run_in_threads(lambda start, stop: counts.append(stop - start), 50)
         totals.append(sum(counts))
 
     callers = [threading.Thread(target=caller) for _ in range(4)]

@@ -14,8 +14,9 @@ from PIL import Image
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import read_case, write_observations
+from algorithms.files.case_folder import read_case
 from algorithms.files.map_file import read_map
+from algorithms.files.observation_file import write_observations
 from algorithms.maps.grid_map import FREE, OCCUPIED
 from algorithms.methods import registry as methods
 from algorithms.methods.registry import METHODS

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from wire import WireTab, until
 
-from algorithms.methods.spectra_method import PipelineConfig
+from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.spectra.candidates import CandidateConfig
 from app.drawing.scene.map_view import MapView
 from app.jobs import worker_pool as workers

@@ -8,8 +8,8 @@ import pytest
 
 from algorithms.common.errors import InputFileError
 from algorithms.common.pose import pose_error
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS, merge
-from algorithms.methods.steps import MergeResult
 from app.page.lesson.lesson_texts import (
     Exhibit,
     exhibit_case,

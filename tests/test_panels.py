@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from algorithms.common.errors import InputFileError
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import Truth, observations_to_bytes
 from algorithms.files.map_file import map_to_bytes
+from algorithms.files.observation_file import observations_to_bytes
+from algorithms.files.truth_file import Truth
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge, run
 from algorithms.methods.steps import CandidatesDetail, HoughDetail
 from app.model import chart_data as charts

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import Case
 from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS, run
-from algorithms.methods.steps import HoughDetail, MergeResult, RefineDetail, ShiftDetail, Step
+from algorithms.methods.steps import HoughDetail, RefineDetail, ShiftDetail, Step
 from algorithms.spectra.augmented_map import augment
 from algorithms.spectra.hough_spectra import hough_transform
 from app.drawing.palette import DARK, LIGHT, css

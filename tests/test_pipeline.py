@@ -8,10 +8,11 @@ from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.maps.grid_map import GridMap
-from algorithms.maps.map_fusion import Conflict
+from algorithms.maps.map_fusion import ConflictRule
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS, merge, run
-from algorithms.methods.spectra_method import PipelineConfig, RefineConfig
-from algorithms.methods.steps import CandidatesDetail, HoughDetail, MergeResult, RefineDetail, ShiftDetail
+from algorithms.methods.spectra_config import PipelineConfig, RefineConfig
+from algorithms.methods.steps import CandidatesDetail, HoughDetail, RefineDetail, ShiftDetail
 from algorithms.observations.search_window import WindowConfig
 from algorithms.optimisation.particle_swarm import SwarmConfig
 from algorithms.spectra.augmented_map import AugmentConfig
@@ -150,7 +151,7 @@ def stages_run_again(memo, config, seed=0):
     ("change", "again"),
     [
         ({}, set()),
-        ({"conflict": Conflict.REF_WINS}, {"fuse", "verdict"}),
+        ({"conflict": ConflictRule.REF_WINS}, {"fuse", "verdict"}),
         ({"verdict": VerdictConfig(accept_from=0.9)}, {"verdict"}),
         ({"swarm": replace(QUICK.swarm, omega=0.6)}, {"refine", "weigh", "fuse", "verdict"}),
         ({"window": WindowConfig(margin=0.3)}, {"search", "refine", "weigh", "fuse", "verdict"}),

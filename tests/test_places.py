@@ -10,15 +10,15 @@ import pytest
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
 from algorithms.maps.map_fusion import fuse
-from algorithms.verdict.contradictions import Conflicts, Place, find_conflicts
+from algorithms.verdict.contradictions import Contradiction, Contradictions, find_conflicts
 from app.drawing import grid_pixels as render
 from app.drawing.palette import DARK, LIGHT
 from app.drawing.scene.map_comparison import rings
 from app.model.contradiction_text import MOST_PLACES, summary, whose
 from app.page.panels.result_panel import places_html
 
-NOTHING = Conflicts(np.zeros((2, 2), bool), np.zeros((2, 2), bool), (), 0.0)
-WALL = Place(1.0, -2.0, 0.5, 3.0, 0.0)
+NOTHING = Contradictions(np.zeros((2, 2), bool), np.zeros((2, 2), bool), (), 0.0)
+WALL = Contradiction(1.0, -2.0, 0.5, 3.0, 0.0)
 
 
 def test_the_summary_counts_places_and_wall_and_says_where_there_is_none():

@@ -15,9 +15,10 @@ from algorithms.files.case_folder import Case, read_case
 from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
 from algorithms.methods.registry import METHODS, merge, run
 from algorithms.methods.steps import AnswersDetail, ProofDetail, ProvenDetail
-from algorithms.observations.search_window import BoxConfig
 from algorithms.optimisation import branch_and_bound as certificate
+from algorithms.optimisation import open_blocks
 from algorithms.optimisation.particle_swarm import SwarmConfig
+from algorithms.optimisation.search_box import BoxConfig
 from algorithms.spectra.augmented_map import AugmentConfig
 from algorithms.spectra.candidates import CandidateConfig
 
@@ -86,7 +87,7 @@ def test_the_value_of_the_optimum_is_never_below_the_swarms():
 
 
 def test_a_search_that_is_stopped_early_is_no_reason_to_accept(monkeypatch):
-    monkeypatch.setattr(certificate, "BATCH", 8)
+    monkeypatch.setattr(open_blocks, "BATCH", 8)
     monkeypatch.setattr(certificate, "NODES", 100)
     result = merge(REF, MOV, SEEN, config=replace(DEFAULT, proof=replace(DEFAULT.proof, patience=1)))
     assert not result.proven_optimal

@@ -13,10 +13,10 @@ import pytest
 import yaml
 
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import observations_from_bytes
 from algorithms.files.map_file import read_map
+from algorithms.files.observation_file import observations_from_bytes
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
-from algorithms.methods.steps import MergeResult
 from algorithms.verdict.decision import Outcome
 from app.model.merge_inputs import MergeInputs
 from app.page.panels.html_widgets import box

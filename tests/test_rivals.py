@@ -36,7 +36,7 @@ from algorithms.methods.baselines.feature_detectors import (
     describe,
 )
 from algorithms.methods.baselines.feature_matching import FeatureConfig, MatchConfig, agreeing, fit_covariance
-from algorithms.methods.baselines.overlap_error import Overlap
+from algorithms.methods.baselines.overlap_error import OverlapError
 from algorithms.methods.baselines.phase_correlation import DIRECTIONS, turn_correlation
 from algorithms.methods.registry import METHODS, merge, run
 from algorithms.methods.steps import MatchesDetail, ObservationDetail, TurnsDetail
@@ -218,7 +218,7 @@ def test_the_squared_error_is_told_turn_by_turn_and_the_best_turn_in_the_end():
 
 def test_the_error_of_a_map_on_itself_is_nothing_and_grows_with_every_step_away():
     same = picture(REF, 0.05, 0.5)
-    overlap = Overlap.of(same, same, 0.2, seed=0)
+    overlap = OverlapError.of(same, same, 0.2, seed=0)
     errors = [overlap.error(Pose2(step, 0.0, 0.0)) for step in (0.0, 0.05, 0.1, 0.2)]
     assert errors[0] == pytest.approx(0.0, abs=1e-9)
     assert errors == sorted(errors)
@@ -228,7 +228,7 @@ def test_the_error_of_a_map_on_itself_is_nothing_and_grows_with_every_step_away(
 @settings(max_examples=15)
 @given(x=st.floats(-0.15, 0.15), y=st.floats(-0.15, 0.15), turn=st.floats(-0.03, 0.03))
 def test_from_nearby_the_least_error_is_found_below_a_cell(x, y, turn):
-    overlap = Overlap.of(picture(REF, 0.05, 0.5), picture(MOV, 0.05, 0.5), 0.2, seed=0)
+    overlap = OverlapError.of(picture(REF, 0.05, 0.5), picture(MOV, 0.05, 0.5), 0.2, seed=0)
     start = Pose2(x, y, 0.0) @ T_REF_MOV @ Pose2(0.0, 0.0, turn)
     middle = overlap.points.mean(axis=0)
     x_off, y_off = (T_REF_MOV.apply(middle) - start.apply(middle)).tolist()

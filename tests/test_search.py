@@ -5,14 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from algorithms.observations.search_window import Box
 from algorithms.optimisation.monte_carlo import monte_carlo
 from algorithms.optimisation.optimiser import keep_inside
 from algorithms.optimisation.particle_swarm import SwarmConfig, settled_within, swarm
+from algorithms.optimisation.search_box import SearchBox
 
 OPTIMISERS = [swarm, monte_carlo]
 TOP = np.array([0.3, -0.2, 0.05])
-BOX = Box(np.array([-1.0, -1.0, -0.2]), np.array([1.0, 1.0, 0.2]), np.zeros(2))
+BOX = SearchBox(np.array([-1.0, -1.0, -0.2]), np.array([1.0, 1.0, 0.2]), np.zeros(2))
 SETTLED = settled_within(0.05)
 
 
@@ -95,7 +95,7 @@ def test_a_snapshot_is_not_touched_by_what_follows():
 
 
 def test_in_a_box_of_a_whole_turn_the_swarm_finds_a_top_across_the_seam():
-    box = Box(np.array([-0.1, -0.1, -np.pi]), np.array([0.1, 0.1, np.pi]), np.zeros(2))
+    box = SearchBox(np.array([-0.1, -0.1, -np.pi]), np.array([0.1, 0.1, np.pi]), np.zeros(2))
 
     def seam(poses):
         return np.cos(poses[:, 2] - 3.1) + 1
@@ -106,7 +106,7 @@ def test_in_a_box_of_a_whole_turn_the_swarm_finds_a_top_across_the_seam():
 
 @given(st.lists(st.tuples(*3 * [st.floats(-30, 30)]), min_size=1, max_size=5).map(np.array))
 def test_an_angle_that_runs_round_keeps_its_direction(poses):
-    box = Box(np.array([-1.0, -1.0, 0.0]), np.array([1.0, 1.0, 2 * np.pi]), np.zeros(2))
+    box = SearchBox(np.array([-1.0, -1.0, 0.0]), np.array([1.0, 1.0, 2 * np.pi]), np.zeros(2))
     inside = keep_inside(poses, box)
     assert np.allclose(np.cos(inside[:, 2]), np.cos(poses[:, 2]), atol=1e-9)
     assert np.all((inside[:, 2] >= 0) & (inside[:, 2] <= 2 * np.pi))

@@ -15,7 +15,7 @@ from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, GridMap
 from algorithms.methods.steps import AnswersDetail, ObservationDetail, ProofDetail, RefineDetail, Step
 from algorithms.observations.observation import Encounter, Observation
-from algorithms.observations.search_window import Box, WindowConfig, coupled_window
+from algorithms.observations.search_window import WindowConfig, coupled_window
 from algorithms.optimisation.optimiser import SearchState
 from app.jobs.job_thread import JobThread
 from app.jobs.runner import Runner
@@ -262,7 +262,7 @@ def test_the_first_iterations_of_the_swarm_are_told_slowest():
     def stay(index: int, iteration: int) -> float:
         zero = np.zeros((1, 3))
         state = SearchState(iteration, zero, zero[0, :1], zero, zero[0, :1], zero[0], 0.0)
-        box = Box(zero[0], zero[0], np.zeros(2))
+        box = SearchBox(zero[0], zero[0], np.zeros(2))
         return dwell(Step("refine", RefineDetail(index, 4, box, state), 0.0), 1.0, again=False)
 
     assert stay(0, 0) > stay(0, 5) > stay(0, 50) > stay(1, 0) > 0

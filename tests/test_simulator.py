@@ -16,12 +16,12 @@ from algorithms.common.pose import Pose2, pose_error, wrap_angle
 from algorithms.files.case_folder import read_case
 from algorithms.observations.observation import bilateral_transform, encounter
 from algorithms.simulator.buildings.building_types import BUILDINGS, build
-from algorithms.simulator.buildings.floor_plan import AIR, DARK, WALL, Building, Canvas
+from algorithms.simulator.buildings.floor_plan import AIR, DARK, WALL, Building, FloorPlan
 from algorithms.simulator.lidar import Lidar, first_hit, scan, sees, true_ranges
-from algorithms.simulator.path_planning import STEP, Planner
+from algorithms.simulator.path_planning import STEP, PathPlanner
 from algorithms.simulator.portable_random import COSINES, SINES, TRIG_GRID, TURN, normals, radians, stream
 from algorithms.simulator.robot import drive, make_body
-from algorithms.simulator.room_tours import Surveyor
+from algorithms.simulator.room_tours import TourPlanner
 from algorithms.simulator.samples import DESCRIPTIONS, SAMPLES, case_files, generate_cases, write_case
 from algorithms.simulator.scenario import Scenario, simulate
 from algorithms.simulator.sighting import APART, FURTHEST, NEAREST, measured_overlap
@@ -42,11 +42,11 @@ def flat() -> Scenario:
 @pytest.fixture(scope="module")
 def two_rooms() -> Building:
     """Two rooms of 5 m x 5 m side by side, without a door, and a stop in each corner of the left."""
-    canvas = Canvas(11.2, 6.2, 0.025)
-    canvas.outline(0.6, 0.6, 5.6, 5.6, 0.2)
-    canvas.outline(5.6, 0.6, 10.6, 5.6, 0.2)
-    canvas.stops += [(1.6, 1.6), (4.6, 1.6), (4.6, 4.6), (1.6, 4.6)]
-    return canvas.finish("two rooms")
+    plan = FloorPlan(11.2, 6.2, 0.025)
+    plan.outline(0.6, 0.6, 5.6, 5.6, 0.2)
+    plan.outline(5.6, 0.6, 10.6, 5.6, 0.2)
+    plan.stops += [(1.6, 1.6), (4.6, 1.6), (4.6, 4.6), (1.6, 4.6)]
+    return plan.finish("two rooms")
 
 
 @pytest.fixture(scope="module")
@@ -144,12 +144,12 @@ def test_range_to_a_straight_wall_is_exact(two_rooms):
 
 
 def test_glass_returns_few_beams_and_open_space_none():
-    canvas = Canvas(20, 20, 0.05)
-    canvas.box(12, 0, 13, 20, DARK)
+    plan = FloorPlan(20, 20, 0.05)
+    plan.box(12, 0, 13, 20, DARK)
     lidar = Lidar(beams=2000, field=30, reach=8, lost=0.0, lost_on_dark=0.8)
     poses = np.array([[10.0, 10.0]]), np.array([0])
-    towards = scan(canvas.finish("glass"), *poses, lidar, stream(0, "test")).ranges
-    away = scan(canvas.finish("glass"), poses[0], poses[1] + TURN // 2, lidar, stream(0, "test"))
+    towards = scan(plan.finish("glass"), *poses, lidar, stream(0, "test")).ranges
+    away = scan(plan.finish("glass"), poses[0], poses[1] + TURN // 2, lidar, stream(0, "test"))
     assert 0.75 < np.isnan(towards).mean() < 0.85
     assert np.isinf(away.ranges).all()
 
@@ -160,7 +160,7 @@ def test_glass_returns_few_beams_and_open_space_none():
 @pytest.mark.parametrize("kind", KINDS)
 def test_robots_keep_off_the_walls_and_step_evenly(kind):
     building = build(kind, 2)
-    planner = Planner(building)
+    planner = PathPlanner(building)
     track = planner.drive(list(range(0, len(planner.stops), 2)))
     room = ndimage.distance_transform_edt(~building.solid) * building.resolution
     cols, rows = (track.xy / building.resolution).astype(int).T
@@ -197,9 +197,9 @@ def test_a_map_shows_the_building_and_nothing_else(flat):
 
 
 def test_what_no_beam_touched_stays_unknown(two_rooms):
-    planner = Planner(two_rooms)
+    planner = PathPlanner(two_rooms)
     body = make_body("R1", 0, "test", reach=9.0, resolution=0.05)
-    tour = Surveyor(two_rooms, planner, 9.0).tour([0, 1, 2, 3], 0)
+    tour = TourPlanner(two_rooms, planner, 9.0).tour([0, 1, 2, 3], 0)
     robot = drive(two_rooms, planner, tour, body)
     T_robot_world = Pose2(*body.shift.tolist(), radians(body.turn))
     x, y = np.meshgrid(np.arange(0.9, 10.4, 0.1), np.arange(0.9, 5.4, 0.1))

@@ -12,15 +12,15 @@ from proofs import proof_state
 
 from algorithms.common.pose import Pose2
 from algorithms.methods.steps import ProvenDetail, RefineDetail, Step
-from algorithms.observations.search_window import Box
 from algorithms.optimisation.optimiser import SearchState
+from algorithms.optimisation.search_box import SearchBox
 from algorithms.optimisation.subcell_peak import Peak
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import DARK, LIGHT
 from app.drawing.scene.swarm_view import SwarmView, in_box, proven_optimum
 from app.model.run_state import RunState
 
-BOX = Box(np.array([2.0, 3.0, 1.0]), np.array([4.0, 5.0, 1.2]), np.array([30.0, -7.0]))
+BOX = SearchBox(np.array([2.0, 3.0, 1.0]), np.array([4.0, 5.0, 1.2]), np.array([30.0, -7.0]))
 inner = st.tuples(st.floats(2.0, 4.0), st.floats(3.0, 5.0), st.floats(1.0, 1.2))
 
 
@@ -58,7 +58,7 @@ def test_an_optimum_outside_of_it_stands_on_the_border_and_says_how_far_it_is(tu
 
 
 def test_a_turn_is_taken_to_the_side_of_the_box_that_is_nearer():
-    across = Box(np.array([0, 0, pi - 0.1]), np.array([1, 1, pi + 0.1]), np.zeros(2))
+    across = SearchBox(np.array([0, 0, pi - 0.1]), np.array([1, 1, pi + 0.1]), np.zeros(2))
     assert in_box(Pose2(0.5, 0.5, -pi + 0.05), across)[2] == pytest.approx(pi + 0.05)
     assert shown(BOX.transform(BOX.centre + (0, 0, radians(178))))[2]["t"].startswith("0.0 m and 178°")
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.verdict.cell_agreement import AGREES, CONTRADICTS, SILENT, Walls
+from algorithms.verdict.cell_agreement import AGREES, CONTRADICTS, SILENT, WallLookup
 
 
 def room(origin: Pose2 = Pose2()) -> GridMap:  # noqa: B008 - it is frozen
@@ -20,12 +20,12 @@ def room(origin: Pose2 = Pose2()) -> GridMap:  # noqa: B008 - it is frozen
 
 
 def test_a_map_agrees_with_itself_everywhere():
-    walls = Walls(room())
+    walls = WallLookup(room())
     assert (walls.told(walls, Pose2()) == AGREES).all()
 
 
 def test_a_wall_in_free_floor_is_contradicted_and_one_in_the_unknown_is_not():
-    walls = Walls(room())
+    walls = WallLookup(room())
     told = walls.told(walls, Pose2(1.0, 0.0))
     rows, cols = walls.cells
     inside = (cols == 5) & (rows > 8) & (rows < 31)
@@ -35,9 +35,9 @@ def test_a_wall_in_free_floor_is_contradicted_and_one_in_the_unknown_is_not():
 
 @given(st.floats(-20, 20), st.floats(-20, 20), st.floats(-3, 3))
 def test_nothing_is_told_where_the_maps_do_not_meet_and_frames_do_not_matter(x, y, theta):
-    far = Walls(room())
+    far = WallLookup(room())
     assert (far.told(far, Pose2(x + 100, y, theta)) == SILENT).all()
     origin = Pose2(x, y, theta)
-    moved = Walls(room(origin))
+    moved = WallLookup(room(origin))
     assert (far.told(moved, origin) == AGREES).all()
     assert (moved.told(far, origin.inverse()) == AGREES).all()

@@ -20,7 +20,7 @@ from algorithms.maps.grid_map import UNKNOWN
 from algorithms.methods.refusal_causes import NO_SWARM
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
 from algorithms.observations.observation import Observation, encounter
-from algorithms.simulator.scenario import Case, simulate
+from algorithms.simulator.scenario import SimulatedCase, simulate
 from algorithms.simulator.wrong_pairs import mismatch
 from algorithms.verdict.wall_map import SAME_WALL
 
@@ -38,7 +38,7 @@ LITTLE = 0.01
 
 
 @cache
-def cases_of(kind: str, seed: int, overlap: float) -> tuple[Case, ...]:
+def cases_of(kind: str, seed: int, overlap: float) -> tuple[SimulatedCase, ...]:
     return simulate(kind, seed, overlap, resolutions=(0.05, 0.05, 0.05), sightings=2).cases
 
 
@@ -58,7 +58,7 @@ def building(request) -> tuple[str, int, float]:
 
 
 @pytest.fixture
-def case(building) -> Case:
+def case(building) -> SimulatedCase:
     return cases_of(*building)[0]
 
 

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mapfiles import header, pgm
 
-from algorithms.common.display_text import visible
+from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError, NoAnswerError, OutputError, SettingError, TooLargeError
 from algorithms.files.map_file import map_from_bytes, map_to_bytes
 from algorithms.maps.grid_map import GridMap
@@ -31,14 +31,14 @@ def shows_well(text: str) -> bool:
 
 @given(strange)
 def test_any_text_becomes_one_that_shows_all_it_holds(text):
-    assert shows_well(visible(text))
-    assert visible(visible(text)) == visible(text)
-    assert all(f"[U+{ord(char):04X}]" in visible(text) for char in set(text) & set(ODD))
+    assert shows_well(show_hidden(text))
+    assert show_hidden(show_hidden(text)) == show_hidden(text)
+    assert all(f"[U+{ord(char):04X}]" in show_hidden(text) for char in set(text) & set(ODD))
 
 
 @given(st.text(string.ascii_letters + string.punctuation + " äß山й🗺", max_size=40))
 def test_a_text_without_anything_hidden_stays_as_it_is(text):
-    assert visible(text) == text
+    assert show_hidden(text) == text
 
 
 @given(strange)
@@ -59,7 +59,7 @@ def test_no_error_says_anything_hidden_here_or_in_another_process(text):
 def test_a_map_s_name_is_shown_with_what_is_hidden_in_it(name):
     shown = map_from_bytes(f"{name}.yaml", header(), "m.pgm", pgm([[0]])).name
     assert shows_well(shown)
-    assert shown == visible(name)
+    assert shown == show_hidden(name)
 
 
 def test_the_image_that_is_asked_for_is_named_the_way_it_reads():

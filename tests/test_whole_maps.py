@@ -18,7 +18,7 @@ from algorithms.methods.registry import METHODS, merge
 from algorithms.observations.observation import encounter
 from algorithms.observations.search_window import WindowConfig, coupled_window
 from algorithms.optimisation.particle_swarm import SwarmConfig
-from algorithms.simulator.path_planning import Drift
+from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import simulate
 from algorithms.verdict.probability_model import shipped_model
@@ -110,7 +110,7 @@ def test_what_the_whole_maps_say_does_not_depend_on_the_number_of_threads(monkey
 @pytest.fixture(scope="module")
 def bent_case():
     """An office whose second robot bends a straight wall of 15 m by up to a metre."""
-    straight, bent = Conditions(), Conditions(drift=Drift(bend=1.0))
+    straight, bent = Conditions(), Conditions(drift=OdometryDrift(bend=1.0))
     return simulate("office", 13, (0.7, 0.7), conditions=(bent, straight, straight)).cases[0]
 
 

@@ -10,16 +10,14 @@ from hypothesis import strategies as st
 from algorithms.common.pose import Pose2, pose_error, rotation
 from algorithms.observations.observation import encounter
 from algorithms.observations.search_window import (
-    Box,
-    BoxConfig,
     CoupledWindow,
     Window,
     WindowConfig,
-    box_around,
     coupled_window,
     paper_window,
     shift_window,
 )
+from algorithms.optimisation.search_box import BoxConfig, SearchBox, box_around
 
 in_flat = st.builds(Pose2, st.floats(0, 9), st.floats(0, 7), angles)
 several = st.lists(st.tuples(in_flat, in_flat), min_size=1, max_size=3)
@@ -77,7 +75,7 @@ def test_a_worse_sighting_makes_a_wider_window():
 @given(poses, lengths, lengths)
 def test_box_coordinates_of_a_transform_give_that_transform_back(T_ref_mov, x, y):
     pivot = np.array([x, y])
-    box = Box(np.zeros(3), np.ones(3), pivot)
+    box = SearchBox(np.zeros(3), np.ones(3), pivot)
     coordinates = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
     distance, angle = pose_error(box.transform(coordinates), T_ref_mov, pivot)
     assert distance < 1e-6

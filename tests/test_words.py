@@ -10,8 +10,9 @@ import pytest
 from proofs import proof_state
 
 from algorithms.common.pose import Pose2
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS, run
-from algorithms.methods.steps import MergeResult, ProofDetail, ProvenDetail, Step
+from algorithms.methods.steps import ProofDetail, ProvenDetail, Step
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.verdict.decision import Outcome
 from app.model import status_text as words

@@ -22,7 +22,8 @@ from wire import until
 from algorithms.common.errors import NoAnswerError, SettingError
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, GridMap
-from algorithms.methods.manual_merge import Scales, refine
+from algorithms.methods.manual_merge import ManualMerge, refine
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
 from algorithms.methods.steps import MergeResult, ObservationDetail, Step
 from app.jobs.incremental_pickle import IncrementalPickle
@@ -164,7 +165,7 @@ def test_a_run_aside_leaves_the_next_one_what_it_knew(bench, job):
 
 def test_a_refinement_by_hand_runs_there_too(bench, job):
     at = end(told(bench, job)).T_ref_mov
-    scales = Scales(job.ref, job.mov, job.observations, METHODS[job.method].defaults)
+    scales = ManualMerge(job.ref, job.mov, job.observations, METHODS[job.method].defaults)
     steps = told(bench, replace(job, steps=partial(refine, scales, at, 0)))
     assert end(steps).T_ref_mov == end(list(refine(scales, at, 0))).T_ref_mov
 

@@ -9,7 +9,7 @@ import re
 HIDDEN = re.compile(r"[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 
 
-def visible(text: str) -> str:
+def show_hidden(text: str) -> str:
     """The text on one line, with each hidden character as its number: ``[U+202E]``.
 
     A text that went through this stays as it is.

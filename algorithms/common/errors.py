@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from algorithms.common.display_text import visible
+from algorithms.common.display_text import show_hidden
 
 
 class MapMergeError(Exception):
@@ -12,7 +12,7 @@ class MapMergeError(Exception):
     """
 
     def __init__(self, message: str) -> None:
-        super().__init__(visible(message))
+        super().__init__(show_hidden(message))
 
 
 class InputFileError(MapMergeError):
@@ -24,7 +24,7 @@ class InputFileError(MapMergeError):
     """
 
     def __init__(self, source: object, found: str, remedy: str) -> None:
-        self.source, self.found, self.remedy = visible(str(source)), visible(found), visible(remedy)
+        self.source, self.found, self.remedy = map(show_hidden, (str(source), found, remedy))
         super().__init__(f"{source}: {found}; {remedy}")
 
     def __reduce__(self) -> tuple[type[InputFileError], tuple[str, str, str]]:

@@ -112,7 +112,7 @@ def _pool() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(max_workers=cores(), thread_name_prefix="mapmeld-kernel")
 
 
-def spread(work: Callable[[int, int], None], n: int, at_least: int = 1) -> None:
+def run_in_threads(work: Callable[[int, int], None], n: int, at_least: int = 1) -> None:
     """Call ``work(start, stop)`` so that the calls cover [0, n), on all threads.
 
     at_least : items below which another thread does not pay

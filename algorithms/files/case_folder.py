@@ -1,73 +1,21 @@
-"""The files about a pair of maps: observations, truth of a test case, and the folder of a case."""
+"""A case: the folder with two maps, the sightings between them and, where it is known, the truth."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf, pi, radians
 from pathlib import Path
-from typing import Literal
 
-from algorithms.common.display_text import visible
-from algorithms.common.errors import InputFileError, SettingError, unreadable
-from algorithms.common.pose import Pose2
-from algorithms.files import yaml_fields as fields
-from algorithms.files.atomic_write import write_file
-from algorithms.files.map_file import read_bytes, read_map
-from algorithms.files.yaml_fields import Fields, number_text, quoted
+from algorithms.common.display_text import show_hidden
+from algorithms.common.errors import InputFileError, unreadable
+from algorithms.files.map_file import read_map
+from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, read_observations
+from algorithms.files.truth_file import TRUTH_FILE, Truth, read_truth
 from algorithms.maps.grid_map import GridMap
-from algorithms.observations.observation import (
-    MOST_RANGE,
-    SIGMA_BEARING,
-    SIGMA_BEARINGS,
-    SIGMA_RANGE,
-    SIGMA_RANGES,
-    Observation,
-)
+from algorithms.observations.observation import Observation
 
-OBSERVATION_FILE = "observation.yaml"
-ROUGH_OBSERVATION_FILE = "observation_rough.yaml"
-TRUTH_FILE = "truth.yaml"
 FIRST_MAP_FILE = "map1.yaml"
 SECOND_MAP_FILE = "map2.yaml"
-
-MOST_OBSERVATIONS = 64  # of one pair; their YAML stays far below what the parser takes
-
-OBSERVER_POSE = "give [x, y, yaw] of robot 1 in map 1; m, m, rad"
-OBSERVED_POSE = "give [x, y] or [x, y, yaw] of robot 2 in map 2; m, m, rad"
-
-
-@dataclass(frozen=True)
-class Truth:
-    """The known answer of a test case.
-
-    T_ref_mov     : takes points of map 2's frame to map 1's; None where the maps share no place
-    tolerance_m   : metres; how near counts as right, at the observed robot
-    tolerance_rad : radians
-    expected      : what a merge should end with
-    overlap       : share of the smaller map's occupied cells that both maps hold; None: not known
-    truth_rms     : metres; residual of the truth itself; None: not known
-    """
-
-    T_ref_mov: Pose2 | None
-    tolerance_m: float = 0.5
-    tolerance_rad: float = radians(3)
-    expected: Literal["merge", "refuse"] = "merge"
-    overlap: float | None = None
-    truth_rms: float | None = None
-    source: str = ""
-    licence: str = ""
-
-    def __post_init__(self) -> None:
-        if self.expected == "merge" and self.T_ref_mov is None:
-            raise SettingError("truth: a case that should merge needs its T_ref_mov")
-        if not (self.tolerance_m > 0 and self.tolerance_rad > 0):
-            raise SettingError("truth: both tolerances must be positive")
-
-    def allows(self, distance: float, angle: float) -> bool:
-        """Whether a transform that is off by so much is right; metres at the observed robot, radians."""
-        return distance <= self.tolerance_m and angle <= self.tolerance_rad
 
 
 @dataclass(frozen=True, eq=False)
@@ -249,7 +197,7 @@ def read_case(folder: Path | str, rough: bool = False) -> Case:
     observation_file = ROUGH_OBSERVATION_FILE if rough else OBSERVATION_FILE
     truth_path = folder / TRUTH_FILE
     return Case(
-        name=visible(folder.resolve().name),
+        name=show_hidden(folder.resolve().name),
         ref=read_map(folder / FIRST_MAP_FILE),
         mov=read_map(folder / SECOND_MAP_FILE),
         observations=read_observations(folder / observation_file),
@@ -280,33 +228,3 @@ def case_folders(root: Path) -> list[Path]:
             f"a case is a folder of {FIRST_MAP_FILE}, {SECOND_MAP_FILE} and {OBSERVATION_FILE}",
         )
     return folders
-
-
-def _bearing(f: Fields, key: str, remedy: str) -> float:
-    value = f.number(key, remedy)
-    if abs(value) > 2 * pi:
-        raise f.error(key, f"is {value:g} rad, more than a whole turn", "it looks like degrees: give radians")
-    return value
-
-
-def _optional(f: Fields, key: str, remedy: str) -> float | None:
-    return f.number(key, remedy) if key in f.values else None
-
-
-def _positive(
-    f: Fields, key: str, unit: str, default: float, limits: tuple[float, float] = (0.0, inf)
-) -> float:
-    value = _optional(f, key, f"give a positive number of {unit}, or leave it out")
-    if value is None:
-        return default
-    if value <= 0:
-        raise f.error(key, f"is {value:g} {unit}", "it must be positive; or leave it out")
-    low, high = limits
-    if not low <= value <= high:
-        remedy = f"it must be {low:g} to {high:.5g} {unit}; or leave it out"
-        raise f.error(key, f"is {value:g} {unit}", remedy)
-    return value
-
-
-def _list(numbers: list[float]) -> str:
-    return f"[{', '.join(number_text(number) for number in numbers)}]"

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path, PurePath
 from typing import BinaryIO
 
-from algorithms.common.display_text import visible
+from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError, OutputError, SettingError, unreadable
 from algorithms.common.pose import Pose2
 from algorithms.files import yaml_fields as fields
@@ -258,7 +258,7 @@ def _read_image(path: Path, meta: MapMeta, name: str) -> GridMap:
 
 def _to_map(source: str, stream: BinaryIO, meta: MapMeta, name: str) -> GridMap:
     cells, told = GreyImage(*read_pixels(source, stream)).read(meta.shading)
-    return GridMap(cells, meta.resolution, meta.origin, visible(name) or "map", told)
+    return GridMap(cells, meta.resolution, meta.origin, show_hidden(name) or "map", told)
 
 
 def _opened(data: bytes | BinaryIO) -> BinaryIO:

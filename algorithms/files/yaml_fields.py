@@ -222,6 +222,30 @@ def _mapping(source: str, values: Any, what: str) -> Fields:
     return Fields(source, values)
 
 
+def optional_number(f: Fields, key: str, remedy: str) -> float | None:
+    """A finite number, or None where the key is missing."""
+    return f.number(key, remedy) if key in f.values else None
+
+
+def positive_number(
+    f: Fields, key: str, unit: str, default: float, limits: tuple[float, float] = (0.0, math.inf)
+) -> float:
+    """A number above 0 and within the limits, or the default where the key is missing.
+
+    unit : of the number, as an error message names it
+    """
+    value = optional_number(f, key, f"give a positive number of {unit}, or leave it out")
+    if value is None:
+        return default
+    if value <= 0:
+        raise f.error(key, f"is {value:g} {unit}", "it must be positive; or leave it out")
+    low, high = limits
+    if not low <= value <= high:
+        remedy = f"it must be {low:g} to {high:.5g} {unit}; or leave it out"
+        raise f.error(key, f"is {value:g} {unit}", remedy)
+    return value
+
+
 def as_number(value: Any) -> float | None:
     """The finite number that a text stands for, or None."""
     if not isinstance(value, str) or "_" in value:  # Python reads 1_0 as 10; Nav2 does not

@@ -8,7 +8,7 @@ from math import ceil, cos, floor, sin
 
 import numpy as np
 
-from algorithms.common.parallel_kernels import kernel, spread
+from algorithms.common.parallel_kernels import kernel, run_in_threads
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import (
     FREE,
@@ -25,7 +25,7 @@ from algorithms.maps.robots import NOWHERE, Robots
 SAME_PLACE = 0.12  # metres; a wall that both maps show so near to each other is one, and no robot
 
 
-class Conflict(str, Enum):
+class ConflictRule(str, Enum):
     """Which map is believed where one says wall and the other says free."""
 
     OCCUPIED_WINS = "occupied-wins"  # no robot drives into a wall that only one robot saw
@@ -68,7 +68,7 @@ def fuse(
     ref: GridMap,
     mov: GridMap,
     T_ref_mov: Pose2,
-    conflict: Conflict = Conflict.OCCUPIED_WINS,
+    conflict: ConflictRule = ConflictRule.OCCUPIED_WINS,
     robots: Robots = NOWHERE,
 ) -> Fusion:
     """Merge two maps under a transform.
@@ -113,7 +113,9 @@ def fuse(
         for other, own, places in ((mov_cells, ref_cells, robots.in_ref), (ref_cells, mov_cells, mov_places))
     )
     merged = np.empty(shape, dtype=np.int8)
-    agreed_free, agreed_walls, conflicting = _merge(ref_cells, mov_cells, merged, [*Conflict].index(conflict))
+    agreed_free, agreed_walls, conflicting = _merge(
+        ref_cells, mov_cells, merged, [*ConflictRule].index(conflict)
+    )
     return Fusion(
         merged=GridMap(merged, cell, corner, "merged"),
         ref_cells=ref_cells,
@@ -158,7 +160,7 @@ def _look_up(source: GridMap, T_source_target: Pose2, cell: float, target: CellA
     def work(start: int, stop: int) -> None:
         _look_up_rows(source.cells, c, s, x, y, start, stop, target)
 
-    spread(work, len(target), at_least=1 + 1_000_000 // target.shape[1])
+    run_in_threads(work, len(target), at_least=1 + 1_000_000 // target.shape[1])
 
 
 @kernel

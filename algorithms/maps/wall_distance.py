@@ -38,7 +38,7 @@ def distances(reach: int) -> Float32Array:
     return np.sqrt((along[:, None] ** 2 + along**2).astype(np.float32))
 
 
-def stamp(walls: BoolArray, disc: KindArray, ground: KindArray) -> None:
+def mark_near_walls(walls: BoolArray, disc: KindArray, ground: KindArray) -> None:
     """Mark what is around the walls.
 
     walls  : (H, W) bool
@@ -49,18 +49,20 @@ def stamp(walls: BoolArray, disc: KindArray, ground: KindArray) -> None:
     reach = len(disc) // 2
     down, right = np.nonzero(disc)
     rows, cols = where(walls)
-    _stamp(walls, rows, cols, down - reach, right - reach, disc[down, right], disc[reach, reach], ground)
+    _mark_near_walls(
+        walls, rows, cols, down - reach, right - reach, disc[down, right], disc[reach, reach], ground
+    )
 
 
-def near(walls: BoolArray, disc: BoolArray) -> BoolArray:
+def is_near_wall(walls: BoolArray, disc: BoolArray) -> BoolArray:
     """(H, W) whether there is a wall within the disc around a cell."""
     ground = np.zeros(walls.shape, dtype=np.uint8)
-    stamp(walls, disc.astype(np.uint8), ground)
+    mark_near_walls(walls, disc.astype(np.uint8), ground)
     return ground.view(np.bool_)
 
 
 @kernel
-def _stamp(
+def _mark_near_walls(
     walls: BoolArray,
     rows: NDArray[np.intp],
     cols: NDArray[np.intp],

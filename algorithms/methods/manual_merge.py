@@ -14,25 +14,17 @@ from algorithms.common.errors import SettingError
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
-from algorithms.methods.merge_result import conclude
-from algorithms.methods.spectra_method import (
+from algorithms.methods.merge_result import Answer, MergeResult, finish_merge
+from algorithms.methods.spectra_config import PipelineConfig
+from algorithms.methods.spectra_stages import (
     OPTIMISERS,
-    PipelineConfig,
     augment_both,
     covariance_at,
     objective_of,
     whole_maps_of,
 )
-from algorithms.methods.stage_runner import Chain
-from algorithms.methods.steps import (
-    Answer,
-    AnswersDetail,
-    Detail,
-    MergeResult,
-    ObservationDetail,
-    RefineDetail,
-    Step,
-)
+from algorithms.methods.stage_runner import StageRunner
+from algorithms.methods.steps import AnswersDetail, Detail, ObservationDetail, RefineDetail, Step
 from algorithms.observations.observation import (
     Encounter,
     Observation,
@@ -40,11 +32,12 @@ from algorithms.observations.observation import (
     encounters_of,
     robots_of,
 )
-from algorithms.observations.search_window import Box, CoupledWindow, WindowConfig, coupled_window
+from algorithms.observations.search_window import CoupledWindow, WindowConfig, coupled_window
 from algorithms.optimisation.likelihood_field import AgreementConfig
 from algorithms.optimisation.objective import Lookup, Objective
 from algorithms.optimisation.particle_swarm import settled_within
-from algorithms.optimisation.subcell_peak import peak_at, polish
+from algorithms.optimisation.search_box import SearchBox
+from algorithms.optimisation.subcell_peak import climb_to_peak, peak_at
 from algorithms.verdict.probability_model import shipped_model
 from algorithms.verdict.ranking import Weighed, better_beside, elsewhere, weigh
 from algorithms.verdict.whole_maps import WholeMaps, make_whole_maps
@@ -55,7 +48,7 @@ UNSURE = np.diag([1.0, 1.0, radians(5)]) ** 2  # (3, 3) of a method without an o
 
 
 @dataclass(frozen=True, eq=False)
-class Scales:
+class ManualMerge:
     """Two maps and their sightings, on which any transform can be weighed.
 
     config : of a method of the table
@@ -68,9 +61,9 @@ class Scales:
     config: Any
     others: tuple[Weighed, ...] = ()
 
-    def __reduce__(self) -> tuple[type[Scales], tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[type[ManualMerge], tuple[Any, ...]]:
         """What travels to another process: nothing that was worked out here."""
-        return Scales, (self.ref, self.mov, self.observations, self.config, self.others)
+        return ManualMerge, (self.ref, self.mov, self.observations, self.config, self.others)
 
     def __post_init__(self) -> None:
         if not self.observations:
@@ -100,18 +93,18 @@ class Scales:
         raises : TooLargeError where the merged map would be over the bound
         """
         fusion = self.fused(T_ref_mov)
-        return self._conclude(T_ref_mov, fusion, answers, seed)
+        return self._finish(T_ref_mov, fusion, answers, seed)
 
     def fused(self, T_ref_mov: Pose2) -> Fusion:
         """Both maps merged under a transform."""
         robots = robots_of(self.encounters, self.config.verdict.robot_size)
         return fuse(self.ref, self.mov, T_ref_mov, self.config.conflict, robots)
 
-    def _conclude(self, T: Pose2, fusion: Fusion, answers: tuple[Answer, ...], seed: int) -> MergeResult:
+    def _finish(self, T: Pose2, fusion: Fusion, answers: tuple[Answer, ...], seed: int) -> MergeResult:
         value, model = self.value(T), shipped_model()
         named = weigh(self.whole, T, model)
         rivals = elsewhere(self.whole, named, self.others, *ELSEWHERE)
-        return conclude(
+        return finish_merge(
             named,
             (*better_beside(self.whole, named, model), *rivals),
             fusion,
@@ -145,13 +138,13 @@ class Scales:
         """The coupled window, but without an end: a person may know better than the sighting."""
         return replace(coupled_window(self.encounters, self.config.window), k=inf)
 
-    def box(self, T_ref_mov: Pose2) -> Box:
+    def box(self, T_ref_mov: Pose2) -> SearchBox:
         """The optimiser's box around a transform, eqs. (18)–(20), not cut to any window."""
         margins = self.config.box
         half = np.array([margins.sigma_x, margins.sigma_y, radians(margins.sigma_theta)])
         pivot = self.encounters[0].x_mov
         centre = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
-        return Box(centre - half, centre + half, pivot)
+        return SearchBox(centre - half, centre + half, pivot)
 
 
 def known_answers(result: MergeResult | None) -> tuple[Weighed, ...]:
@@ -159,8 +152,8 @@ def known_answers(result: MergeResult | None) -> tuple[Weighed, ...]:
     return () if result is None or result.method == BY_HAND else result.weighed
 
 
-def refine(scales: Scales, T_ref_mov: Pose2, seed: int = 0) -> Iterator[Step]:
-    """Yield the steps of the method's own optimiser in a box around a transform, then of a polish.
+def refine(scales: ManualMerge, T_ref_mov: Pose2, seed: int = 0) -> Iterator[Step]:
+    """Yield the steps of the method's own optimiser in a box around a transform, then climb to the peak.
 
     The last step's detail is the MergeResult; its answer is worth no less than ``T_ref_mov``.
 
@@ -169,23 +162,23 @@ def refine(scales: Scales, T_ref_mov: Pose2, seed: int = 0) -> Iterator[Step]:
     objective = scales.objective
     if objective is None:
         raise SettingError("this method maximises nothing; choose one that does, then refine")
-    chain = Chain({})
-    yield from chain.stage("observe", (), lambda: [ObservationDetail(scales.encounters)])
-    found: AnswersDetail = yield from chain.stage(
+    runner = StageRunner({})
+    yield from runner.stage("observe", (), lambda: [ObservationDetail(scales.encounters)])
+    found: AnswersDetail = yield from runner.stage(
         "refine", (), lambda: _search(scales, objective, T_ref_mov, seed)
     )
     best = found.answers[0].T_ref_mov
-    fusion: Fusion = yield from chain.stage("fuse", (), lambda: [scales.fused(best)])
-    yield from chain.stage(
-        "verdict", (), lambda: [_timed(scales._conclude(best, fusion, found.answers, seed), chain)]
+    fusion: Fusion = yield from runner.stage("fuse", (), lambda: [scales.fused(best)])
+    yield from runner.stage(
+        "verdict", (), lambda: [_timed(scales._finish(best, fusion, found.answers, seed), runner)]
     )
 
 
-def _timed(result: MergeResult, chain: Chain) -> MergeResult:
-    return replace(result, timings_s=chain.timings_s)
+def _timed(result: MergeResult, runner: StageRunner) -> MergeResult:
+    return replace(result, timings_s=runner.timings_s)
 
 
-def _search(scales: Scales, objective: Objective, T: Pose2, seed: int) -> Iterator[Detail]:
+def _search(scales: ManualMerge, objective: Objective, T: Pose2, seed: int) -> Iterator[Detail]:
     config, box = scales.config, scales.box(T)
     rng = np.random.default_rng([seed, 2])
 
@@ -199,7 +192,7 @@ def _search(scales: Scales, objective: Objective, T: Pose2, seed: int) -> Iterat
     searched = Answer(box.transform(state.best), state.best_value, state.stopped or "")
     start = max(searched, begun, key=lambda answer: answer.value)
     smooth = replace(objective, lookup=Lookup.BILINEAR)
-    peak = polish(smooth, start.T_ref_mov, scales.window, config.augment.spread)
+    peak = climb_to_peak(smooth, start.T_ref_mov, scales.window, config.augment.spread)
     polished = Answer(peak.T_ref_mov, float(objective(peak.T_ref_mov.array()[None])[0]), "polished")
     answers: Sequence[Answer] = sorted((polished, searched, begun), key=lambda answer: -answer.value)
     yield AnswersDetail(tuple(answers))

@@ -1,19 +1,74 @@
-"""The end of every way to a transform, a person's hand among them: the walls weighed, the verdict."""
+"""What a merge ends with: the answer, all that is needed to report it, and the function that judges it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
-from algorithms.common.pose import FloatArray
+from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.map_fusion import Fusion
-from algorithms.methods.steps import Answer, MergeResult
 from algorithms.observations.observation import Encounter
 from algorithms.optimisation.branch_and_bound import ProofState
-from algorithms.verdict.decision import VerdictConfig, judge
+from algorithms.verdict.decision import Verdict, VerdictConfig, judge
 from algorithms.verdict.ranking import Weighed
 
 
-def conclude(
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """One transform that the search ended on, with its Γ and why the search ended there."""
+
+    T_ref_mov: Pose2
+    value: float
+    stopped: str
+
+
+@dataclass(frozen=True, eq=False)
+class MergeResult:
+    """The answer, and all that is needed to report it; detail of the last step, stage "verdict" or "explain".
+
+    T_ref_mov     : best transform found, also where the merge is refused
+    covariance    : (3, 3) of x, y, theta; metres and radians
+    value         : what the method's objective says of T_ref_mov: Γ, eq. (17), or metres of wall that
+                    agree; None for a method without an objective
+    encounters    : where robot 2 was seen, a place per sighting
+    answers       : everything the optimiser ended on, best first
+    weighed       : T_ref_mov and the other answers that may be right, as the whole maps weigh them
+    proof         : how the proof ended; None for a method without one
+    search_found_it : whether the optimiser had come to the proven answer; None without a proof
+    """
+
+    T_ref_mov: Pose2
+    covariance: FloatArray
+    value: float | None
+    verdict: Verdict
+    fusion: Fusion
+    encounters: tuple[Encounter, ...]
+    answers: tuple[Answer, ...]
+    method: str
+    seed: int
+    weighed: tuple[Weighed, ...] = ()
+    proof: ProofState | None = None
+    search_found_it: bool | None = None
+    timings_s: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def encounter(self) -> Encounter:
+        """The first sighting's place."""
+        return self.encounters[0]
+
+    def with_hint(self, hint: str) -> MergeResult:
+        """The same, a hint in its verdict."""
+        return replace(self, verdict=replace(self.verdict, hint=hint))
+
+    @property
+    def proven_optimal(self) -> bool:
+        """Whether no transform of the whole circle fits better near the encounter than the search's best,
+        which is the first of the answers; the whole maps may have moved it, or named another one.
+        """
+        return self.proof is not None and self.proof.proven
+
+
+def finish_merge(
     named: Weighed,
     others: Sequence[Weighed] | None,
     fusion: Fusion,

@@ -16,8 +16,10 @@ import numpy as np
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap, remarks_on
-from algorithms.methods import spectra_method as pipeline
-from algorithms.methods.steps import CauseDetail, MergeResult, TriedDetail
+from algorithms.methods import spectra_method
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.spectra_config import PipelineConfig
+from algorithms.methods.steps import CauseDetail, TriedDetail
 from algorithms.observations import observation
 from algorithms.observations.observation import Observation, check_standing
 from algorithms.optimisation.particle_swarm import SwarmConfig
@@ -100,7 +102,7 @@ def find_cause(
     ref: GridMap,
     mov: GridMap,
     observations: tuple[Observation, ...],
-    config: pipeline.PipelineConfig,
+    config: PipelineConfig,
 ) -> Iterator[TriedDetail | CauseDetail]:
     """Yield what is being tried, and at the end the cause, if one was found.
 
@@ -138,7 +140,7 @@ def _try(
     mov: GridMap,
     observations: Sequence[Observation],
     cause: Cause,
-    config: pipeline.PipelineConfig,
+    config: PipelineConfig,
 ) -> MergeResult | None:
     """What the default method makes of the maps after a change; None where that cannot be."""
     quick: Any = replace(config, swarm=NO_SWARM, proof=replace(config.proof, patience=PATIENCE))
@@ -146,7 +148,7 @@ def _try(
         changed = [cause.change(mov, o) for o in observations]
         grid, seen = changed[0][0], tuple(o for _, o in changed)
         check_standing(seen, ref, grid)
-        *_, last = pipeline.run(ref, grid, seen, quick)
+        *_, last = spectra_method.run(ref, grid, seen, quick)
     except MapMergeError:  # a robot off its map, or cells too fine: this was not the cause
         return None
     assert isinstance(last.detail, MergeResult)

@@ -26,9 +26,10 @@ from algorithms.methods.baselines.feature_detectors import (
     SurfConfig,
 )
 from algorithms.methods.baselines.feature_matching import FeatureConfig
-from algorithms.methods.spectra_method import PipelineConfig, RefineConfig
-from algorithms.methods.stage_runner import Memo
-from algorithms.methods.steps import CauseDetail, MergeResult, Step
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.spectra_config import PipelineConfig, RefineConfig
+from algorithms.methods.stage_runner import StageCache
+from algorithms.methods.steps import CauseDetail, Step
 from algorithms.observations.observation import Observation, as_observations, check_standing
 from algorithms.observations.search_window import WindowConfig
 from algorithms.optimisation.branch_and_bound import ProofConfig
@@ -104,7 +105,7 @@ METHODS: dict[str, Method] = {
         PipelineConfig(refine=RefineConfig(optimiser="none")),
         "paper",
     ),
-    "smm-only": Method(smm_only.run, "Spectra alone (Carpin)", smm_only.SmmConfig(), "rivals", False),
+    "smm-only": Method(smm_only.run, "Spectra alone (Carpin)", smm_only.CarpinConfig(), "rivals", False),
     "mse": Method(mse.run, "Least squared error (MSE)", mse.MseConfig(), "rivals", False),
     "harris": _features("Harris corners", HarrisConfig(), reach=1.0),
     "shi-tomasi": _features("Shi–Tomasi corners", ShiTomasiConfig(), reach=1.0),
@@ -124,7 +125,7 @@ def run(
     observations: Observation | Sequence[Observation],
     config: Any = None,
     seed: int = 0,
-    memo: Memo | None = None,
+    memo: StageCache | None = None,
 ) -> Iterator[Step]:
     """Yield the steps of one method of the table; the last one's detail is the MergeResult.
 
@@ -153,7 +154,7 @@ def run_explained(
     observations: Observation | Sequence[Observation],
     config: Any = None,
     seed: int = 0,
-    memo: Memo | None = None,
+    memo: StageCache | None = None,
 ) -> Iterator[Step]:
     """``run``, and after a refusal the steps of ``find_cause``; the last one's detail is again the
     MergeResult, with a hint in its verdict where a cause was found.

@@ -14,16 +14,16 @@ MOST_BYTES = 64_000_000
 
 # stage -> what went into it, the steps that came out. Inputs are compared with ==: settings by
 # value, maps and outputs of earlier stages by identity.
-Memo = dict[str, tuple[tuple[Any, ...], list[Step]]]
+StageCache = dict[str, tuple[tuple[Any, ...], list[Step]]]
 
 
-class Chain:
+class StageRunner:
     """Runs one stage after another and knows what each took.
 
     timings_s : seconds per stage so far; of the run that did the work where a stage was reused
     """
 
-    def __init__(self, memo: Memo) -> None:
+    def __init__(self, memo: StageCache) -> None:
         self._memo = memo
         self.timings_s: dict[str, float] = {}
 

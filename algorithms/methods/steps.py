@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import BoolArray
 from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.merge_result import Answer, MergeResult
 from algorithms.observations.observation import Encounter
-from algorithms.observations.search_window import Box, CoupledWindow, Window
+from algorithms.observations.search_window import CoupledWindow, Window
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.optimisation.objective import Objective
 from algorithms.optimisation.optimiser import SearchState
+from algorithms.optimisation.search_box import SearchBox
 from algorithms.optimisation.subcell_peak import Peak
 from algorithms.spectra.augmented_map import AugmentedMap
 from algorithms.spectra.candidates import Candidate
 from algorithms.spectra.hough_spectra import HoughMatch
-from algorithms.verdict.decision import Verdict
 from algorithms.verdict.ranking import Weighed
 
 
@@ -89,7 +89,7 @@ class RefineDetail:
 
     index: int  # which of the ranked candidates, from 0
     total: int  # how many of them are refined
-    box: Box
+    box: SearchBox
     state: SearchState
 
 
@@ -124,15 +124,6 @@ class TurnsDetail:
     turns: FloatArray
     scores: FloatArray
     best: float | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Answer:
-    """One transform that the search ended on, with its Γ and why the search ended there."""
-
-    T_ref_mov: Pose2
-    value: float
-    stopped: str
 
 
 @dataclass(frozen=True, eq=False)

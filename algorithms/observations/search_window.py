@@ -1,13 +1,11 @@
-"""What the sightings leave of the shift: the paper's window, eqs. (6)–(10), and the coupled one; and
-the optimiser's box, eqs. (18)–(20).
-"""
+"""What the sightings leave of the shift: the paper's window, eqs. (6)–(10), and the coupled one."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import hypot, pi
+from math import hypot
 from typing import Annotated, Literal
 
 import numpy as np
@@ -40,25 +38,6 @@ class WindowConfig:
         check_bounds(self)
 
 
-@dataclass(frozen=True)
-class BoxConfig:
-    """Half-widths of the optimiser's box around a candidate, eqs. (18)–(20).
-
-    The box never leaves the window, so wide margins cost nothing where the sighting is good; narrow
-    ones shut the truth out where the X and Y spectra pick the wrong end of the window.
-    """
-
-    sigma_x: Annotated[float, Bounds(0.05, 5, 0.05, "m", "σ_x", "margin in x")] = 1.0
-    """Half-width of the optimiser's box in x. Wider finds more and takes longer."""
-    sigma_y: Annotated[float, Bounds(0.05, 5, 0.05, "m", "σ_y", "margin in y")] = 1.0
-    """Half-width of the optimiser's box in y. Wider finds more and takes longer."""
-    sigma_theta: Annotated[float, Bounds(0.5, 45, 0.5, "°", "σ_θ", "margin in angle")] = 5.0
-    """Half-width of the optimiser's box in the turn."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
-
-
 @dataclass(frozen=True, eq=False)
 class Window:
     """Where T may put the pivot, whatever the turn.
@@ -71,39 +50,6 @@ class Window:
     low: FloatArray
     high: FloatArray
     pivot: FloatArray
-
-
-@dataclass(frozen=True, eq=False)
-class Box:
-    """An axis-parallel box of transforms, written as where they put a pivot and how they turn.
-
-    A transform has the coordinates (x, y, theta): it puts the pivot of the mov frame at (x, y) of the
-    ref frame and turns by theta. With the pivot at the mov frame's origin these are the paper's
-    (Δx, Δy, Δθ). With the pivot at x̂2 a turn leaves the encounter in place, however far away the mov
-    frame has its origin: 1° at 30 m is half a metre of Δx.
-
-    low, high : (3,) x, y, theta; metres, metres, radians; theta is kept unwrapped inside the box
-    pivot     : (2,) metres, mov frame
-    """
-
-    low: FloatArray
-    high: FloatArray
-    pivot: FloatArray
-
-    @property
-    def centre(self) -> FloatArray:
-        """(3,) middle of the box; metres, metres, radians."""
-        return np.asarray((self.low + self.high) / 2, dtype=np.float64)
-
-    def transforms(self, poses: FloatArray) -> FloatArray:
-        """(P, 3) Δx, Δy, Δθ of T_ref_mov from (P, 3) coordinates in the box; theta stays unwrapped."""
-        c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
-        x, y = self.pivot
-        return np.column_stack([poses[:, 0] - c * x + s * y, poses[:, 1] - s * x - c * y, poses[:, 2]])
-
-    def transform(self, pose: FloatArray) -> Pose2:
-        """T_ref_mov from (3,) coordinates in the box, its angle wrapped."""
-        return Pose2.from_array(self.transforms(pose[None])[0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,13 +150,3 @@ def shift_window(encounters: Sequence[Encounter], config: WindowConfig) -> Windo
     if config.kind == "coupled":
         return coupled_window(encounters, config)
     return paper_window(encounters[0], config)
-
-
-def box_around(T_ref_mov: Pose2, window: Window | CoupledWindow, config: BoxConfig) -> Box:
-    """The optimiser's box, eqs. (18)–(20): around a candidate, inside the window (Fig. 11)."""
-    half = np.array([config.sigma_x, config.sigma_y, config.sigma_theta * pi / 180])
-    centre = np.append(T_ref_mov.apply(window.pivot), T_ref_mov.theta)
-    low, high = centre - half, centre + half
-    low[:2] = np.minimum(np.maximum(low[:2], window.low), centre[:2])  # whatever is cut off, it holds the
-    high[:2] = np.maximum(np.minimum(high[:2], window.high), centre[:2])  # candidate
-    return Box(low, high, window.pivot)

@@ -7,7 +7,7 @@ transform elsewhere: the rival.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi, sqrt
 from typing import Annotated
@@ -19,10 +19,10 @@ from algorithms.common.setting_bounds import Bounds, check_bounds
 from algorithms.maps.grid_map import BoolArray
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.objective import Objective
-from algorithms.optimisation.upper_bounds import Bounder, IntArray
+from algorithms.optimisation.open_blocks import BlockSearch
+from algorithms.optimisation.transform_lattice import IntArray
 
 NODES = 100_000  # in one unit of patience
-BATCH = 256  # blocks opened between two looks at the best value, at least
 MOST_RIVALS = 5
 
 
@@ -93,138 +93,6 @@ class ProofState:
         return 0.0 if self.proven else max(0.0, self.ceiling - self.best_value)
 
 
-@dataclass
-class _Front:
-    """Blocks of one level that are not opened yet, with their bounds."""
-
-    bounds: FloatArray
-    nodes: IntArray
-
-    @staticmethod
-    def empty() -> _Front:
-        return _Front(np.zeros(0), np.zeros((0, 3), dtype=np.int64))
-
-    @property
-    def top(self) -> float:
-        return float(self.bounds.max(initial=-np.inf))
-
-    def add(self, bounds: FloatArray, nodes: IntArray) -> None:
-        self.bounds = np.concatenate([self.bounds, bounds])
-        self.nodes = np.concatenate([self.nodes, nodes])
-
-    def take(self, most: int) -> tuple[FloatArray, IntArray]:
-        """The blocks with the highest bounds, taken out."""
-        if len(self.bounds) > most:
-            order = np.argpartition(-self.bounds, most - 1)
-        else:
-            order = np.arange(len(self.bounds))
-        taken, left = order[:most], order[most:]
-        out = self.bounds[taken], self.nodes[taken]
-        self.bounds, self.nodes = self.bounds[left], self.nodes[left]
-        return out
-
-    def drop(self, value: float) -> tuple[FloatArray, IntArray]:
-        """Keep the blocks above a value; return the others."""
-        keep = self.bounds > value
-        out = self.bounds[~keep], self.nodes[~keep]
-        self.keep(keep)
-        return out
-
-    def keep(self, which: BoolArray) -> None:
-        self.bounds, self.nodes = self.bounds[which], self.nodes[which]
-
-    def best(self, above: float = -np.inf) -> tuple[float, IntArray | None]:
-        """The highest value and whose it is; None where none is above."""
-        if not len(self.bounds) or self.bounds.max() <= above:
-            return -np.inf, None
-        # of equal values the first block's, so that the answer does not hang on the order of opening
-        equal = np.flatnonzero(self.bounds == self.bounds.max())
-        first = equal[np.lexsort(self.nodes[equal].T[::-1])[0]]
-        return float(self.bounds[first]), self.nodes[first]
-
-
-class _Search:
-    """The open blocks and what has been found; one of them for both passes."""
-
-    def __init__(self, objective: Objective, window: CoupledWindow) -> None:
-        self.bounder = Bounder(objective, window)
-        self.lattice = self.bounder.lattice
-        self.levels = self.lattice.levels
-        self.open = [_Front.empty() for _ in range(self.levels + 1)]
-        self.shut = [_Front.empty() for _ in range(self.levels + 1)]  # no better than what was sought
-        self.single = _Front.empty()  # transforms looked at, with their values
-        self.sectors = self.lattice.turns >> self.levels
-        self.found = np.full(self.sectors, -np.inf)
-        self.known = np.full(self.sectors, -np.inf)  # bound of the blocks that were left out
-        self.nodes = 0
-        self._add(self.lattice.roots(), self.levels, np.inf)
-
-    @property
-    def top(self) -> float:
-        """Bound of what is open."""
-        return max(front.top for front in self.open)
-
-    @property
-    def empty(self) -> bool:
-        """Whether nothing has been found in the window, and nothing is left to look at."""
-        blocks = (*self.open, *self.shut, self.single)
-        return not any(len(front.bounds) for front in blocks)
-
-    def sector(self, nodes: IntArray, level: int) -> IntArray:
-        """(P,) which sector of the circle blocks lie in."""
-        return np.asarray(nodes[:, 0] >> (self.levels - level), dtype=np.int64)
-
-    def ceilings(self) -> FloatArray:
-        """(A,) bound of each sector, over all that is not taken apart."""
-        out = np.maximum(self.found, self.known)
-        for fronts in (self.open, self.shut):
-            for level, front in enumerate(fronts):
-                np.maximum.at(out, self.sector(front.nodes, level), front.bounds)
-        return out
-
-    def _add(self, nodes: IntArray, level: int, at_most: FloatArray | float) -> None:
-        """Bound blocks, and keep them open; at_most: the bounds of the blocks they are in."""
-        values = self.bounder(nodes, level)
-        possible = values > -np.inf
-        values, nodes = np.minimum(values, at_most)[possible], nodes[possible]
-        self.nodes += len(nodes)
-        if level:
-            self.open[level].add(values, nodes)
-        else:
-            np.maximum.at(self.found, self.sector(nodes, 0), values)
-            self.single.add(values, nodes)
-
-    def open_best(self, sought: float, wanted: Wanted | None = None) -> bool:
-        """Open the blocks with the highest bounds; False where no bound is above ``sought``.
-
-        wanted : which blocks to go into; the others are left out
-        """
-        level = int(np.argmax([front.top for front in self.open]))
-        front = self.open[level]
-        if front.top <= sought:
-            return False
-        self.shut[level].add(*front.drop(sought))
-        bounds, nodes = front.take(max(BATCH, len(front.bounds) // 8))
-        children, at_most = self.lattice.children(nodes), np.repeat(bounds, 8)
-        if wanted is not None:
-            keep = wanted(children, level - 1)
-            np.maximum.at(self.known, self.sector(children[~keep], level - 1), at_most[~keep])
-            children, at_most = children[keep], at_most[keep]
-        if level == 1:  # a value is no bound: rounding must not cut it
-            at_most = np.full(len(children), np.inf)
-        self._add(children, level - 1, at_most)
-        return True
-
-    def open_again(self) -> None:
-        """What was shut may hold a rival."""
-        for open_, shut in zip(self.open, self.shut, strict=True):
-            open_.add(shut.bounds, shut.nodes)
-        self.shut = [_Front.empty() for _ in range(self.levels + 1)]
-
-
-Wanted = Callable[[IntArray, int], BoolArray]
-
-
 def prove(
     objective: Objective,
     window: CoupledWindow,
@@ -240,7 +108,7 @@ def prove(
     worth : value up to which the best is of no interest either; where none is above it, that is proven
             and no ``best`` is told
     """
-    search = _Search(objective, window)
+    search = BlockSearch(objective, window)
     lattice = search.lattice
     patience = config.patience * NODES
     answers: list[IntArray] = []  # the best, then its rivals

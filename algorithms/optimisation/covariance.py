@@ -1,4 +1,4 @@
-"""How sharp the peak of Γ is: the covariance that goes with a transform."""
+"""Both ways to a transform's covariance: how wide a peak of Γ is, and the error that metres of wall leave."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from math import pi
 import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2, rotation
-from algorithms.observations.search_window import Box
 from algorithms.optimisation.objective import Objective
+from algorithms.optimisation.search_box import SearchBox
+from algorithms.optimisation.subcell_peak import Peak
 
 
-def peak_covariance(objective: Objective, T_ref_mov: Pose2, box: Box, reach: float) -> FloatArray:
+def peak_covariance(objective: Objective, T_ref_mov: Pose2, box: SearchBox, reach: float) -> FloatArray:
     """Width of the peak of Γ: inverse of the curvature of −log Γ at the transform.
 
     It takes Γ for a likelihood, which it is not: this is the width of the peak, about a wall's
@@ -47,4 +48,24 @@ def peak_covariance(objective: Objective, T_ref_mov: Pose2, box: Box, reach: flo
     at_pivot = in_steps * np.outer(step, step)
     to_shift = np.eye(3)  # d (Δx, Δy, Δθ) / d (box coordinates): Δ = where the pivot goes − C(Δθ) pivot
     to_shift[:2, 2] = -rotation(T_ref_mov.theta + pi / 2) @ box.pivot
+    return np.asarray(to_shift @ at_pivot @ to_shift.T, dtype=np.float64)
+
+
+def covariance_of(
+    peak: Peak, pivot: FloatArray, evidence: float, widest: FloatArray, least: FloatArray
+) -> FloatArray:
+    """(3, 3) covariance of Δx, Δy, Δθ; metres and radians; positive definite.
+
+    With an objective that counts metres of wall, of which ``evidence`` metres say as much as one
+    measurement, objective / evidence is a log-likelihood; its curvature at the top is inverted.
+
+    widest : (3,) standard deviations of x, y, theta where the objective says nothing
+    least  : (3,) standard deviations of x, y, theta that come on top: rasters, and bent maps
+    """
+    unit = np.asarray(widest, dtype=np.float64)
+    strengths, directions = np.linalg.eigh(peak.curvature * np.outer(unit, unit) / evidence)
+    at_pivot = (directions / np.maximum(strengths, 1.0)) @ directions.T * np.outer(unit, unit)
+    at_pivot += np.diag(np.square(least))
+    to_shift = np.eye(3)  # d (Δx, Δy, Δθ) / d (where the pivot goes, Δθ): Δ = that − C(Δθ) pivot
+    to_shift[:2, 2] = -rotation(peak.T_ref_mov.theta + pi / 2) @ pivot
     return np.asarray(to_shift @ at_pivot @ to_shift.T, dtype=np.float64)

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from algorithms.common.pose import FloatArray
-from algorithms.observations.search_window import Box
 from algorithms.optimisation.optimiser import SearchState, Value
 from algorithms.optimisation.particle_swarm import SwarmConfig
+from algorithms.optimisation.search_box import SearchBox
 
 
 def monte_carlo(
-    value: Value, box: Box, config: SwarmConfig, settled: FloatArray, rng: np.random.Generator
+    value: Value, box: SearchBox, config: SwarmConfig, settled: FloatArray, rng: np.random.Generator
 ) -> Iterator[SearchState]:
     """Yield a batch of ``config.particles`` samples per iteration, with the best so far.
 

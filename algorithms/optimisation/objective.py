@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from algorithms.common.parallel_kernels import fast_kernel, spread
+from algorithms.common.parallel_kernels import fast_kernel, run_in_threads
 from algorithms.common.pose import FloatArray
 from algorithms.maps.grid_map import Float32Array, GridMap
 from algorithms.observations.search_window import CoupledWindow
@@ -91,7 +91,7 @@ class Side:
         def work(start: int, stop: int) -> None:
             loop(flat, rows, cols, x, y, weights, single[start:stop], values[start:stop])
 
-        spread(work, len(poses), at_least=1 + _LOOKUPS_WORTH_A_THREAD // (1 + len(x)))
+        run_in_threads(work, len(poses), at_least=1 + _LOOKUPS_WORTH_A_THREAD // (1 + len(x)))
         return values
 
 

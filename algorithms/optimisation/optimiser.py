@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 
 from algorithms.common.pose import FloatArray
-from algorithms.observations.search_window import Box
+from algorithms.optimisation.search_box import SearchBox
 
 Value = Callable[[FloatArray], FloatArray]  # (P, 3) poses -> (P,) values, the higher the better
 
@@ -42,7 +42,7 @@ class SearchState:
 Optimiser = Callable[..., Iterator[SearchState]]
 
 
-def keep_inside(poses: FloatArray, box: Box) -> FloatArray:
+def keep_inside(poses: FloatArray, box: SearchBox) -> FloatArray:
     """Put poses that left the box back on its border; a box of a whole turn has none in theta."""
     inside = np.clip(poses, box.low, box.high)
     if box.high[2] - box.low[2] >= 2 * pi:

@@ -11,8 +11,8 @@ import numpy as np
 
 from algorithms.common.pose import FloatArray, wrap_angles
 from algorithms.common.setting_bounds import Bounds, check_bounds
-from algorithms.observations.search_window import Box
 from algorithms.optimisation.optimiser import SearchState, Value, keep_inside
+from algorithms.optimisation.search_box import SearchBox
 
 SETTLED_CELLS = 0.1  # a swarm that stays within a tenth of a cell cannot tell two answers apart
 SETTLED_ANGLE = 0.05 * pi / 180
@@ -41,7 +41,7 @@ def settled_within(cell: float) -> FloatArray:
 
 
 def swarm(
-    value: Value, box: Box, config: SwarmConfig, settled: FloatArray, rng: np.random.Generator
+    value: Value, box: SearchBox, config: SwarmConfig, settled: FloatArray, rng: np.random.Generator
 ) -> Iterator[SearchState]:
     """Yield the swarm once per iteration; the caller may leave the loop at any time.
 

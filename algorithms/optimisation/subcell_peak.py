@@ -1,15 +1,14 @@
-"""Sub-cell refinement: the top of a paraboloid through the objective, and how sharp it is."""
+"""Sub-cell refinement: the climb to the top of a paraboloid through the objective, and how that curves."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations_with_replacement, product
-from math import pi
 
 import numpy as np
 
-from algorithms.common.pose import FloatArray, Pose2, rotation
+from algorithms.common.pose import FloatArray, Pose2
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.objective import Objective
 
@@ -30,7 +29,7 @@ class Peak:
     curvature: FloatArray
 
 
-def polish(objective: Objective, T_ref_mov: Pose2, window: CoupledWindow, reach: float) -> Peak:
+def climb_to_peak(objective: Objective, T_ref_mov: Pose2, window: CoupledWindow, reach: float) -> Peak:
     """Climb from a transform on the lattice to the top nearby; never to a lower value.
 
     window : turns are about its pivot, and it is not left: what the search was kept from is not reached
@@ -60,33 +59,13 @@ def polish(objective: Objective, T_ref_mov: Pose2, window: CoupledWindow, reach:
 def peak_at(objective: Objective, T_ref_mov: Pose2, pivot: FloatArray, reach: float) -> Peak:
     """The objective and how it bends at a transform, whether that is a maximum or not.
 
-    pivot, reach : as for ``polish``
+    pivot, reach : as for ``climb_to_peak``
     """
     scale = np.array([1.0, 1.0, 1 / reach]) * objective.cell
     at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
     _, hessian, _, _ = _paraboloid(objective, at, scale, pivot)
     value = float(objective(T_ref_mov.array()[None])[0])
     return Peak(T_ref_mov, value, -hessian / np.outer(scale, scale))
-
-
-def covariance_of(
-    peak: Peak, pivot: FloatArray, evidence: float, widest: FloatArray, least: FloatArray
-) -> FloatArray:
-    """(3, 3) covariance of Δx, Δy, Δθ; metres and radians; positive definite.
-
-    With an objective that counts metres of wall, of which ``evidence`` metres say as much as one
-    measurement, objective / evidence is a log-likelihood; its curvature at the top is inverted.
-
-    widest : (3,) standard deviations of x, y, theta where the objective says nothing
-    least  : (3,) standard deviations of x, y, theta that come on top: rasters, and bent maps
-    """
-    unit = np.asarray(widest, dtype=np.float64)
-    strengths, directions = np.linalg.eigh(peak.curvature * np.outer(unit, unit) / evidence)
-    at_pivot = (directions / np.maximum(strengths, 1.0)) @ directions.T * np.outer(unit, unit)
-    at_pivot += np.diag(np.square(least))
-    to_shift = np.eye(3)  # d (Δx, Δy, Δθ) / d (where the pivot goes, Δθ): Δ = that − C(Δθ) pivot
-    to_shift[:2, 2] = -rotation(peak.T_ref_mov.theta + pi / 2) @ pivot
-    return np.asarray(to_shift @ at_pivot @ to_shift.T, dtype=np.float64)
 
 
 @cache

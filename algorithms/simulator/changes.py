@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from algorithms.common.pose import FloatArray
-from algorithms.simulator.buildings.floor_plan import AIR, WALL, Building, Canvas
+from algorithms.simulator.buildings.floor_plan import AIR, WALL, Building, FloorPlan
 from algorithms.simulator.portable_random import TURN, chance, uniform, whole
 
 LOOSE = 1.5  # metres; what is smaller than this each way and touches nothing is furniture
@@ -28,32 +28,32 @@ def rearranged(building: Building, way: FloatArray, rng: np.random.Generator) ->
 
     way : (N, 2) where a robot drives, which stays clear; metres, world frame
     """
-    canvas = Canvas.of(building)
+    plan = FloorPlan.of(building)
     near = cKDTree(way)
 
     def clear(x: float, y: float, reach: float) -> bool:
         return bool(near.query([x, y])[0] > reach + AROUND)
 
-    _take_away(canvas, rng)
+    _take_away(plan, rng)
     for x0, y0, x1, y1 in building.doors.tolist():
         if chance(rng, SHUT) and clear((x0 + x1) / 2, (y0 + y1) / 2, 0.5):
-            canvas.line(x0, y0, x1, y1, 0.05)
+            plan.line(x0, y0, x1, y1, 0.05)
     height, width = (side * building.resolution for side in building.surface.shape)
     for _ in range(int(width * height / FLOOR_PER_PIECE)):
         x, y = uniform(rng, 0.0, width), uniform(rng, 0.0, height)
         long, deep = uniform(rng, 0.3, 1.4), uniform(rng, 0.25, 0.8)
         reach = (long + deep) / 2
-        if clear(x, y, reach) and canvas.is_empty(x - reach, y - reach, x + reach, y + reach):
-            canvas.turned_box(x, y, long, deep, TURN // 4 * whole(rng, 0, 1) + whole(rng, -300, 300))
-    return replace(building, surface=canvas.cells)
+        if clear(x, y, reach) and plan.is_empty(x - reach, y - reach, x + reach, y + reach):
+            plan.turned_box(x, y, long, deep, TURN // 4 * whole(rng, 0, 1) + whole(rng, -300, 300))
+    return replace(building, surface=plan.cells)
 
 
 def with_pillars(building: Building, rng: np.random.Generator) -> Building:
     """The building with pillars, radiators and cabinets before its walls, so that no two of its corridors are
     quite alike.
     """
-    canvas = Canvas.of(building)
-    walls = np.argwhere(canvas.cells == WALL)
+    plan = FloorPlan.of(building)
+    walls = np.argwhere(plan.cells == WALL)
     jambs = building.doors.reshape(-1, 2)
     for _ in range(int(len(walls) * building.resolution**2 / WALL_PER_PILLAR)):
         row, col = walls[whole(rng, 0, len(walls) - 1)].tolist()
@@ -61,16 +61,16 @@ def with_pillars(building: Building, rng: np.random.Generator) -> Building:
         half, deep = uniform(rng, 0.1, 0.35), uniform(rng, 0.15, 0.3)
         long, wide = (half, deep) if chance(rng, 0.5) else (deep, half)
         if np.hypot(*(jambs - (x, y)).T).min(initial=np.inf) > FROM_DOORS:
-            canvas.box(x - long, y - wide, x + long, y + wide)
-    return replace(building, surface=canvas.cells)
+            plan.box(x - long, y - wide, x + long, y + wide)
+    return replace(building, surface=plan.cells)
 
 
-def _take_away(canvas: Canvas, rng: np.random.Generator) -> None:
+def _take_away(plan: FloorPlan, rng: np.random.Generator) -> None:
     """Remove small things that touch no wall."""
-    count, labels, stats, _ = cv2.connectedComponentsWithStats((canvas.cells == WALL).astype(np.uint8))
-    small = LOOSE / canvas.resolution
+    count, labels, stats, _ = cv2.connectedComponentsWithStats((plan.cells == WALL).astype(np.uint8))
+    small = LOOSE / plan.resolution
     gone = np.zeros(count, dtype=bool)
     for label in range(1, count):
         loose = max(stats[label, cv2.CC_STAT_WIDTH], stats[label, cv2.CC_STAT_HEIGHT]) <= small
         gone[label] = loose and chance(rng, TAKEN_AWAY)
-    canvas.cells[gone[labels]] = AIR
+    plan.cells[gone[labels]] = AIR

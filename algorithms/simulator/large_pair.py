@@ -8,18 +8,18 @@ import numpy as np
 
 from algorithms.common.pose import FloatArray
 from algorithms.simulator.buildings.building_types import campus
-from algorithms.simulator.path_planning import Planner
+from algorithms.simulator.path_planning import PathPlanner
 from algorithms.simulator.portable_random import stream, ticks_of_degrees, whole
 from algorithms.simulator.robot import drive, make_body
-from algorithms.simulator.room_tours import Surveyor
-from algorithms.simulator.scenario import Case, case_of, pair_up
+from algorithms.simulator.room_tours import TourPlanner
+from algorithms.simulator.scenario import SimulatedCase, case_of, pair_up
 
 RESOLUTION = 0.05  # metres per cell
 STOPS = 90  # of the many rooms, those that robots may visit
 VISITS = 40  # of these, by each robot
 
 
-def simulate_large(cells: int = 4000, seed: int = 0) -> Case:
+def simulate_large(cells: int = 4000, seed: int = 0) -> SimulatedCase:
     """Two robots that each drove through most of one huge office floor; takes about a minute.
 
     cells   : rows and columns of each map, to within a few percent; up to 4000, a floor of 190 m
@@ -30,16 +30,16 @@ def simulate_large(cells: int = 4000, seed: int = 0) -> Case:
     metres = cells * RESOLUTION / 1.03  # a turn by 1.5° makes the raster 3 % wider
     building = campus(stream(seed, "campus", "building"), metres)
     chosen = _spread_out(building.stops, rng)
-    planner = Planner(replace(building, stops=building.stops[chosen]))
+    planner = PathPlanner(replace(building, stops=building.stops[chosen]))
     reach = 9.0
-    surveyor = Surveyor(building, planner, reach)
+    tour_planner = TourPlanner(building, planner, reach)
     n = len(planner.stops)
     robots = []
     for name in ("R2", "R1"):
         body = make_body(name, seed, "campus", reach, RESOLUTION)
         quarter = ticks_of_degrees(90) * whole(rng, 0, 3) + whole(rng, -270, 270)
         visits = sorted({whole(rng, 0, n - 1) for _ in range(VISITS)})
-        tour = surveyor.tour(visits, visits[0])
+        tour = tour_planner.tour(visits, visits[0])
         robots.append(drive(building, planner, tour, replace(body, turn=quarter), step=0.4))
     observer, observed = robots
     pair = pair_up(building, planner, observer, observed)

@@ -12,7 +12,8 @@ from algorithms.simulator.buildings.floor_plan import Building
 from algorithms.simulator.changes import rearranged
 from algorithms.simulator.lidar import Lidar, scan
 from algorithms.simulator.log_odds_mapping import build_map
-from algorithms.simulator.path_planning import STEP, Drift, Planner, Track, believe
+from algorithms.simulator.odometry_drift import OdometryDrift, believe
+from algorithms.simulator.path_planning import STEP, PathPlanner, Track
 from algorithms.simulator.portable_random import TURN, pick, snap, stream, uniform, whole
 from algorithms.simulator.room_tours import Tour
 from algorithms.simulator.wear import Wear, worn
@@ -27,13 +28,13 @@ class Conditions:
     wear    : what happens to the finished map
     """
 
-    drift: Drift = field(default_factory=Drift)
+    drift: OdometryDrift = field(default_factory=OdometryDrift)
     changed: bool = False
     wear: Wear = field(default_factory=Wear)
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class RobotModel:
     """What a robot is before it drives.
 
     purpose     : words that name its stream of random numbers
@@ -63,7 +64,7 @@ class Robot:
     grid     : the map it made
     """
 
-    body: Body
+    body: RobotModel
     tour: Tour
     true: Track
     believed: Track
@@ -77,7 +78,7 @@ def make_body(
     reach: float,
     resolution: float | None,
     conditions: Conditions | None = None,
-) -> Body:
+) -> RobotModel:
     """A robot with a scanner and a frame of its own.
 
     reach      : of the scanner; metres
@@ -91,10 +92,14 @@ def make_body(
     turn = whole(rng, 0, TURN - 1)
     shift = snap(np.array([uniform(rng, -40.0, 40.0), uniform(rng, -40.0, 40.0)]))
     purpose = (kind, name, "drive")
-    return Body(name, seed, purpose, lidar, turn, shift, resolution or drawn, conditions or Conditions())
+    return RobotModel(
+        name, seed, purpose, lidar, turn, shift, resolution or drawn, conditions or Conditions()
+    )
 
 
-def drive(building: Building, planner: Planner, tour: Tour, body: Body, step: float = STEP) -> Robot:
+def drive(
+    building: Building, planner: PathPlanner, tour: Tour, body: RobotModel, step: float = STEP
+) -> Robot:
     """Send a robot on a tour: scan every ``step`` metres, and map what came back."""
     rng, conditions = stream(body.seed, *body.purpose), body.conditions
     true = planner.drive(list(tour.stops), step)

@@ -12,7 +12,7 @@ from algorithms.common.parallel_kernels import kernel
 from algorithms.common.pose import FloatArray
 from algorithms.simulator.buildings.floor_plan import Building, Surface
 from algorithms.simulator.lidar import first_hit, sees
-from algorithms.simulator.path_planning import Planner
+from algorithms.simulator.path_planning import PathPlanner
 from algorithms.simulator.portable_random import (
     COSINES,
     SINES,
@@ -73,10 +73,10 @@ def shared(a: Seen, b: Seen) -> float:
     return int(np.count_nonzero(a & b)) / max(1, fewer)
 
 
-class Surveyor:
+class TourPlanner:
     """Tours through one building and what is seen on them; a way is looked at once and kept."""
 
-    def __init__(self, building: Building, planner: Planner, reach: float) -> None:
+    def __init__(self, building: Building, planner: PathPlanner, reach: float) -> None:
         self.planner = planner
         self._wall: Surface = planner.wall.astype(np.uint8)
         self._reach = reach

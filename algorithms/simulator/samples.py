@@ -8,20 +8,13 @@ from itertools import permutations, product
 from pathlib import Path
 
 from algorithms.files.atomic_write import write_files
-from algorithms.files.case_folder import (
-    FIRST_MAP_FILE,
-    OBSERVATION_FILE,
-    ROUGH_OBSERVATION_FILE,
-    SECOND_MAP_FILE,
-    TRUTH_FILE,
-    Truth,
-    observations_to_bytes,
-    truth_to_bytes,
-)
+from algorithms.files.case_folder import FIRST_MAP_FILE, SECOND_MAP_FILE
 from algorithms.files.map_file import map_to_bytes
-from algorithms.simulator.path_planning import Drift
+from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, observations_to_bytes
+from algorithms.files.truth_file import TRUTH_FILE, Truth, truth_to_bytes
+from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.robot import Conditions
-from algorithms.simulator.scenario import Case, simulate
+from algorithms.simulator.scenario import SimulatedCase, simulate
 from algorithms.simulator.wrong_pairs import mismatch
 
 PAIRS = ("r2_r1", "r3_r2")  # observer and observed
@@ -33,7 +26,7 @@ class Sample:
 
     overlaps : asked for, of R2 → R1 and R3 → R2
     stories  : one sentence for a person about each case that ships
-    bend     : of R1's map, as ``Drift`` has it
+    bend     : of R1's map, as ``OdometryDrift`` has it
     title    : what the folders' names begin with; the kind unless given
     """
 
@@ -54,9 +47,9 @@ class Sample:
             f"{self.title or self.kind}_{pair}" for pair, _ in zip(PAIRS, self.stories, strict=False)
         )
 
-    def cases(self) -> tuple[Case, ...]:
+    def cases(self) -> tuple[SimulatedCase, ...]:
         """Let the three robots drive; the cases that ship."""
-        bent = Conditions(Drift(bend=self.bend))
+        bent = Conditions(OdometryDrift(bend=self.bend))
         scenario = simulate(
             self.kind,
             self.seed,
@@ -126,7 +119,7 @@ DESCRIPTIONS: dict[str, str] = {
 """What each shipped case shows, by the name of its folder."""
 
 
-def case_files(case: Case) -> dict[str, bytes]:
+def case_files(case: SimulatedCase) -> dict[str, bytes]:
     """The files of a case folder by name. Equal cases give equal bytes."""
     truth = Truth(
         T_ref_mov=case.T_ref_mov,
@@ -145,12 +138,12 @@ def case_files(case: Case) -> dict[str, bytes]:
     }
 
 
-def write_case(folder: Path, case: Case) -> None:
+def write_case(folder: Path, case: SimulatedCase) -> None:
     """Write a case into a folder, which is made where it is missing; raises OutputError."""
     write_files({Path(folder) / name: data for name, data in case_files(case).items()})
 
 
-def regenerate(folder: Path) -> list[Case]:
+def regenerate(folder: Path) -> list[SimulatedCase]:
     """Make all shipped samples again, one folder each; the same bytes every time."""
     cases = [case for sample in SAMPLES for case in sample.cases()]
     for case in cases:
@@ -190,6 +183,8 @@ def generate_wrong_pairs(
             yield path
 
 
-def _named_cases(kind: str, seed: int, overlap: float | None, sightings: int) -> list[tuple[str, Case]]:
+def _named_cases(
+    kind: str, seed: int, overlap: float | None, sightings: int
+) -> list[tuple[str, SimulatedCase]]:
     cases = simulate(kind, seed, overlap, sightings=sightings).cases
     return [(f"{kind}_{seed:04d}_{case.name.split('_', 1)[1]}", case) for case in cases]

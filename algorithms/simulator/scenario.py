@@ -13,14 +13,14 @@ from algorithms.observations.observation import Observation
 from algorithms.simulator.buildings.building_types import build
 from algorithms.simulator.buildings.floor_plan import Building
 from algorithms.simulator.changes import with_pillars
-from algorithms.simulator.path_planning import Planner
+from algorithms.simulator.path_planning import PathPlanner
 from algorithms.simulator.portable_random import chance, stream, uniform
 from algorithms.simulator.robot import Conditions, Robot, drive, make_body
-from algorithms.simulator.room_tours import Surveyor
+from algorithms.simulator.room_tours import TourPlanner
 from algorithms.simulator.sighting import (
     ROUGH_BEARING,
     ROUGH_RANGE,
-    Meeting,
+    RobotSighting,
     find_meetings,
     fit,
     in_belief,
@@ -35,7 +35,7 @@ ROUNDS = 6  # of choosing tours anew where the measured overlap is off
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class SimulatedCase:
     """Two maps, one sighting or several, and the truth: all that a case folder holds.
 
     ref, mov     : maps of observer and observed robot, each in its own frame
@@ -63,12 +63,12 @@ class Pair:
     """An observer, the robot it observed, and how their frames lie.
 
     meetings  : the scans at which they saw one another, at least one
-    T_ref_mov, truth_rms, overlap : as in ``Case``
+    T_ref_mov, truth_rms, overlap : as in ``SimulatedCase``
     """
 
     observer: Robot
     observed: Robot
-    meetings: tuple[Meeting, ...]
+    meetings: tuple[RobotSighting, ...]
     T_ref_mov: Pose2
     truth_rms: float
     overlap: float
@@ -84,7 +84,7 @@ class Scenario:
     building: Building
     robots: tuple[Robot, ...]
     pairs: tuple[Pair, ...]
-    cases: tuple[Case, ...]
+    cases: tuple[SimulatedCase, ...]
 
 
 def simulate(
@@ -109,7 +109,7 @@ def simulate(
     seed : any integer >= 0. One seed, one scenario, bit for bit on every machine; seeds differ in
         building, drives, frames and noise.
     overlap : share of the smaller map's occupied cells that the other map has within 0.1 m, 0 … 1,
-        of R2 → R1 and R3 → R2. Aimed at, not promised: ``Case.overlap`` holds what was measured.
+        of R2 → R1 and R3 → R2. Aimed at, not promised: ``SimulatedCase.overlap`` holds what was measured.
         Without it, drawn from 0.05 … 0.6.
     resolutions : metres per cell of the maps of R1, R2, R3. Without it mostly 0.05, sometimes 0.04
         or 0.06.
@@ -155,13 +155,13 @@ def simulate(
     building = build(kind, seed, floor)
     if pillars:
         building = with_pillars(building, stream(seed, kind, f"pillars of floor {floor}"))
-    planner = Planner(building)
-    surveyor = Surveyor(building, planner, reach)
+    planner = PathPlanner(building)
+    tour_planner = TourPlanner(building, planner, reach)
     stops = len(planner.stops)
     fewest, most = sizes or (max(3, stops // 7), max(5, stops * 2 // 5))
 
     def two_robots(aim: float, rng: np.random.Generator) -> tuple[Robot, Robot]:
-        tours = surveyor.pair(rng, aim, (fewest, most))
+        tours = tour_planner.pair(rng, aim, (fewest, most))
         r2, r1 = (drive(building, planner, t, b) for t, b in zip(tours, (b2, b1), strict=True))
         return r2, r1
 
@@ -171,7 +171,7 @@ def simulate(
     r2 = pair_1.observer
 
     def third_robot(aim: float, rng: np.random.Generator) -> tuple[Robot, Robot]:
-        tour = surveyor.partner(rng, r2.tour, aim, (fewest, most))
+        tour = tour_planner.partner(rng, r2.tour, aim, (fewest, most))
         return drive(building, planner, tour, b3), r2
 
     pair_2 = _nearest_pair(
@@ -187,7 +187,7 @@ def simulate(
 
 def _nearest_pair(
     building: Building,
-    planner: Planner,
+    planner: PathPlanner,
     propose: Callable[[float, np.random.Generator], tuple[Robot, Robot]],
     target: float,
     tolerance: float,
@@ -216,7 +216,7 @@ def _nearest_pair(
 
 
 def pair_up(
-    building: Building, planner: Planner, observer: Robot, observed: Robot, sightings: int = 1
+    building: Building, planner: PathPlanner, observer: Robot, observed: Robot, sightings: int = 1
 ) -> Pair | None:
     """Let two robots meet and find how their frames truly lie; None where they never do."""
     walls = _walls(planner, observer, observed)
@@ -233,13 +233,13 @@ def pair_up(
     return Pair(observer, observed, meetings, T_ref_mov, round(rms, 4), round(overlap, 3))
 
 
-def _walls(planner: Planner, a: Robot, b: Robot) -> FloatArray:
+def _walls(planner: PathPlanner, a: Robot, b: Robot) -> FloatArray:
     """(M, 2) wall nodes both robots had in view; metres, world frame."""
     nodes = np.argwhere(a.tour.seen & b.tour.seen)[:, ::-1].astype(np.float64)
     return np.asarray((nodes + 0.5) * planner.node)
 
 
-def case_of(pair: Pair, kind: str, source: str, rng: np.random.Generator, both_ways: bool) -> Case:
+def case_of(pair: Pair, kind: str, source: str, rng: np.random.Generator, both_ways: bool) -> SimulatedCase:
     a, b = pair.observer, pair.observed
     true, believed = (a.true, b.true), (a.believed, b.believed)
     rough = (ROUGH_RANGE, ROUGH_BEARING)
@@ -250,7 +250,7 @@ def case_of(pair: Pair, kind: str, source: str, rng: np.random.Generator, both_w
         )
         for meeting in pair.meetings
     ]
-    return Case(
+    return SimulatedCase(
         name=f"{kind}_{a.body.name}_{b.body.name}".lower(),
         ref=a.grid,
         mov=b.grid,

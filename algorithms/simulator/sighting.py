@@ -24,7 +24,7 @@ SAME_WALL = 0.1  # metres; two cells of the usual map
 
 
 @dataclass(frozen=True)
-class Meeting:
+class RobotSighting:
     """Which scan of the observer's and which of the observed robot's drive fall together."""
 
     observer: int
@@ -33,7 +33,7 @@ class Meeting:
 
 def find_meetings(
     building: Building, observer: Track, observed: Track, walls: FloatArray, most: int = 1
-) -> tuple[Meeting, ...]:
+) -> tuple[RobotSighting, ...]:
     """Pairs of poses in sight of one another, the first where both robots know most walls around.
 
     Every further one is as far from those before as it can be. Which of them came first is not asked:
@@ -57,7 +57,7 @@ def find_meetings(
     scans = np.column_stack([i[near[:, 0]], j[near[:, 1]]])  # (K, 2) of observer and observed
     places = observed.xy[scans[:, 1]]
     apart = np.full(len(scans), np.inf)  # m², of each place from the nearest meeting
-    found: list[Meeting] = []
+    found: list[RobotSighting] = []
     while len(found) < most:
         far = np.argsort(-apart, kind="stable")  # of equally far ones, most walls first
         for a, b in scans[far[apart[far] >= APART * APART]].tolist():
@@ -65,7 +65,7 @@ def find_meetings(
                 break
         else:
             break
-        found.append(Meeting(a, b))
+        found.append(RobotSighting(a, b))
         dx, dy = (places - observed.xy[b]).T
         apart = np.minimum(apart, dx * dx + dy * dy)
     return tuple(found)
@@ -81,7 +81,7 @@ def _walls_around(xy: FloatArray, walls: FloatArray) -> Ticks:
 def observe(
     true: tuple[Track, Track],
     believed: tuple[Track, Track],
-    at: Meeting,
+    at: RobotSighting,
     rng: np.random.Generator,
     sigma: tuple[float, float] = (SIGMA_RANGE, SIGMA_BEARING),
     both_ways: bool = False,

@@ -15,10 +15,10 @@ import numpy as np
 
 from algorithms.observations.observation import Observation
 from algorithms.simulator.buildings.building_types import BUILDINGS
-from algorithms.simulator.path_planning import Drift
+from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.portable_random import chance, pick, stream, uniform, whole
 from algorithms.simulator.robot import Conditions
-from algorithms.simulator.scenario import Case, simulate
+from algorithms.simulator.scenario import SimulatedCase, simulate
 from algorithms.simulator.wear import Wear
 from algorithms.simulator.wrong_pairs import mirrored, mismatch, wrongly_seen
 
@@ -42,7 +42,7 @@ class TrainingPair:
     observations : the good or the bad ones of the case
     """
 
-    case: Case
+    case: SimulatedCase
     kind: Kind
     buildings: tuple[str, ...]
     observations: tuple[Observation, ...]
@@ -72,7 +72,9 @@ def training_pairs(seed: int) -> Iterator[TrainingPair]:
         yield _pair(other, kind, (name, str(seed + step)), rng)
 
 
-def _pair(case: Case, kind: Kind, buildings: tuple[str, ...], rng: np.random.Generator) -> TrainingPair:
+def _pair(
+    case: SimulatedCase, kind: Kind, buildings: tuple[str, ...], rng: np.random.Generator
+) -> TrainingPair:
     return TrainingPair(case, kind, buildings, case.rough if chance(rng, 0.4) else case.observations)
 
 
@@ -80,10 +82,10 @@ def _kind(seed: int) -> str:
     return list(BUILDINGS)[seed % len(BUILDINGS)]
 
 
-_made: dict[tuple[int, int], tuple[Case, ...]] = {}  # those of the last few buildings
+_made: dict[tuple[int, int], tuple[SimulatedCase, ...]] = {}  # those of the last few buildings
 
 
-def _cases(seed: int, floor: int = 0) -> tuple[Case, ...]:
+def _cases(seed: int, floor: int = 0) -> tuple[SimulatedCase, ...]:
     """The two cases of a building; the same seed gives the same robots on every floor."""
     if (seed, floor) not in _made:
         while len(_made) > 2 * len(BUILDINGS):
@@ -129,5 +131,5 @@ def _survey(rng: np.random.Generator, hard: float) -> Conditions:
     return Conditions(drift, changed=chance(rng, 0.6 * hard), wear=Wear(thicker=whole(rng, 0, 2)))
 
 
-def _drift(wander: float, bend: float) -> Drift:
-    return Drift(metres=0.025 * wander, degrees=0.22 * wander, bend=bend)
+def _drift(wander: float, bend: float) -> OdometryDrift:
+    return OdometryDrift(metres=0.025 * wander, degrees=0.22 * wander, bend=bend)

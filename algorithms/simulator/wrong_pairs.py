@@ -12,17 +12,17 @@ from algorithms.maps.grid_map import GridMap
 from algorithms.observations import observation
 from algorithms.observations.observation import Observation
 from algorithms.simulator.portable_random import chance, uniform
-from algorithms.simulator.scenario import Case
+from algorithms.simulator.scenario import SimulatedCase
 
 FROM, TO = 3.0, 8.0  # metres by which a wrong sighting is wrong: out of reach of a badly measured one
 
 
-def mismatch(a: Case, b: Case) -> Case:
+def mismatch(a: SimulatedCase, b: SimulatedCase) -> SimulatedCase:
     """The observer of one case and the observed robot of another building's, or of another floor.
 
     The sightings, as many as both have, are forged from halves.
     """
-    return Case(
+    return SimulatedCase(
         name=f"wrong_{a.name}_{b.name}",
         ref=a.ref,
         mov=b.mov,
@@ -46,7 +46,7 @@ def crossed(a: Observation, b: Observation) -> Observation:
     )
 
 
-def mirrored(case: Case) -> Case:
+def mirrored(case: SimulatedCase) -> SimulatedCase:
     """The same case, map 2 flipped left to right, and what robot 2 knows of itself with it."""
     return replace(
         case,
@@ -58,7 +58,7 @@ def mirrored(case: Case) -> Case:
     )
 
 
-def wrongly_seen(case: Case, rng: np.random.Generator) -> Case:
+def wrongly_seen(case: SimulatedCase, rng: np.random.Generator) -> SimulatedCase:
     """The same case with sightings that put robot 2 metres away from where it was, along a wall.
 
     In a corridor that is a door or two further on.

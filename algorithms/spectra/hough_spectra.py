@@ -9,7 +9,7 @@ from typing import Annotated
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
-from algorithms.common.parallel_kernels import kernel, spread
+from algorithms.common.parallel_kernels import kernel, run_in_threads
 from algorithms.common.pose import FloatArray, rotation
 from algorithms.common.setting_bounds import Bounds, check_bounds
 from algorithms.spectra.augmented_map import AugmentedMap
@@ -101,7 +101,7 @@ def hough_transform(augmented: AugmentedMap, directions: int, rho_step: float) -
             votes[start:stop],
         )
 
-    spread(work, directions, at_least=1 + 200_000 // (1 + len(x)))
+    run_in_threads(work, directions, at_least=1 + 200_000 // (1 + len(x)))
     return votes
 
 

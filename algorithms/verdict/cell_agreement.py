@@ -18,11 +18,11 @@ from algorithms.maps.wall_distance import distance_to_walls
 from algorithms.verdict.wall_map import SAME_WALL
 
 SILENT, AGREES, CONTRADICTS = 0, 1, 2
-Touch = NDArray[np.uint8]
+CellAgreement = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, eq=False)
-class Walls:
+class WallLookup:
     """A map ready to be held against another one at many transforms."""
 
     grid: GridMap
@@ -45,13 +45,13 @@ class Walls:
         return np.asarray(distance <= SAME_WALL)
 
     @cached_property
-    def _table(self) -> Touch:
+    def _table(self) -> CellAgreement:
         """(H, W) what a wall of another map is told at each cell."""
         table = np.where(self.grid.free, CONTRADICTS, SILENT).astype(np.uint8)
         table[self._near] = AGREES
         return table
 
-    def told(self, other: Walls, T_other_self: Pose2) -> Touch:
+    def told(self, other: WallLookup, T_other_self: Pose2) -> CellAgreement:
         """(N,) SILENT, AGREES or CONTRADICTS: what another map says of each wall cell of this one."""
         at = np.floor(other.grid.grid_coordinates(T_other_self.apply(self.points))).astype(np.intp)
         cols, rows = at.T

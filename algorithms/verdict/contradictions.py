@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, BoolArray, CellArray, where
 from algorithms.maps.map_fusion import Fusion
-from algorithms.maps.wall_distance import distances, near
+from algorithms.maps.wall_distance import distances, is_near_wall
 from algorithms.verdict.wall_map import SAME_WALL
 
 IntArray = NDArray[np.intp]
@@ -27,7 +27,7 @@ LEAST = 0.25  # metres of wall; what is shorter is a speck, not a place
 
 
 @dataclass(frozen=True)
-class Place:
+class Contradiction:
     """One place where the maps contradict each other.
 
     x, y     : its middle; metres, ref frame
@@ -49,7 +49,7 @@ class Place:
 
 
 @dataclass(frozen=True, eq=False)
-class Conflicts:
+class Contradictions:
     """All contradictions of a merge.
 
     ref_only, mov_only : (H, W) bool on the merged grid: walls of one map where the other saw free floor
@@ -59,7 +59,7 @@ class Conflicts:
 
     ref_only: BoolArray
     mov_only: BoolArray
-    places: tuple[Place, ...]
+    places: tuple[Contradiction, ...]
     specks: float
 
     @property
@@ -68,7 +68,7 @@ class Conflicts:
         return sum(place.wall for place in self.places) + self.specks
 
 
-def find_conflicts(fusion: Fusion, gap: float = GAP) -> Conflicts:
+def find_conflicts(fusion: Fusion, gap: float = GAP) -> Contradictions:
     """Gather the contradictions of a merge into places.
 
     Only around the walls is anything looked up: a large map is mostly none.
@@ -79,7 +79,7 @@ def find_conflicts(fusion: Fusion, gap: float = GAP) -> Conflicts:
     same = SAME_WALL / fusion.merged.resolution
     ref_only, mov_only = ref.denied_by(mov, same), mov.denied_by(ref, same)
     places, specks = _places(fusion, ref.seen(ref_only), mov.seen(mov_only), ref_only, mov_only, gap)
-    return Conflicts(ref_only, mov_only, places, specks)
+    return Contradictions(ref_only, mov_only, places, specks)
 
 
 class _Side:
@@ -134,14 +134,14 @@ def _places(
     ref_only: BoolArray,
     mov_only: BoolArray,
     gap: float,
-) -> tuple[tuple[Place, ...], float]:
+) -> tuple[tuple[Contradiction, ...], float]:
     """Places, most wall first, and the metres of wall that are in none; *_seen: of the walls of *_only."""
     cell = fusion.merged.resolution
     denied = ref_only | mov_only
     rows, cols = where(denied)
     if len(rows) == 0:
         return (), 0.0
-    reach = near(denied, distances(ceil(gap / 2 / cell)) * cell <= gap / 2)
+    reach = is_near_wall(denied, distances(ceil(gap / 2 / cell)) * cell <= gap / 2)
     count, labels = cv2.connectedComponents(reach.view(np.uint8), connectivity=8)
     ref_wall, mov_wall = (
         np.bincount(labels[only][seen], minlength=count) * cell
@@ -158,6 +158,6 @@ def _places(
         middle = (low[k] + high[k]) / 2
         x, y = fusion.merged.origin.apply(middle[None] * cell)[0].tolist()
         radius = float(np.hypot(*(high[k] - low[k]))) / 2 * cell
-        places.append(Place(x, y, radius, float(ref_wall[k]), float(mov_wall[k])))
+        places.append(Contradiction(x, y, radius, float(ref_wall[k]), float(mov_wall[k])))
     places.sort(key=lambda place: (-place.wall, place.x, place.y))
     return tuple(places), max(0.0, float(wall.sum()) - sum(place.wall for place in places))

@@ -16,7 +16,7 @@ from math import ceil, cos, hypot, sin, sqrt
 
 import numpy as np
 
-from algorithms.common.parallel_kernels import kernel, spread
+from algorithms.common.parallel_kernels import kernel, run_in_threads
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import BoolArray
 from algorithms.maps.robots import NOWHERE, Robots
@@ -224,7 +224,7 @@ class _Side:
                 out[start:stop],
             )  # fmt: skip
 
-        spread(work, len(out), at_least=4)
+        run_in_threads(work, len(out), at_least=4)
 
 
 def _patches(place: FloatArray) -> tuple[IntArray, IntArray]:

@@ -17,14 +17,15 @@ from typing import TypeVar
 
 import numpy as np
 
-from algorithms.common.parallel_kernels import spread
+from algorithms.common.parallel_kernels import run_in_threads
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.robots import Robots
 from algorithms.observations.observation import Encounter, robots_of
-from algorithms.observations.search_window import Box, CoupledWindow
+from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.likelihood_field import clear, wall_field
 from algorithms.optimisation.objective import Objective, Side
+from algorithms.optimisation.search_box import SearchBox
 from algorithms.verdict.wall_evidence import Evidence, evidence
 from algorithms.verdict.wall_map import WallMap, make_wall_map, pooled
 
@@ -107,7 +108,7 @@ class WholeMaps:
         """
         pivot = T_ref_mov.inverse().apply(self.robots.places(T_ref_mov).mean(axis=0))
         at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
-        box = Box(at, at, pivot)
+        box = SearchBox(at, at, pivot)
         for _ in range(MOST_FITS):
             fitted = _PARABOLOID @ self.crisp(box.transforms(at + _AROUND * (HILL, HILL, HILL / REACH)))
             curvature = np.zeros((3, 3))
@@ -126,7 +127,7 @@ class WholeMaps:
         """From place to place to the best of the 27 around; half the steps where that is the middle."""
         pivot = self.window.pivot
         at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
-        box = Box(at, at, pivot)
+        box = SearchBox(at, at, pivot)
         for _ in range(MOST_LOOKS):
             around = at + _AROUND * (step, step, step / REACH)
             best = int(objective(box.transforms(around)).argmax())
@@ -185,7 +186,7 @@ def _each(count: int, make: Callable[[int], Made]) -> list[Made]:
         for n in range(start, stop):
             made[n] = make(n)
 
-    spread(work, count)
+    run_in_threads(work, count)
     return [made[n] for n in range(count)]
 
 

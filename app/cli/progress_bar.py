@@ -7,7 +7,8 @@ from typing import Any
 
 from tqdm import tqdm
 
-from algorithms.methods.steps import MergeResult, Step
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.steps import Step
 from app.model import status_text as words
 from app.model.run_state import RunState
 

@@ -22,10 +22,12 @@ import numpy as np
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.files.atomic_write import write_files
-from algorithms.files.case_folder import ROUGH_OBSERVATION_FILE, Case, Truth, case_folders, read_case
+from algorithms.files.case_folder import Case, case_folders, read_case
+from algorithms.files.observation_file import ROUGH_OBSERVATION_FILE
+from algorithms.files.truth_file import Truth
 from algorithms.methods import registry as methods
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.refusal_causes import NO_SWARM
-from algorithms.methods.steps import MergeResult
 from algorithms.simulator.training_pairs import training_pairs
 from algorithms.verdict.calibration import brier_score, calibration_error
 from algorithms.verdict.model_fit import Example, Told, cross_validated, fit, most_likely_wrong, told_by

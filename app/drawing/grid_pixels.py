@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, CellArray
 from algorithms.maps.map_fusion import Fusion
 from algorithms.spectra.augmented_map import AugmentedMap
-from algorithms.verdict.cell_agreement import AGREES, CONTRADICTS, Touch, Walls
-from algorithms.verdict.contradictions import Conflicts
+from algorithms.verdict.cell_agreement import AGREES, CONTRADICTS, CellAgreement, WallLookup
+from algorithms.verdict.contradictions import Contradictions
 from app.drawing.palette import Palette, Rgb, viridis
 
 Pixels = NDArray[np.uint8]
@@ -106,7 +106,7 @@ def touches(
 ) -> GridPixels:
     """The walls of one map that the other one agrees with or denies; the rest transparent.
 
-    told : (N,) for every wall cell, as ``Walls.told`` gives it
+    told : (N,) for every wall cell, as ``WallLookup.told`` gives it
     """
     shape = walls.grid.cells[part].shape
     factor = pooling(shape, most)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import (
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
     MatchesDetail,
-    MergeResult,
     ProofDetail,
     ProvenDetail,
     RefineDetail,

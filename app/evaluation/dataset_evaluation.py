@@ -19,18 +19,11 @@ import numpy as np
 
 from algorithms.common.errors import InputFileError, MapMergeError, NoAnswerError
 from algorithms.common.pose import pose_error
-from algorithms.files.case_folder import (
-    OBSERVATION_FILE,
-    ROUGH_OBSERVATION_FILE,
-    TRUTH_FILE,
-    Case,
-    Truth,
-    case_folders,
-    read_case,
-    read_truth,
-)
+from algorithms.files.case_folder import Case, case_folders, read_case
+from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE
+from algorithms.files.truth_file import TRUTH_FILE, Truth, read_truth
 from algorithms.methods import registry as methods
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
 from algorithms.simulator.wrong_pairs import crossed
 from algorithms.verdict.calibration import brier_score, calibration_error, reliability
 from app.jobs.executor import Executor, LostTask, SerialExecutor, Task

@@ -16,8 +16,8 @@ from algorithms.files.case_folder import Case
 from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
 from algorithms.methods import registry as methods
-from algorithms.methods.stage_runner import Memo
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.stage_runner import StageCache
 from algorithms.observations.observation import Observation
 from algorithms.verdict.decision import Outcome
 from algorithms.verdict.performance_index import performance_index

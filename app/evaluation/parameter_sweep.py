@@ -10,10 +10,12 @@ from statistics import fmean, median, pstdev
 from threading import Event
 from typing import Any
 
-from algorithms.files.case_folder import Case, observations_to_bytes, truth_to_bytes
+from algorithms.files.case_folder import Case
+from algorithms.files.observation_file import observations_to_bytes
+from algorithms.files.truth_file import truth_to_bytes
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import METHODS
-from algorithms.methods.stage_runner import Memo
+from algorithms.methods.stage_runner import StageCache
 from algorithms.verdict import performance_index as merit
 from app.evaluation.checkpoint import Checkpoint
 from app.evaluation.method_run import MethodRun, run_method, true_fusion

@@ -24,7 +24,7 @@ from typing import Any
 
 from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import MapMergeError
-from algorithms.methods.stage_runner import Memo
+from algorithms.methods.stage_runner import StageCache
 from algorithms.methods.steps import Step
 from app.jobs.fair_semaphore import FairSemaphore
 from app.jobs.incremental_pickle import IncrementalPickle

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from algorithms.verdict.contradictions import Conflicts, Place
+from algorithms.verdict.contradictions import Contradiction, Contradictions
 
 MOST_PLACES = 12  # that are listed, and ringed on the map; the smaller ones are told in sum
 
@@ -20,7 +20,7 @@ def summary(found: Conflicts) -> str:
     return f"{found.wall:.1f} m of wall contradict: {many}{further}. Where, in metres of map 1's frame:"
 
 
-def whose(place: Place) -> str:
+def whose(place: Contradiction) -> str:
     """Whose wall it is that the other map denies."""
     if min(place.ref_wall, place.mov_wall) >= 0.2 * place.wall:
         return "both maps' wall"

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from algorithms.files.case_folder import Case, Truth
+from algorithms.files.case_folder import Case
+from algorithms.files.truth_file import Truth
 from algorithms.maps.grid_map import GridMap, remarks_on
 from algorithms.observations.observation import Encounter, Observation, encounters_of, name_of
 

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods import registry as methods
-from algorithms.methods.stage_runner import Memo
+from algorithms.methods.stage_runner import StageCache
 from algorithms.methods.steps import Step
 from algorithms.observations.observation import Observation
 
@@ -37,7 +37,7 @@ class MergeJob:
     again: bool = False
     steps: Callable[[], Iterator[Step]] | None = None
 
-    def run(self, memo: Memo) -> Iterator[Step]:
+    def run(self, memo: StageCache) -> Iterator[Step]:
         """Do it, up to its last step; ``memo`` knows the stages of the method's runs before."""
         if self.steps is not None:
             return self.steps()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
-from algorithms.methods.baselines.carpin_spectra import SmmConfig
+from algorithms.methods.baselines.carpin_spectra import CarpinConfig
 from algorithms.methods.baselines.feature_matching import FeatureConfig
 from algorithms.methods.baselines.mse_registration import MseConfig
 from algorithms.methods.baselines.phase_correlation import PhaseCorrelationConfig

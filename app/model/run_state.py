@@ -7,10 +7,10 @@ from math import isfinite
 from typing import Any, TypeVar
 
 from algorithms.common.pose import Pose2
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import (
     AnswersDetail,
     Detail,
-    MergeResult,
     ProofDetail,
     ProvenDetail,
     RefineDetail,

@@ -10,6 +10,7 @@ import numpy as np
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.manual_merge import BY_HAND
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
 from algorithms.methods.steps import (
     AnswersDetail,
@@ -17,7 +18,6 @@ from algorithms.methods.steps import (
     CandidatesDetail,
     HoughDetail,
     MatchesDetail,
-    MergeResult,
     ObservationDetail,
     ProofDetail,
     ProvenDetail,

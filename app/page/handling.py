@@ -9,9 +9,10 @@ import viser
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import OBSERVATION_FILE, observations_to_bytes
-from algorithms.methods.manual_merge import Scales, known_answers, refine
-from algorithms.methods.steps import MergeResult, ObservationDetail, Step
+from algorithms.files.observation_file import OBSERVATION_FILE, observations_to_bytes
+from algorithms.methods.manual_merge import ManualMerge, known_answers, refine
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.steps import ObservationDetail, Step
 from algorithms.observations.observation import Observation
 from app.drawing.legend import legend
 from app.drawing.scene_layout import SceneLayout
@@ -96,7 +97,7 @@ class Handling(Part):
     # --- map 2 by hand: see editing/map_drag_controller.py ------------------------------------------
 
     @property
-    def scales(self) -> Scales | None:
+    def scales(self) -> ManualMerge | None:
         """What a transform is weighed on; None where something is missing, or wrong, which is told."""
         i, config = self._inputs, self._tuning.config
         if i.ref is None or i.mov is None or not i.observations:
@@ -104,7 +105,7 @@ class Handling(Part):
         method = self._method
         known = known_answers(method.get(MergeResult)) if method and method.config == config else ()
         try:
-            return Scales(i.ref, i.mov, i.observations, config, known)
+            return ManualMerge(i.ref, i.mov, i.observations, config, known)
         except MapMergeError as error:
             self._report(error)
             return None
@@ -158,7 +159,7 @@ class Handling(Part):
             self._timeline.amend(story)
             self._stage.flush()
 
-    def hand_refines(self, scales: Scales, T_ref_mov: Pose2) -> None:
+    def hand_refines(self, scales: ManualMerge, T_ref_mov: Pose2) -> None:
         """Search from there; where it ends map 2 is in the hand again."""
         search = partial(refine, scales, T_ref_mov, self._run.seed)
         job = self._job(pace=self._run.pace, steps=search)

@@ -82,7 +82,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         self._story = RunState()
         self._notice: viser.NotificationHandle | None = None
         self._result: MergeResult | None = None  # of the last run that came to its end
-        self._conflicts: Conflicts | None = None  # of this result
+        self._conflicts: Contradictions | None = None  # of this result
         self._config: Any = None  # it ran with
         self._merged = False  # from the first Merge on, a moved slider runs the whole method again
         self._asked = False  # whether anything was asked for at all

@@ -9,8 +9,9 @@ from typing import Any
 from algorithms.common.errors import MapMergeError, NoAnswerError
 from algorithms.methods import registry as methods
 from algorithms.methods.manual_merge import BY_HAND
-from algorithms.methods.steps import AugmentDetail, CauseDetail, MergeResult, Step, TriedDetail
-from algorithms.verdict.contradictions import Conflicts, find_conflicts
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.steps import AugmentDetail, CauseDetail, Step, TriedDetail
+from algorithms.verdict.contradictions import Contradictions, find_conflicts
 from app.drawing.legend import in_hand, legend
 from app.jobs.worker_pool import WorkerDiedError
 from app.model import status_text as words
@@ -71,7 +72,7 @@ class Telling(Part):
         if result is not None and job.steps is None:
             self._weigh(result, job.config)
 
-    def _weigh(self, result: MergeResult, config: Any) -> tuple[Conflicts, str]:
+    def _weigh(self, result: MergeResult, config: Any) -> tuple[Contradictions, str]:
         """Where the maps contradict each other, and the page of the result; worked out once."""
         of = (result, self._inputs, config)
         if self._weighed is None or any(a is not b for a, b in zip(self._weighed[0], of, strict=True)):

@@ -7,10 +7,10 @@ from html import escape
 from math import degrees
 from typing import Any
 
-from algorithms.files.case_folder import observations_to_bytes
+from algorithms.files.observation_file import observations_to_bytes
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
-from algorithms.methods.steps import MergeResult
-from algorithms.verdict.contradictions import Conflicts, find_conflicts
+from algorithms.verdict.contradictions import Contradictions, find_conflicts
 from algorithms.verdict.decision import Outcome, merges_of
 from app.drawing.palette import LIGHT
 from app.drawing.svg.verdict_bars import bars
@@ -154,7 +154,7 @@ def _likely(result: MergeResult) -> list[str]:
     return [f"<p>{escape(said)}</p>", figure, cleared]
 
 
-def _places(found: Conflicts) -> list[str]:
+def _places(found: Contradictions) -> list[str]:
     said = f"<p>{escape(summary(found))}</p>"
     if not found.places:
         return [said]

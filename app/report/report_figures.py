@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from algorithms.common.pose import FloatArray
 from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap, where
 from algorithms.maps.map_fusion import Fusion
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
 from algorithms.observations.observation import Encounter, Observation
 from algorithms.optimisation.branch_and_bound import ProofState
-from algorithms.verdict.contradictions import Conflicts
+from algorithms.verdict.contradictions import Contradictions
 from app.drawing.palette import LIGHT, Rgb, css
 from app.drawing.scene_layout import Rect, known_corners, rect_of
 from app.drawing.svg.map_plot import robot, scale_bar, scene
@@ -97,7 +97,7 @@ def overlay(result: MergeResult, seen: Sequence[Observation]) -> str:
     return _finish(plot, (*chips, ("contradiction", LIGHT.conflict)), "The merged map")
 
 
-def difference(result: MergeResult, found: Conflicts) -> str:
+def difference(result: MergeResult, found: Contradictions) -> str:
     """Walls that the other map denies, in the colour of their map, and the numbered places they make."""
     fusion = result.fusion
     plot, raster = _merged_plot(fusion)

@@ -15,7 +15,7 @@ import numpy as np
 from algorithms.common.errors import NoAnswerError
 from algorithms.files.map_file import map_to_bytes
 from algorithms.maps.map_fusion import Fusion
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.decision import Outcome
 from algorithms.verdict.performance_index import performance_index
 from algorithms.verdict.ranking import Weighed

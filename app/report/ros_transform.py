@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from algorithms.files.yaml_fields import number_text, quoted
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
 
 
 def publish_command(result: MergeResult) -> str:

@@ -21,8 +21,8 @@ import numpy as np
 import pytest
 
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import write_observations
 from algorithms.files.map_file import write_map
+from algorithms.files.observation_file import write_observations
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
 from algorithms.observations.observation import encounter
@@ -30,9 +30,9 @@ from algorithms.observations.search_window import CoupledWindow, coupled_window
 from algorithms.optimisation.branch_and_bound import ProofConfig, ProofState, prove
 from algorithms.optimisation.likelihood_field import make_agreement
 from algorithms.optimisation.objective import Lookup, Objective, make_objective
-from algorithms.optimisation.upper_bounds import Lattice
+from algorithms.optimisation.transform_lattice import TransformLattice
 from algorithms.simulator.large_pair import simulate_large
-from algorithms.simulator.scenario import Case, simulate
+from algorithms.simulator.scenario import SimulatedCase, simulate
 from algorithms.spectra.augmented_map import AugmentedMap, augment
 
 SIDE, WALLS, PARTICLES = 1000, 8_000, 400
@@ -151,7 +151,7 @@ def bench_whole_merge(pair, benchmark):
     )
 
 
-def search_of(case: Case) -> tuple[Objective, CoupledWindow]:
+def search_of(case: SimulatedCase) -> tuple[Objective, CoupledWindow]:
     """What the default method proves the best of."""
     config = METHODS[DEFAULT_METHOD].defaults
     seen = [encounter(observation) for observation in case.observations]
@@ -174,7 +174,7 @@ def bench_proof_against_exhaustive_search(which, pair, benchmark):
     """Every transform of the lattice in the window, by the same kernel; a sample of them is timed."""
     case = pair if which == "500 × 500" else simulate_large(1500)
     objective, window = search_of(case)
-    lattice = Lattice(objective, window)
+    lattice = TransformLattice(objective, window)
     shifts = np.array([(0, column, row) for column, row in product(range(lattice.side), repeat=2)])
     inside = window.contains(lattice.poses(lattice.coordinates(shifts, 0)))
     shifts = shifts[inside]

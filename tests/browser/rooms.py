@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from algorithms.files.case_folder import observations_to_bytes
 from algorithms.files.map_file import map_to_bytes
+from algorithms.files.observation_file import observations_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.observations.observation import Observation
 

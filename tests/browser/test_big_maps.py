@@ -11,8 +11,8 @@ import pytest
 from driver import Tab, settle
 
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import observations_to_bytes
 from algorithms.files.map_file import map_from_bytes, map_to_bytes
+from algorithms.files.observation_file import observations_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.observations.observation import Observation
 from app.drawing.palette import LIGHT

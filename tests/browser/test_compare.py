@@ -9,8 +9,9 @@ import pytest
 from driver import Tab, settle
 
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import Case, read_observations
+from algorithms.files.case_folder import Case
 from algorithms.files.map_file import read_map
+from algorithms.files.observation_file import read_observations
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.methods.registry import merge
 from algorithms.observations.observation import Observation

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from driver import READY, SCALE, field, metres, settle
 
-from algorithms.files.case_folder import Case, read_observations
+from algorithms.files.case_folder import Case
+from algorithms.files.observation_file import read_observations
 from algorithms.observations.observation import encounter
 from app.drawing.scene_layout import lay_out
 from app.page.application import make_server

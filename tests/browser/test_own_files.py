@@ -10,8 +10,9 @@ from driver import settle
 from rooms import l_room, write_case
 
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import Case, observations_to_bytes
+from algorithms.files.case_folder import Case
 from algorithms.files.map_file import read_map
+from algorithms.files.observation_file import observations_to_bytes
 from algorithms.methods.registry import merge
 from algorithms.observations.observation import Observation
 from app.page.application import make_server

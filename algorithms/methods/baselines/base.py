@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import GridMap
-from algorithms.maps.map_fusion import Conflict, Fusion, fuse
-from algorithms.methods.merge_result import conclude
-from algorithms.methods.stage_runner import Chain, Memo
+from algorithms.maps.map_fusion import ConflictRule, Fusion, fuse
+from algorithms.methods.merge_result import finish_merge
+from algorithms.methods.stage_runner import StageCache, StageRunner
 from algorithms.methods.steps import AnswersDetail, ObservationDetail, Step, WeighedDetail
 from algorithms.observations.observation import Encounter, Observation, encounters_of, robots_of
 from algorithms.observations.search_window import WindowConfig, coupled_window
@@ -22,15 +22,15 @@ from algorithms.verdict.whole_maps import make_whole_maps
 Found = tuple[AnswersDetail, FloatArray]
 """Answers, best first, and the (3, 3) covariance of x, y, theta of the best; m and rad."""
 
-Search = Callable[[Chain], Generator[Step, None, Found]]
+Search = Callable[[StageRunner], Generator[Step, None, Found]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class DirectConfig:
+class BaselineConfig:
     """What follows the transform, whoever has found it."""
 
     verdict: VerdictConfig = field(default_factory=VerdictConfig)
-    conflict: Conflict = Conflict.OCCUPIED_WINS
+    conflict: ConflictRule = ConflictRule.OCCUPIED_WINS
     """Which map is believed where one says wall and the other says free."""
 
 
@@ -38,9 +38,9 @@ def run_direct(
     ref: GridMap,
     mov: GridMap,
     observations: tuple[Observation, ...],
-    config: DirectConfig,
+    config: BaselineConfig,
     seed: int,
-    memo: Memo | None,
+    memo: StageCache | None,
     method: str,
     search: Search,
     valued: bool = True,
@@ -48,33 +48,33 @@ def run_direct(
     """Yield the steps of a merge whose transform comes from ``search``; the last one's detail is the
     MergeResult.
 
-    search : yields its steps, a stage or several of the chain, and returns what it has found
+    search : yields its steps, a stage or several, and returns what it has found
     valued : whether the values of the answers say anything
     """
-    chain = Chain({} if memo is None else memo)
-    seen: ObservationDetail = yield from chain.stage(
+    runner = StageRunner({} if memo is None else memo)
+    seen: ObservationDetail = yield from runner.stage(
         "observe",
         (observations, ref.resolution, mov.resolution),
         lambda: [ObservationDetail(encounters_of(observations, ref, mov))],
     )
-    found, covariance = yield from search(chain)
+    found, covariance = yield from search(runner)
     best, size = found.answers[0], config.verdict.robot_size
-    weighed: WeighedDetail = yield from chain.stage(
+    weighed: WeighedDetail = yield from runner.stage(
         "weigh",
         (ref, mov, seen, found, size),
         lambda: [_weigh(ref, mov, seen.encounters, best.T_ref_mov, size)],
     )
-    fusion: Fusion = yield from chain.stage(
+    fusion: Fusion = yield from runner.stage(
         "fuse",
         (ref, mov, weighed, config.conflict, size),
         lambda: [fuse(ref, mov, best.T_ref_mov, config.conflict, robots_of(seen.encounters, size))],
     )
     named, *beside = weighed.answers
-    yield from chain.stage(
+    yield from runner.stage(
         "verdict",
         (fusion, weighed, config.verdict, method),
         lambda: [
-            conclude(
+            finish_merge(
                 named,
                 beside or None,
                 fusion,
@@ -85,7 +85,7 @@ def run_direct(
                 answers=found.answers,
                 method=method,
                 seed=seed,
-                timings_s=chain.timings_s,
+                timings_s=runner.timings_s,
             )
         ],
     )

@@ -6,14 +6,15 @@ from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 
 from algorithms.maps.grid_map import GridMap
-from algorithms.methods.baselines.base import DirectConfig, Found, run_direct
-from algorithms.methods.stage_runner import Chain, Memo
-from algorithms.methods.steps import Answer, AnswersDetail, Step
+from algorithms.methods.baselines.base import BaselineConfig, Found, run_direct
+from algorithms.methods.merge_result import Answer
+from algorithms.methods.stage_runner import StageCache, StageRunner
+from algorithms.methods.steps import AnswersDetail, Step
 from algorithms.observations.observation import Observation, bilateral_covariance, bilateral_transform
 
 
 @dataclass(frozen=True, kw_only=True)
-class BilateralConfig(DirectConfig):
+class BilateralConfig(BaselineConfig):
     """Settings of the bilateral method: it has none but what follows the transform."""
 
 
@@ -23,7 +24,7 @@ def run(
     observations: tuple[Observation, ...],
     config: BilateralConfig,
     seed: int = 0,
-    memo: Memo | None = None,
+    memo: StageCache | None = None,
     method: str = "bilateral",
 ) -> Iterator[Step]:
     """Yield the steps of the bilateral merge of the first sighting; the last one's detail is the MergeResult.
@@ -32,8 +33,8 @@ def run(
     """
     observation = observations[0]
 
-    def search(chain: Chain) -> Generator[Step, None, Found]:
-        found: AnswersDetail = yield from chain.stage(
+    def search(runner: StageRunner) -> Generator[Step, None, Found]:
+        found: AnswersDetail = yield from runner.stage(
             "search",
             (observation, method),
             lambda: [AnswersDetail((Answer(bilateral_transform(observation), 0.0, "closed form"),))],

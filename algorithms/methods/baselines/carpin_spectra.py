@@ -19,9 +19,10 @@ from algorithms.common.pose import FloatArray, Pose2
 from algorithms.common.setting_bounds import Bounds, check_bounds
 from algorithms.maps.grid_map import UNKNOWN, GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
-from algorithms.methods.baselines.base import DirectConfig, Found, run_direct
-from algorithms.methods.stage_runner import Chain, Memo
-from algorithms.methods.steps import Answer, AnswersDetail, Detail, HoughDetail, ShiftDetail, Step
+from algorithms.methods.baselines.base import BaselineConfig, Found, run_direct
+from algorithms.methods.merge_result import Answer
+from algorithms.methods.stage_runner import StageCache, StageRunner
+from algorithms.methods.steps import AnswersDetail, Detail, HoughDetail, ShiftDetail, Step
 from algorithms.observations.observation import Observation
 from algorithms.observations.search_window import Window
 from algorithms.spectra.augmented_map import AugmentedMap
@@ -42,7 +43,7 @@ class RankConfig:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SmmConfig(DirectConfig):
+class CarpinConfig(BaselineConfig):
     """Settings of spectra-based map merging alone."""
 
     spectra: SpectraConfig = field(default_factory=SpectraConfig)
@@ -54,9 +55,9 @@ def run(
     ref: GridMap,
     mov: GridMap,
     observations: tuple[Observation, ...],
-    config: SmmConfig,
+    config: CarpinConfig,
     seed: int = 0,
-    memo: Memo | None = None,
+    memo: StageCache | None = None,
     method: str = "smm-only",
 ) -> Iterator[Step]:
     """Yield the steps of Carpin's merge; the last one's detail is the MergeResult.
@@ -64,17 +65,17 @@ def run(
     raises : NoAnswerError where a map has no walls
     """
 
-    def search(chain: Chain) -> Generator[Step, None, Found]:
+    def search(runner: StageRunner) -> Generator[Step, None, Found]:
         for grid in (ref, mov):
             if len(grid.points) == 0:
                 raise NoAnswerError(f"{grid.name} has no walls, and a spectrum is made of walls")
         walls = plain(ref), plain(mov)
-        hough: HoughDetail = yield from chain.stage(
+        hough: HoughDetail = yield from runner.stage(
             "spectra",
             (ref, mov, method, config.spectra, config.candidates),
             lambda: [HoughDetail(match_turns(*walls, config.spectra, config.candidates))],
         )
-        found: AnswersDetail = yield from chain.stage(
+        found: AnswersDetail = yield from runner.stage(
             "search", (hough, config.rank), lambda: _search(ref, mov, *walls, hough, config.rank)
         )
         step = max(ref.resolution, mov.resolution)

@@ -34,7 +34,7 @@ class PictureConfig:
 
 
 @dataclass(frozen=True, eq=False)
-class Picture:
+class DistanceImage:
     """A map as a picture; row 0 is the bottom.
 
     far   : (H, W) float32, distance to the next wall over the reach; 0 on a wall, 1 from the reach on
@@ -87,7 +87,7 @@ def drawn(mask: BoolArray, resolution: float, cell: float, margin: int) -> BoolA
     return out
 
 
-def picture(grid: GridMap, cell: float, reach: float, margin: int = 0) -> Picture:
+def picture(grid: GridMap, cell: float, reach: float, margin: int = 0) -> DistanceImage:
     """The map's distance to the next wall, of what is known.
 
     reach  : up to which distances are told apart; metres
@@ -98,7 +98,7 @@ def picture(grid: GridMap, cell: float, reach: float, margin: int = 0) -> Pictur
     known = drawn(grid.cells[rows, cols] != UNKNOWN, grid.resolution, cell, margin)
     far = np.minimum(cell * distance_to_walls(walls) / reach, 1).astype(np.float32)
     low = np.array([cols.start, rows.start]) * grid.resolution - margin * cell
-    return Picture(far, known, cell, low, grid)
+    return DistanceImage(far, known, cell, low, grid)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +137,7 @@ class Turn:
         return np.asarray((at - self.matrix[:, 2]) @ self.matrix[:, :2], dtype=np.float64)
 
 
-def pose_of(ref: Picture, mov: Picture, turn: Turn, shift: FloatArray) -> Pose2:
+def pose_of(ref: DistanceImage, mov: DistanceImage, turn: Turn, shift: FloatArray) -> Pose2:
     """T_ref_mov that turns mov's picture and then moves it by (2,) columns and rows over ref's."""
     first = np.full(2, 0.5 * mov.cell) + mov.low
     there = (turn.matrix[:, 2] + shift + 0.5) * ref.cell + ref.low

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import FloatArray
 from algorithms.common.setting_bounds import Bounds, check_bounds
-from algorithms.methods.baselines.distance_image import Picture, Turn
+from algorithms.methods.baselines.distance_image import DistanceImage, Turn
 
 Described = tuple[FloatArray, NDArray[Any]]
 """(N, 2) column and row of the features, and (N, D) what they look like: bool, or real numbers."""
@@ -112,18 +112,18 @@ class HarrisConfig(CornerConfig):
 DetectorConfig = SiftConfig | OrbConfig | SurfConfig | ShiTomasiConfig | HarrisConfig
 
 
-def describe(picture: Picture, config: DetectorConfig) -> Described:
+def describe(picture: DistanceImage, config: DetectorConfig) -> Described:
     """The features of a picture, of the kind that the config is of."""
     return _KINDS[type(config)](picture, config)
 
 
-def _sift(picture: Picture, config: SiftConfig) -> Described:
+def _sift(picture: DistanceImage, config: SiftConfig) -> Described:
     sift = cv2.SIFT.create(config.most, contrastThreshold=config.contrast)
     found, looks = sift.detectAndCompute(picture.grey, None)
     return _places(found), _root(looks)
 
 
-def _orb(picture: Picture, config: OrbConfig) -> Described:
+def _orb(picture: DistanceImage, config: OrbConfig) -> Described:
     orb = cv2.ORB.create(config.most, nlevels=6, fastThreshold=config.contrast)
     found, looks = orb.detectAndCompute(picture.grey, None)
     if looks is None:
@@ -131,7 +131,7 @@ def _orb(picture: Picture, config: OrbConfig) -> Described:
     return _places(found), np.unpackbits(np.asarray(looks, dtype=np.uint8), axis=1).astype(np.bool_)
 
 
-def _corners(picture: Picture, config: ShiTomasiConfig | HarrisConfig) -> Described:
+def _corners(picture: DistanceImage, config: ShiTomasiConfig | HarrisConfig) -> Described:
     cell = picture.cell
     found = cv2.goodFeaturesToTrack(
         picture.grey,
@@ -152,7 +152,7 @@ def _corners(picture: Picture, config: ShiTomasiConfig | HarrisConfig) -> Descri
     return _places(described), _root(looks)
 
 
-def _surf(picture: Picture, config: SurfConfig) -> Described:
+def _surf(picture: DistanceImage, config: SurfConfig) -> Described:
     """SURF of mahotas, each feature in a copy of the picture that is turned until it points along x.
 
     mahotas 1.4 itself finds the direction of a feature only to within a turn of its own: in a picture that
@@ -195,7 +195,7 @@ _KINDS: dict[type, Callable[..., Described]] = {
 }
 
 
-def _orientations(picture: Picture, at: FloatArray, radius: float) -> list[float]:
+def _orientations(picture: DistanceImage, at: FloatArray, radius: float) -> list[float]:
     """Which way each place points: to where it is brighter; degrees from the columns to the rows."""
     from skimage.feature import corner_orientations  # slow to load, and no other method needs it
 

@@ -16,11 +16,12 @@ from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.common.setting_bounds import Bounds, check_bounds
 from algorithms.maps.grid_map import GridMap
-from algorithms.methods.baselines.base import DirectConfig, Found, run_direct
+from algorithms.methods.baselines.base import BaselineConfig, Found, run_direct
 from algorithms.methods.baselines.distance_image import MARGIN, PictureConfig, common_cell, picture
 from algorithms.methods.baselines.feature_detectors import DetectorConfig, SiftConfig, describe
-from algorithms.methods.stage_runner import Chain, Memo
-from algorithms.methods.steps import Answer, AnswersDetail, Detail, MatchesDetail, Step
+from algorithms.methods.merge_result import Answer
+from algorithms.methods.stage_runner import StageCache, StageRunner
+from algorithms.methods.steps import AnswersDetail, Detail, MatchesDetail, Step
 from algorithms.observations.observation import Observation
 
 LEAST = 2  # matches that a transform follows from
@@ -45,7 +46,7 @@ class MatchConfig:
 
 
 @dataclass(frozen=True, kw_only=True)
-class FeatureConfig(DirectConfig):
+class FeatureConfig(BaselineConfig):
     """Settings of a method that matches features."""
 
     picture: PictureConfig = field(default_factory=PictureConfig)
@@ -59,7 +60,7 @@ def run(
     observations: tuple[Observation, ...],
     config: FeatureConfig,
     seed: int = 0,
-    memo: Memo | None = None,
+    memo: StageCache | None = None,
     method: str = "sift",
 ) -> Iterator[Step]:
     """Yield the steps of a merge by features; the last one's detail is the MergeResult.
@@ -68,13 +69,13 @@ def run(
              come from a package that is not installed
     """
 
-    def search(chain: Chain) -> Generator[Step, None, Found]:
-        matches: MatchesDetail = yield from chain.stage(
+    def search(runner: StageRunner) -> Generator[Step, None, Found]:
+        matches: MatchesDetail = yield from runner.stage(
             "match",
             (ref, mov, config.picture, config.detector, config.match.ratio),
             lambda: [match_features(ref, mov, config)],
         )
-        found: AnswersDetail = yield from chain.stage(
+        found: AnswersDetail = yield from runner.stage(
             "search", (matches, config.match, seed), lambda: _agree(matches, config.match, seed)
         )
         fit = agreeing(matches, found.answers[0].T_ref_mov, config.match.tolerance)

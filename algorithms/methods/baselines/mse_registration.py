@@ -21,18 +21,19 @@ from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, Pose2, wrap_angle
 from algorithms.common.setting_bounds import Bounds, check_bounds
 from algorithms.maps.grid_map import GridMap
-from algorithms.methods.baselines.base import DirectConfig, Found, run_direct
+from algorithms.methods.baselines.base import BaselineConfig, Found, run_direct
 from algorithms.methods.baselines.distance_image import (
-    Picture,
+    DistanceImage,
     PictureConfig,
     Turn,
     common_cell,
     picture,
     pose_of,
 )
-from algorithms.methods.baselines.overlap_error import Overlap, extent
-from algorithms.methods.stage_runner import Chain, Memo
-from algorithms.methods.steps import Answer, AnswersDetail, Detail, Step, TurnsDetail
+from algorithms.methods.baselines.overlap_error import OverlapError, extent
+from algorithms.methods.merge_result import Answer
+from algorithms.methods.stage_runner import StageCache, StageRunner
+from algorithms.methods.steps import AnswersDetail, Detail, Step, TurnsDetail
 from algorithms.observations.observation import Observation
 
 TOLD_EVERY = 10  # turns
@@ -57,7 +58,7 @@ class TurnConfig:
 
 
 @dataclass(frozen=True, kw_only=True)
-class MseConfig(DirectConfig):
+class MseConfig(BaselineConfig):
     """Settings of the registration by mean squared error."""
 
     picture: PictureConfig = field(default_factory=PictureConfig)
@@ -70,7 +71,7 @@ def run(
     observations: tuple[Observation, ...],
     config: MseConfig,
     seed: int = 0,
-    memo: Memo | None = None,
+    memo: StageCache | None = None,
     method: str = "mse",
 ) -> Iterator[Step]:
     """Yield the steps of the registration; the last one's detail is the MergeResult.
@@ -78,8 +79,8 @@ def run(
     raises : NoAnswerError where a map has no walls, or where the maps share too little at every turn
     """
 
-    def search(chain: Chain) -> Generator[Step, None, Found]:
-        found: AnswersDetail = yield from chain.stage(
+    def search(runner: StageRunner) -> Generator[Step, None, Found]:
+        found: AnswersDetail = yield from runner.stage(
             "search",
             (ref, mov, config.picture, config.turns, seed, method),
             lambda: _search(ref, mov, config, seed),
@@ -123,7 +124,7 @@ def _search(ref: GridMap, mov: GridMap, config: MseConfig, seed: int) -> Iterato
     levels = []
     for size, reach in ((max(fine, cell / 2), wide), (fine, config.picture.reach)):
         pair = picture(ref, size, reach), picture(mov, size, reach)
-        levels.append((Overlap.of(*pair, 0.8 * config.turns.overlap, seed), size))
+        levels.append((OverlapError.of(*pair, 0.8 * config.turns.overlap, seed), size))
     answers = []
     for index in best:
         T, error = poses[index], 1.0
@@ -147,7 +148,7 @@ def _peaks(scores: FloatArray) -> list[int]:
 class _Shifts:
     """The mean squared error of two pictures at all shifts at once, by Fourier transforms."""
 
-    def __init__(self, ref: Picture, mov: Picture, least: float) -> None:
+    def __init__(self, ref: DistanceImage, mov: DistanceImage, least: float) -> None:
         self._ref, self._mov = ref, mov
         side = Turn.of(mov.far.shape, 0.0).side
         self._size = tuple(next_fast_len(length + side, real=True) for length in ref.far.shape)

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import GridMap
-from algorithms.methods.baselines.distance_image import Picture
+from algorithms.methods.baselines.distance_image import DistanceImage
 
 MOST_POINTS = 5_000  # of map 2's pixels that are compared
 UNLIKE = 1.0  # mean squared error of what is nowhere alike; also said where the overlap is too small
 
 
 @dataclass(frozen=True, eq=False)
-class Overlap:
+class OverlapError:
     """A picture of each map, to be compared pixel by pixel.
 
     ref    : picture of the ref map
@@ -27,13 +27,13 @@ class Overlap:
     least  : share of the points that the ref map must know, too
     """
 
-    ref: Picture
+    ref: DistanceImage
     points: FloatArray
     values: FloatArray
     least: float
 
     @staticmethod
-    def of(ref: Picture, mov: Picture, least: float, seed: int) -> Overlap:
+    def of(ref: DistanceImage, mov: DistanceImage, least: float, seed: int) -> OverlapError:
         """Compare two pictures.
 
         least : share of the smaller map's known area that both must know
@@ -45,7 +45,7 @@ class Overlap:
             rows, cols = rows[some], cols[some]
         share = min(1.0, float(ref.known.sum()) / max(1, int(mov.known.sum())))
         points = mov.places(np.column_stack([cols, rows]).astype(np.float64))
-        return Overlap(ref, points, mov.far[rows, cols].astype(np.float64), least * share)
+        return OverlapError(ref, points, mov.far[rows, cols].astype(np.float64), least * share)
 
     def error(self, T_ref_mov: Pose2) -> float:
         """Mean squared difference of the two pictures where both know something; 0 … 1."""

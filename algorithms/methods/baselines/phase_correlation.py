@@ -20,9 +20,9 @@ from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, wrap_angle
 from algorithms.common.setting_bounds import Bounds, check_bounds
 from algorithms.maps.grid_map import GridMap
-from algorithms.methods.baselines.base import DirectConfig, Found, run_direct
+from algorithms.methods.baselines.base import BaselineConfig, Found, run_direct
 from algorithms.methods.baselines.distance_image import (
-    Picture,
+    DistanceImage,
     PictureConfig,
     Turn,
     common_cell,
@@ -30,9 +30,10 @@ from algorithms.methods.baselines.distance_image import (
     pose_of,
 )
 from algorithms.methods.baselines.mse_registration import check_walls, raster_covariance
-from algorithms.methods.baselines.overlap_error import UNLIKE, Overlap
-from algorithms.methods.stage_runner import Chain, Memo
-from algorithms.methods.steps import Answer, AnswersDetail, Detail, Step, TurnsDetail
+from algorithms.methods.baselines.overlap_error import UNLIKE, OverlapError
+from algorithms.methods.merge_result import Answer
+from algorithms.methods.stage_runner import StageCache, StageRunner
+from algorithms.methods.steps import AnswersDetail, Detail, Step, TurnsDetail
 from algorithms.observations.observation import Observation
 from algorithms.spectra.candidates import circular_peaks
 
@@ -57,7 +58,7 @@ class PhaseConfig:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PhaseCorrelationConfig(DirectConfig):
+class PhaseCorrelationConfig(BaselineConfig):
     """Settings of the phase correlation."""
 
     picture: PictureConfig = field(default_factory=lambda: PictureConfig(reach=0.2, pixels=400))
@@ -70,7 +71,7 @@ def run(
     observations: tuple[Observation, ...],
     config: PhaseCorrelationConfig,
     seed: int = 0,
-    memo: Memo | None = None,
+    memo: StageCache | None = None,
     method: str = "phase-correlation",
 ) -> Iterator[Step]:
     """Yield the steps of the phase correlation; the last one's detail is the MergeResult.
@@ -78,8 +79,8 @@ def run(
     raises : NoAnswerError where a map has no walls, or where the maps share too little at every turn tried
     """
 
-    def search(chain: Chain) -> Generator[Step, None, Found]:
-        found: AnswersDetail = yield from chain.stage(
+    def search(runner: StageRunner) -> Generator[Step, None, Found]:
+        found: AnswersDetail = yield from runner.stage(
             "search",
             (ref, mov, config.picture, config.phase, seed, method),
             lambda: _search(ref, mov, config, seed),
@@ -100,7 +101,7 @@ def _search(ref: GridMap, mov: GridMap, config: PhaseCorrelationConfig, seed: in
     angles = np.arange(DIRECTIONS, dtype=np.float64) * (2 * pi / DIRECTIONS) - pi
     told = TurnsDetail(angles, np.concatenate([half, half]))
     yield told
-    overlap = Overlap.of(*pair, config.phase.overlap, seed)
+    overlap = OverlapError.of(*pair, config.phase.overlap, seed)
     answers = []
     for peak in circular_peaks(half)[: config.phase.peaks]:
         for twin in (0.0, pi):
@@ -119,7 +120,7 @@ def _search(ref: GridMap, mov: GridMap, config: PhaseCorrelationConfig, seed: in
     yield AnswersDetail(tuple(answer for answer, _ in answers))
 
 
-def turn_correlation(ref: Picture, mov: Picture, size: int, frequencies: float) -> FloatArray:
+def turn_correlation(ref: DistanceImage, mov: DistanceImage, size: int, frequencies: float) -> FloatArray:
     """(DIRECTIONS / 2,) how well the amplitudes coincide when mov is turned by k steps, or by those and π."""
     from skimage.transform import warp_polar  # slow to load, and no other method needs it
 
@@ -136,7 +137,7 @@ def turn_correlation(ref: Picture, mov: Picture, size: int, frequencies: float) 
     return np.asarray(ifft(product, axis=0).real.sum(axis=1) / polar[0].size, dtype=np.float64)
 
 
-def _shift(ref: Picture, mov: Picture, turn: Turn, size: int) -> FloatArray:
+def _shift(ref: DistanceImage, mov: DistanceImage, turn: Turn, size: int) -> FloatArray:
     """(2,) columns and rows by which mov, turned, must be moved, from the phases of the spectra."""
     from skimage.registration import phase_cross_correlation
 

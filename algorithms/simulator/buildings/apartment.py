@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from algorithms.simulator.buildings.floor_plan import Box, Building, Canvas
+from algorithms.simulator.buildings.floor_plan import Building, FloorPlan, Rectangle
 from algorithms.simulator.buildings.furniture import DOOR, boxes, door, furnish
 from algorithms.simulator.buildings.office import INNER, MARGIN, OUTER, windows
 from algorithms.simulator.portable_random import chance, pick, uniform
@@ -12,7 +12,7 @@ from algorithms.simulator.portable_random import chance, pick, uniform
 Wall = tuple[bool, float, float, float]  # upright?, its level, from, to; metres
 
 
-def _divide(rng: np.random.Generator, room: Box, rooms: list[Box], walls: list[Wall]) -> None:
+def _divide(rng: np.random.Generator, room: Rectangle, rooms: list[Rectangle], walls: list[Wall]) -> None:
     """Split a room until it is small enough; collects rooms and dividing walls."""
     x0, y0, x1, y1 = room
     wide, deep = x1 - x0, y1 - y0
@@ -22,7 +22,7 @@ def _divide(rng: np.random.Generator, room: Box, rooms: list[Box], walls: list[W
     if wide > deep:
         cut = x0 + wide * uniform(rng, 0.34, 0.66)
         walls.append((True, cut, y0, y1))
-        halves: tuple[Box, Box] = (x0, y0, cut, y1), (cut, y0, x1, y1)
+        halves: tuple[Rectangle, Rectangle] = (x0, y0, cut, y1), (cut, y0, x1, y1)
     else:
         cut = y0 + deep * uniform(rng, 0.34, 0.66)
         walls.append((False, cut, x0, x1))
@@ -31,25 +31,25 @@ def _divide(rng: np.random.Generator, room: Box, rooms: list[Box], walls: list[W
         _divide(rng, half, rooms, walls)
 
 
-def _door_in(canvas: Canvas, rng: np.random.Generator, wall: Wall) -> None:
+def _door_in(plan: FloorPlan, rng: np.random.Generator, wall: Wall) -> None:
     """A door where no other wall ends in the way."""
     upright, level, low, high = wall
     for _ in range(60):
         a = uniform(rng, low + 0.3, high - 0.3 - DOOR)
         before, after = level - INNER, level + INNER
         if upright:
-            free = canvas.is_empty(before - 0.8, a - 0.15, before, a + DOOR + 0.15) and canvas.is_empty(
+            free = plan.is_empty(before - 0.8, a - 0.15, before, a + DOOR + 0.15) and plan.is_empty(
                 after, a - 0.15, after + 0.8, a + DOOR + 0.15
             )
         else:
-            free = canvas.is_empty(a - 0.15, before - 0.8, a + DOOR + 0.15, before) and canvas.is_empty(
+            free = plan.is_empty(a - 0.15, before - 0.8, a + DOOR + 0.15, before) and plan.is_empty(
                 a - 0.15, after, a + DOOR + 0.15, after + 0.8
             )
         if free:
             side = pick(rng, (-1, 1))
             x, y = (level, a) if upright else (a, level)
             along, into = ((0, 1), (side, 0)) if upright else ((1, 0), (0, side))
-            door(canvas, rng, x, y, along, into, leafless=0.4, shut=0.0)
+            door(plan, rng, x, y, along, into, leafless=0.4, shut=0.0)
             return
 
 
@@ -67,25 +67,25 @@ def home(shell: np.random.Generator, rng: np.random.Generator, resolution: float
 
 def _rooms(rng: np.random.Generator, width: float, height: float, resolution: float, name: str) -> Building:
     """A rectangle divided into rooms that open into one another; metres."""
-    canvas = Canvas(width + 2 * MARGIN, height + 2 * MARGIN, resolution)
+    plan = FloorPlan(width + 2 * MARGIN, height + 2 * MARGIN, resolution)
     outline = (MARGIN, MARGIN, MARGIN + width, MARGIN + height)
-    rooms: list[Box] = []
+    rooms: list[Rectangle] = []
     walls: list[Wall] = []
     _divide(rng, outline, rooms, walls)
-    canvas.outline(*outline, OUTER)
+    plan.outline(*outline, OUTER)
     for upright, level, low, high in walls:
         half = INNER / 2
-        canvas.box(
+        plan.box(
             *((level - half, low, level + half, high) if upright else (low, level - half, high, level + half))
         )
     for wall in walls:
-        _door_in(canvas, rng, wall)
+        _door_in(plan, rng, wall)
         if wall[3] - wall[2] > 7:
-            _door_in(canvas, rng, wall)
-    windows(canvas, rng, *outline)
+            _door_in(plan, rng, wall)
+    windows(plan, rng, *outline)
     if chance(rng, 0.5):  # a bay: one corner of the house is slanted
         cut = uniform(rng, 1.2, 2.4)
-        canvas.line(outline[0] + cut, outline[1], outline[0], outline[1] + cut, OUTER)
+        plan.line(outline[0] + cut, outline[1], outline[0], outline[1] + cut, OUTER)
     for x0, y0, x1, y1 in rooms:
         t = INNER / 2
         inside = (x0 + t, y0 + t, x1 - t, y1 - t)
@@ -95,10 +95,10 @@ def _rooms(rng: np.random.Generator, width: float, height: float, resolution: fl
             if area > 12
             else ("sleeping", "study", "kitchen", "store")
         )
-        furnish(canvas, rng, inside, "empty" if area < 5 else pick(rng, uses))
+        furnish(plan, rng, inside, "empty" if area < 5 else pick(rng, uses))
         if chance(rng, 0.15):
-            boxes(canvas, rng, inside)
-        canvas.stops.append(((x0 + x1) / 2, (y0 + y1) / 2))
+            boxes(plan, rng, inside)
+        plan.stops.append(((x0 + x1) / 2, (y0 + y1) / 2))
         if area > 14:
-            canvas.stops.append((x0 + 0.25 * (x1 - x0), y0 + 0.3 * (y1 - y0)))
-    return canvas.finish(name)
+            plan.stops.append((x0 + 0.25 * (x1 - x0), y0 + 0.3 * (y1 - y0)))
+    return plan.finish(name)

@@ -12,7 +12,7 @@ from algorithms.common.pose import FloatArray
 from algorithms.simulator.portable_random import cosine, sine
 
 Surface = NDArray[np.uint8]
-Box = tuple[float, float, float, float]  # x0, y0, x1, y1; metres, world frame
+Rectangle = tuple[float, float, float, float]  # x0, y0, x1, y1; metres, world frame
 
 AIR = 0
 WALL = 1
@@ -44,23 +44,23 @@ class Building:
         return np.asarray(self.surface != AIR)
 
 
-class Canvas:
+class FloorPlan:
     """A floor being drawn. All lengths in metres, world frame."""
 
     def __init__(self, width: float, height: float, resolution: float) -> None:
         self.resolution = resolution
         self.cells: Surface = np.zeros((ceil(height / resolution), ceil(width / resolution)), np.uint8)
         self.stops: list[tuple[float, float]] = []
-        self.doors: list[Box] = []
-        self._kept: list[Box] = []
+        self.doors: list[Rectangle] = []
+        self._kept: list[Rectangle] = []
 
     @staticmethod
-    def of(building: Building) -> Canvas:
-        """A canvas to draw on a copy of a building."""
+    def of(building: Building) -> FloorPlan:
+        """A plan to draw on a copy of a building."""
         height, width = building.surface.shape
-        canvas = Canvas(width * building.resolution, height * building.resolution, building.resolution)
-        canvas.cells = building.surface.copy()
-        return canvas
+        plan = FloorPlan(width * building.resolution, height * building.resolution, building.resolution)
+        plan.cells = building.surface.copy()
+        return plan
 
     def _window(self, x0: float, y0: float, x1: float, y1: float) -> tuple[slice, slice]:
         """The cells whose centres lie in a box."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from algorithms.simulator.buildings.floor_plan import WALL, Box, Canvas
+from algorithms.simulator.buildings.floor_plan import WALL, FloorPlan, Rectangle
 from algorithms.simulator.portable_random import chance, cosine, pick, sine, ticks_of_degrees, uniform, whole
 
 LEG = 0.06  # metres; thinner legs would slip between the beams of most lidars
@@ -12,7 +12,7 @@ DOOR = 0.95  # metres of clear opening
 
 
 def door(
-    canvas: Canvas,
+    plan: FloorPlan,
     rng: np.random.Generator,
     x: float,
     y: float,
@@ -38,9 +38,9 @@ def door(
         max(x, far_x) + deep_x,
         max(y, far_y) + deep_y,
     )
-    canvas.box(*cut, what=0)
-    canvas.doors.append((x, y, far_x, far_y))
-    canvas.keep_clear(
+    plan.box(*cut, what=0)
+    plan.doors.append((x, y, far_x, far_y))
+    plan.keep_clear(
         cut[0] - 0.7 * abs(into[0]), cut[1] - 0.7 * abs(into[1]),
         cut[2] + 0.7 * abs(into[0]), cut[3] + 0.7 * abs(into[1]),
     )  # fmt: skip
@@ -51,13 +51,13 @@ def door(
     angle = ticks_of_degrees(degrees)
     c, s = 0.97 * DOOR * float(cosine(angle)), 0.97 * DOOR * float(sine(angle))
     leaf_x, leaf_y = c * along[0] + s * into[0], c * along[1] + s * into[1]
-    canvas.line(x, y, x + leaf_x, y + leaf_y, 0.05)
+    plan.line(x, y, x + leaf_x, y + leaf_y, 0.05)
     return not closed
 
 
 def _along_a_wall(
-    canvas: Canvas, rng: np.random.Generator, room: Box, length: float, depth: float
-) -> Box | None:
+    plan: FloorPlan, rng: np.random.Generator, room: Rectangle, length: float, depth: float
+) -> Rectangle | None:
     """An empty place against one of the four walls of a room, or None after a few tries."""
     x0, y0, x1, y1 = room
     gap = 0.04
@@ -71,14 +71,14 @@ def _along_a_wall(
         x, y = (
             (x, (y0 + gap, y1 - gap - deep)[side]) if side < 2 else ((x0 + gap, x1 - gap - wide)[side - 2], y)
         )
-        if canvas.is_clear(x + 0.02, y + 0.02, x + wide - 0.02, y + deep - 0.02):
+        if plan.is_clear(x + 0.02, y + 0.02, x + wide - 0.02, y + deep - 0.02):
             return x, y, x + wide, y + deep
     return None
 
 
 def _in_the_room(
-    canvas: Canvas, rng: np.random.Generator, room: Box, wide: float, deep: float, aisle: float
-) -> Box | None:
+    plan: FloorPlan, rng: np.random.Generator, room: Rectangle, wide: float, deep: float, aisle: float
+) -> Rectangle | None:
     """An empty place with room to pass on all sides, or None after a few tries."""
     x0, y0, x1, y1 = room
     if x1 - x0 < wide + 2 * aisle or y1 - y0 < deep + 2 * aisle:
@@ -88,86 +88,86 @@ def _in_the_room(
             uniform(rng, x0 + aisle, x1 - aisle - wide),
             uniform(rng, y0 + aisle, y1 - aisle - deep),
         )
-        if canvas.is_clear(x - aisle / 2, y - aisle / 2, x + wide + aisle / 2, y + deep + aisle / 2):
+        if plan.is_clear(x - aisle / 2, y - aisle / 2, x + wide + aisle / 2, y + deep + aisle / 2):
             return x, y, x + wide, y + deep
     return None
 
 
-def _legs(canvas: Canvas, place: Box) -> None:
+def _legs(plan: FloorPlan, place: Rectangle) -> None:
     x0, y0, x1, y1 = place
     for x in (x0, x1 - LEG):
         for y in (y0, y1 - LEG):
-            canvas.box(x, y, x + LEG, y + LEG)
+            plan.box(x, y, x + LEG, y + LEG)
 
 
-def _chair(canvas: Canvas, rng: np.random.Generator, x: float, y: float) -> None:
+def _chair(plan: FloorPlan, rng: np.random.Generator, x: float, y: float) -> None:
     """Four legs, or the star foot of an office chair."""
     if chance(rng, 0.5):
-        canvas.ring(x, y, 0.0, uniform(rng, 0.12, 0.2))
+        plan.ring(x, y, 0.0, uniform(rng, 0.12, 0.2))
     else:
-        _legs(canvas, (x - 0.22, y - 0.22, x + 0.22, y + 0.22))
+        _legs(plan, (x - 0.22, y - 0.22, x + 0.22, y + 0.22))
 
 
-def desk(canvas: Canvas, rng: np.random.Generator, room: Box) -> None:
+def desk(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
     """A desk on legs with a drawer unit, and its chair."""
-    place = _along_a_wall(canvas, rng, room, uniform(rng, 1.3, 1.8), uniform(rng, 0.7, 0.8))
+    place = _along_a_wall(plan, rng, room, uniform(rng, 1.3, 1.8), uniform(rng, 0.7, 0.8))
     if place is None:
         return
     x0, y0, x1, y1 = place
-    _legs(canvas, place)
+    _legs(plan, place)
     if chance(rng, 0.7):
-        canvas.box(x0 + 0.08, y0 + 0.08, x0 + 0.5, y0 + 0.6)
+        plan.box(x0 + 0.08, y0 + 0.08, x0 + 0.5, y0 + 0.6)
     middle_x, middle_y = (room[0] + room[2]) / 2, (room[1] + room[3]) / 2
     x, y = (x0 + x1) / 2, (y0 + y1) / 2
     if x1 - x0 > y1 - y0:
-        _chair(canvas, rng, x + 0.2, y + (0.6 if middle_y > y else -0.6))
+        _chair(plan, rng, x + 0.2, y + (0.6 if middle_y > y else -0.6))
     else:
-        _chair(canvas, rng, x + (0.6 if middle_x > x else -0.6), y)
+        _chair(plan, rng, x + (0.6 if middle_x > x else -0.6), y)
 
 
-def cabinet(canvas: Canvas, rng: np.random.Generator, room: Box) -> None:
+def cabinet(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
     """A solid cupboard or bookshelf against a wall."""
-    place = _along_a_wall(canvas, rng, room, uniform(rng, 0.8, 2.2), uniform(rng, 0.35, 0.6))
+    place = _along_a_wall(plan, rng, room, uniform(rng, 0.8, 2.2), uniform(rng, 0.35, 0.6))
     if place is not None:
-        canvas.box(*place)
+        plan.box(*place)
 
 
-def sofa(canvas: Canvas, rng: np.random.Generator, room: Box) -> None:
+def sofa(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
     """A sofa or a bed: large, solid, against a wall."""
     size = pick(rng, ((1.7, 0.85), (2.1, 0.9), (2.0, 1.5)))
-    place = _along_a_wall(canvas, rng, room, *size)
+    place = _along_a_wall(plan, rng, room, *size)
     if place is not None:
-        canvas.box(*place)
+        plan.box(*place)
 
 
-def table(canvas: Canvas, rng: np.random.Generator, room: Box) -> None:
+def table(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
     """A table on four legs with chairs around it, in the middle of the room."""
-    place = _in_the_room(canvas, rng, room, uniform(rng, 1.0, 2.2), uniform(rng, 0.8, 1.1), 0.9)
+    place = _in_the_room(plan, rng, room, uniform(rng, 1.0, 2.2), uniform(rng, 0.8, 1.1), 0.9)
     if place is None:
         return
-    _legs(canvas, place)
+    _legs(plan, place)
     x0, y0, x1, y1 = place
     for x in [x0 + 0.35 + k * 0.7 for k in range(max(1, int((x1 - x0) / 0.7)))]:
         for y in (y0 - 0.1, y1 + 0.1):
             if chance(rng, 0.75):
-                _chair(canvas, rng, x + uniform(rng, -0.08, 0.08), y + uniform(rng, -0.1, 0.1))
+                _chair(plan, rng, x + uniform(rng, -0.08, 0.08), y + uniform(rng, -0.1, 0.1))
 
 
-def boxes(canvas: Canvas, rng: np.random.Generator, room: Box) -> None:
+def boxes(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
     """A carton or crate that somebody left, at some angle."""
     size = uniform(rng, 0.3, 0.7)
-    place = _in_the_room(canvas, rng, room, size, size, 0.5)
+    place = _in_the_room(plan, rng, room, size, size, 0.5)
     if place is not None:
         x, y = (place[0] + place[2]) / 2, (place[1] + place[3]) / 2
-        canvas.turned_box(x, y, size, uniform(rng, 0.3, 0.6), whole(rng, 0, 16383))
+        plan.turned_box(x, y, size, uniform(rng, 0.3, 0.6), whole(rng, 0, 16383))
 
 
-def plant(canvas: Canvas, rng: np.random.Generator, room: Box) -> None:
+def plant(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
     """A round pot, or a bin."""
     size = uniform(rng, 0.3, 0.5)
-    place = _along_a_wall(canvas, rng, room, size, size)
+    place = _along_a_wall(plan, rng, room, size, size)
     if place is not None:
-        canvas.ring((place[0] + place[2]) / 2, (place[1] + place[3]) / 2, 0.0, size / 2, WALL)
+        plan.ring((place[0] + place[2]) / 2, (place[1] + place[3]) / 2, 0.0, size / 2, WALL)
 
 
 PIECES = {
@@ -182,7 +182,7 @@ PIECES = {
 }
 
 
-def furnish(canvas: Canvas, rng: np.random.Generator, room: Box, use: str) -> None:
+def furnish(plan: FloorPlan, rng: np.random.Generator, room: Rectangle, use: str) -> None:
     """Put into a room what its use asks for; pieces that find no place are left out.
 
     room : the inside of the walls; metres, world frame
@@ -190,4 +190,4 @@ def furnish(canvas: Canvas, rng: np.random.Generator, room: Box, use: str) -> No
     """
     for piece in PIECES[use]:
         if chance(rng, 0.85):
-            piece(canvas, rng, room)
+            piece(plan, rng, room)

@@ -7,7 +7,7 @@ from math import ceil
 
 import numpy as np
 
-from algorithms.simulator.buildings.floor_plan import AIR, DARK, Box, Building, Canvas
+from algorithms.simulator.buildings.floor_plan import AIR, DARK, Building, FloorPlan, Rectangle
 from algorithms.simulator.buildings.furniture import DOOR, boxes, door, furnish, plant
 from algorithms.simulator.portable_random import chance, pick, uniform, whole
 
@@ -33,73 +33,73 @@ def evenly(low: float, high: float, step: float) -> list[float]:
     return [low + k * step for k in range(max(0, ceil((high - low) / step)))]
 
 
-def windows(canvas: Canvas, rng: np.random.Generator, x0: float, y0: float, x1: float, y1: float) -> None:
+def windows(plan: FloorPlan, rng: np.random.Generator, x0: float, y0: float, x1: float, y1: float) -> None:
     """Glaze stretches of the four outer walls of a box: beams are stopped, few come back."""
     half = OUTER / 2
     for low, high, level in ((x0, x1, y0), (x0, x1, y1)):
         for a in split(rng, low + 1, high - 1, 2.0, 5.0)[:-1]:
             if chance(rng, 0.3):
-                canvas.box(a, level - half, a + 1.2, level + half, DARK)
+                plan.box(a, level - half, a + 1.2, level + half, DARK)
     for low, high, level in ((y0, y1, x0), (y0, y1, x1)):
         for a in split(rng, low + 1, high - 1, 2.0, 5.0)[:-1]:
             if chance(rng, 0.3):
-                canvas.box(level - half, a, level + half, a + 1.2, DARK)
+                plan.box(level - half, a, level + half, a + 1.2, DARK)
 
 
-def _room(canvas: Canvas, rng: np.random.Generator, room: Box, corridor_above: bool) -> None:
+def _room(plan: FloorPlan, rng: np.random.Generator, room: Rectangle, corridor_above: bool) -> None:
     """One room with its door to the corridor; sometimes round inside, sometimes open in front."""
     x0, y0, x1, y1 = room
-    canvas.outline(x0, y0, x1, y1, INNER)
+    plan.outline(x0, y0, x1, y1, INNER)
     wall_y, into = (y1, -1) if corridor_above else (y0, 1)
     inside = (x0 + INNER / 2, y0 + INNER / 2, x1 - INNER / 2, y1 - INNER / 2)
     centre = ((x0 + x1) / 2, (y0 + y1) / 2)
     if chance(rng, 0.08) and x1 - x0 > 2.5:  # a niche of the corridor: kitchenette, copier
-        canvas.box(x0 + 0.3, wall_y - 0.2, x1 - 0.3, wall_y + 0.2, AIR)
-        furnish(canvas, rng, inside, "kitchen")
-        canvas.stops.append(centre)
+        plan.box(x0 + 0.3, wall_y - 0.2, x1 - 0.3, wall_y + 0.2, AIR)
+        furnish(plan, rng, inside, "kitchen")
+        plan.stops.append(centre)
         return
     if chance(rng, 0.07) and min(x1 - x0, y1 - y0) > 3.6:
         radius = min(x1 - x0, y1 - y0) / 2 - INNER
-        canvas.ring(*centre, radius, radius + 0.15)
-        canvas.box(
+        plan.ring(*centre, radius, radius + 0.15)
+        plan.box(
             centre[0] - DOOR / 2,
             min(wall_y, centre[1]),
             centre[0] + DOOR / 2,
             max(wall_y, centre[1]),
             AIR,
         )
-        door(canvas, rng, centre[0] - DOOR / 2, wall_y, (1, 0), (0, into), leafless=1.0)
-        canvas.stops.append(centre)
+        door(plan, rng, centre[0] - DOOR / 2, wall_y, (1, 0), (0, into), leafless=1.0)
+        plan.stops.append(centre)
         return
     at = uniform(rng, x0 + 0.25, max(x0 + 0.26, x1 - 0.25 - DOOR))
     if chance(rng, 0.5):
-        passable = door(canvas, rng, at, wall_y, (1, 0), (0, into))
+        passable = door(plan, rng, at, wall_y, (1, 0), (0, into))
     else:
-        passable = door(canvas, rng, at + DOOR, wall_y, (-1, 0), (0, into))
+        passable = door(plan, rng, at + DOOR, wall_y, (-1, 0), (0, into))
     if chance(rng, 0.12):  # a glass front beside the door
-        canvas.box(x0 + 0.1, wall_y - 0.06, max(x0 + 0.1, at - 0.2), wall_y + 0.06, DARK)
+        plan.box(x0 + 0.1, wall_y - 0.06, max(x0 + 0.1, at - 0.2), wall_y + 0.06, DARK)
     area = (x1 - x0) * (y1 - y0)
     use = pick(
         rng,
         ("work", "work", "meeting", "study") if area > 16 else ("study", "work", "store", "empty"),
     )
-    furnish(canvas, rng, inside, use)
+    furnish(plan, rng, inside, use)
     if passable:
-        canvas.stops.append(centre)
+        plan.stops.append(centre)
 
 
-def _corridor(canvas: Canvas, rng: np.random.Generator, room: Box) -> None:
+def _corridor(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
     """Stops along a corridor, and the odd thing that stands in it."""
     x0, y0, x1, y1 = room
     along_x = x1 - x0 > y1 - y0
     low, high = (x0, x1) if along_x else (y0, y1)
     for a in evenly(low + 1.2, high - 1.0, 4.6):
-        canvas.stops.append((a, (y0 + y1) / 2) if along_x else ((x0 + x1) / 2, a))
+        plan.stops.append((a, (y0 + y1) / 2) if along_x else ((x0 + x1) / 2, a))
     for _ in range(int((high - low) / 7)):
         if chance(rng, 0.6):
-            plant(canvas, rng, room)
+            plant(plan, rng, room)
         if chance(rng, 0.15):
-            boxes(canvas, rng, room)
+            boxes(plan, rng, room)
 
 
 def floor(
@@ -117,7 +117,7 @@ def floor(
     shell : draws outer walls and corridors
     rng   : draws the rooms, and what stands in them
     """
-    canvas = Canvas(width + 2 * MARGIN, height + 2 * MARGIN, resolution)
+    plan = FloorPlan(width + 2 * MARGIN, height + 2 * MARGIN, resolution)
     left, bottom, right, top = MARGIN, MARGIN, MARGIN + width, MARGIN + height
     units = max(1, round(height / 12.5))
     depths = [
@@ -127,7 +127,7 @@ def floor(
     across = [left]
     for cut in split(shell, left, right, 11.0, 19.0)[1:-1]:
         across += [cut - 0.9, cut + uniform(shell, 0.8, 1.2)]
-        _corridor(canvas, rng, (across[-2], bottom, across[-1], top))
+        _corridor(plan, rng, (across[-2], bottom, across[-1], top))
     across.append(right)
     y = bottom
     for lower, corridor, upper in depths:
@@ -137,24 +137,24 @@ def floor(
             for low, high, up in ((y, below, True), (above, end, False)):
                 cuts = split(rng, x0, x1, 2.8, 6.5)
                 for a, b in itertools.pairwise(cuts):
-                    _room(canvas, rng, (a, low, b, high), corridor_above=up)
-        _corridor(canvas, rng, (left, below, right, above))
+                    _room(plan, rng, (a, low, b, high), corridor_above=up)
+        _corridor(plan, rng, (left, below, right, above))
         y = end
-    canvas.outline(left, bottom, right, top, OUTER)
-    windows(canvas, shell, left, bottom, right, top)
+    plan.outline(left, bottom, right, top, OUTER)
+    windows(plan, shell, left, bottom, right, top)
     if chance(shell, 0.6):
-        _slant(canvas, shell, (left, bottom, right, top))
-    return canvas.finish(name)
+        _slant(plan, shell, (left, bottom, right, top))
+    return plan.finish(name)
 
 
-def _slant(canvas: Canvas, rng: np.random.Generator, outline: Box) -> None:
+def _slant(plan: FloorPlan, rng: np.random.Generator, outline: Rectangle) -> None:
     """Cut a corner of the building off with a straight slanted wall."""
     x0, y0, x1, y1 = outline
     a, b = uniform(rng, 3, 8), uniform(rng, 2, 6)
     corner = whole(rng, 0, 3)
     x, dx = (x0, a) if corner % 2 == 0 else (x1, -a)
     y, dy = (y0, b) if corner < 2 else (y1, -b)
-    canvas.line(x + dx, y, x, y + dy, OUTER)
+    plan.line(x + dx, y, x, y + dy, OUTER)
 
 
 def office(shell: np.random.Generator, rng: np.random.Generator, resolution: float = 0.025) -> Building:

@@ -16,7 +16,7 @@ from app.cli.argument_parser import Parser
 
 if TYPE_CHECKING:
     from algorithms.maps.grid_map import GridMap
-    from algorithms.methods.steps import MergeResult
+    from algorithms.methods.merge_result import MergeResult
     from algorithms.observations.observation import Observation
 
 USAGE = "MAP1 MAP2 --observation FILE --out DIR [--json] [--force] [--strict] [options]"
@@ -156,8 +156,8 @@ def _without_answer(
 
 def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, tuple[Observation, ...]]:
     """Both maps and the observations that the command line names."""
-    from algorithms.files.case_folder import read_observations
     from algorithms.files.map_file import IMAGE_SUFFIXES, Shading, read_image, read_map
+    from algorithms.files.observation_file import read_observations
 
     paths, given = (args.map1, args.map2), args.resolution or ()
     plain = [path.suffix.lower() in IMAGE_SUFFIXES for path in paths]

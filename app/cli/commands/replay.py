@@ -83,7 +83,8 @@ def _inputs(args: argparse.Namespace, parser: Parser) -> MergeInputs:
     """What the command line names: two maps, a sample by its name, or the folder of a case."""
     from dataclasses import replace
 
-    from algorithms.files.case_folder import read_case, read_observations
+    from algorithms.files.case_folder import read_case
+    from algorithms.files.observation_file import read_observations
     from app.cli.commands.merge import read_inputs
     from app.model.merge_inputs import MergeInputs
     from app.system.data_paths import samples

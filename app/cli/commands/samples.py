@@ -53,7 +53,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Write the cases and name them."""
     from algorithms.files.atomic_write import check_folder
-    from algorithms.files.case_folder import MOST_OBSERVATIONS
+    from algorithms.files.observation_file import MOST_OBSERVATIONS
     from algorithms.simulator.buildings.building_types import BUILDINGS
     from algorithms.simulator.samples import generate_cases, generate_wrong_pairs, regenerate
     from app.cli.progress_bar import bar

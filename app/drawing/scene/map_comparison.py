@@ -15,7 +15,7 @@ from app.model.contradiction_text import MOST_PLACES
 MODES: tuple[Mode, ...] = get_args(Mode)
 
 
-def rings(places: tuple[Place, ...], anchor: FloatArray) -> list[dict[str, Any]]:
+def rings(places: tuple[Contradiction, ...], anchor: FloatArray) -> list[dict[str, Any]]:
     """The places that are ringed on the map, as map_comparison.js draws them; metres of the scene."""
     return [
         {"n": n, "at": [place.x - float(anchor[0]), place.y - float(anchor[1])], "r": place.radius}
@@ -28,11 +28,11 @@ class MapComparison:
 
     def __init__(self, stage: BrowserMessages, maps: MapView) -> None:
         self._stage, self._maps = stage, maps
-        self._conflicts: Conflicts | None = None
+        self._conflicts: Contradictions | None = None
         self._modes: tuple[Mode, ...] = ()
         self.mode: Mode = "overlay"
 
-    def offer(self, conflicts: Conflicts | None, palette: Palette) -> None:
+    def offer(self, conflicts: Contradictions | None, palette: Palette) -> None:
         """Map 2 lies over map 1: there is something to compare.
 
         conflicts : of the merged map; None where the cells are not merged

@@ -13,8 +13,8 @@ from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.steps import AugmentDetail
-from algorithms.verdict.cell_agreement import Touch, Walls
-from algorithms.verdict.contradictions import Conflicts
+from algorithms.verdict.cell_agreement import CellAgreement, WallLookup
+from algorithms.verdict.contradictions import Contradictions
 from app.drawing import grid_pixels as render
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import Palette
@@ -82,8 +82,8 @@ class MapLayers:
         self._mov: GridMap | None = None
         self._lifted: AugmentDetail | None = None
         self._fused: Fusion | None = None
-        self._conflicts: Conflicts | None = None
-        self._contrasted: Conflicts | None = None  # those that are drawn
+        self._conflicts: Contradictions | None = None
+        self._contrasted: Contradictions | None = None  # those that are drawn
         self._mode: Mode = "overlay"
         self.which: Which = "sources"
         self._hidden = False
@@ -132,7 +132,7 @@ class MapLayers:
                 image.show(partial(draw, fusion, self._palette), fusion.merged, self._layout.anchor_ref)
         self.show("merged")
 
-    def compare(self, mode: Mode, conflicts: Conflicts | None) -> None:
+    def compare(self, mode: Mode, conflicts: Contradictions | None) -> None:
         """Show both maps in this way, where one lies over the other.
 
         conflicts : of the merged map; None where there is none, and then no difference to show
@@ -152,7 +152,7 @@ class MapLayers:
             self._denied.show(draw, fusion.merged, self._layout.anchor_ref)
         return True
 
-    def touch(self, walls: tuple[Walls, Walls], told: tuple[Touch, Touch]) -> None:
+    def touch(self, walls: tuple[WallLookup, WallLookup], told: tuple[CellAgreement, CellAgreement]) -> None:
         """Show which walls of both maps coincide, and which the other one denies."""
         if self._layout is None or self._palette is None:
             return

@@ -10,13 +10,13 @@ import viser
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import FREE, OCCUPIED_FROM
 from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
     MatchesDetail,
-    MergeResult,
     ProofDetail,
     ProvenDetail,
     RefineDetail,
@@ -132,7 +132,7 @@ class MapView:
         """Whether map 2 lies over map 1, as it is."""
         return self._inputs.complete and self.ground.which != "levels" and self._mov_at != self.layout.apart
 
-    def compare(self, mode: Mode, conflicts: Conflicts | None) -> None:
+    def compare(self, mode: Mode, conflicts: Contradictions | None) -> None:
         """Show both maps in this way where they lie over each other; a rival would be one map too many."""
         self._mode = mode
         self.ground.compare(mode, conflicts)

@@ -11,7 +11,7 @@ import numpy as np
 from algorithms.common.pose import FloatArray, Pose2, rotation
 from algorithms.methods.steps import MatchesDetail, WindowDetail
 from algorithms.observations.observation import Encounter, Observation
-from algorithms.observations.search_window import Box, CoupledWindow, Window
+from algorithms.observations.search_window import CoupledWindow, Window
 from algorithms.optimisation.branch_and_bound import ProofState
 from app.drawing.draw_items import Item, ellipse, mark, path, rectangle
 from app.drawing.palette import Palette, css

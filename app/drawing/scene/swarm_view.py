@@ -29,7 +29,7 @@ def to_cube(poses: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     return np.asarray((2 * (poses - low) / width - 1) @ _AXES, dtype=np.float64)
 
 
-def in_box(T_ref_mov: Pose2, box: Box) -> FloatArray:
+def in_box(T_ref_mov: Pose2, box: SearchBox) -> FloatArray:
     """(3,) coordinates of a transform in a box: where the pivot goes, and the turn nearest to the box's."""
     middle = float(box.centre[2])
     turn = middle + wrap_angle(T_ref_mov.theta - middle)
@@ -62,7 +62,7 @@ class SwarmView:
     def __init__(self, stage: BrowserMessages) -> None:
         self._stage = stage
         self._trail: list[FloatArray] = []
-        self._of: tuple[Box, Palette] | None = None  # whose frame is drawn
+        self._of: tuple[SearchBox, Palette] | None = None  # whose frame is drawn
 
     def hide(self) -> None:
         """Take everything away."""

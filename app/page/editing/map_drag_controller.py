@@ -34,7 +34,7 @@ class Host(MapHost, Protocol):
     """The page, as far as it is asked from here."""
 
     @property
-    def scales(self) -> Scales | None:
+    def scales(self) -> ManualMerge | None:
         """What a transform is weighed on; None where something is missing."""
 
     @property
@@ -57,7 +57,7 @@ class Host(MapHost, Protocol):
     def hand_taken(self, result: MergeResult) -> None:
         """This is to be the answer."""
 
-    def hand_refines(self, scales: Scales, T_ref_mov: Pose2) -> None:
+    def hand_refines(self, scales: ManualMerge, T_ref_mov: Pose2) -> None:
         """Search from there."""
 
     def hand_snaps(self) -> None:
@@ -81,8 +81,8 @@ class MapDragController:
         host: Host,
     ) -> None:
         self._stage, self._maps, self._turn, self._drawing, self._host = stage, maps, turn, drawing, host
-        self._scales: Scales | None = None
-        self._walls: tuple[Walls, Walls] | None = None
+        self._scales: ManualMerge | None = None
+        self._walls: tuple[WallLookup, WallLookup] | None = None
         self._at = Pose2()  # where map 2's anchor lies; scene
         self._slow = 0.0  # seconds that weighing took last
         self.active = False
@@ -113,11 +113,11 @@ class MapDragController:
             with self._drawing:
                 self.take_up(scales, T_ref_mov)
 
-    def take_up(self, scales: Scales, T_ref_mov: Pose2 | None) -> None:
+    def take_up(self, scales: ManualMerge, T_ref_mov: Pose2 | None) -> None:
         """The same on these scales; whoever calls is drawing."""
         self._scales = scales
         if self._walls is None or (self._walls[0].grid, self._walls[1].grid) != (scales.ref, scales.mov):
-            self._walls = Walls(scales.ref), Walls(scales.mov)
+            self._walls = WallLookup(scales.ref), WallLookup(scales.mov)
         self._at = self._maps.mov_at if T_ref_mov is None else self._maps.layout.placed(T_ref_mov)
         self.active = True
         searches = isinstance(scales.config, PipelineConfig)

@@ -10,7 +10,7 @@ from typing import Any
 import viser
 
 from algorithms.common.pose import Pose2, pose_error
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
 from app.drawing.palette import LIGHT, QUIET
 from app.model import status_text as words
 from app.model.objective_label import measure_of

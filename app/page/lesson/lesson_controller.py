@@ -11,7 +11,7 @@ import viser
 
 from algorithms.common.errors import MapMergeError
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
-from algorithms.methods.spectra_method import PipelineConfig
+from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.steps import Step
 from app.jobs.job_thread import JobThread
 from app.jobs.runner import TappedRunner

@@ -9,14 +9,14 @@ from typing import Any, TypeVar
 import numpy as np
 
 from algorithms.common.pose import FloatArray
-from algorithms.methods.spectra_method import values_in
+from algorithms.methods.spectra_stages import values_in
 from algorithms.methods.steps import AugmentDetail, CandidatesDetail, RefineDetail, Step, WindowDetail
-from algorithms.observations.search_window import Box, box_around
 from algorithms.optimisation.likelihood_field import make_agreement
 from algorithms.optimisation.monte_carlo import monte_carlo
 from algorithms.optimisation.objective import Objective, make_objective
 from algorithms.optimisation.optimiser import SearchState
 from algorithms.optimisation.particle_swarm import settled_within, swarm
+from algorithms.optimisation.search_box import SearchBox, box_around
 from algorithms.spectra.hough_spectra import hough_transform
 from app.model.merge_inputs import MergeInputs
 from app.model.run_state import RunState
@@ -95,7 +95,7 @@ class LessonRun:
         return make_agreement(i.ref, i.mov, i.encounters, config.augment, config.agreement, coupled, lookup)
 
     @cached_property
-    def box(self) -> Box:
+    def box(self) -> SearchBox:
         """The optimiser's box around the best candidate."""
         found = self.get(CandidatesDetail)
         return box_around(found.candidates[0].T_ref_mov, found.window, self.config.box)

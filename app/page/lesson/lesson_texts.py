@@ -16,7 +16,7 @@ from algorithms.common.errors import InputFileError, MapMergeError, unreadable
 from algorithms.files.case_folder import read_case
 from algorithms.files.yaml_fields import Fields, parse, shown
 from algorithms.methods.registry import METHODS
-from algorithms.methods.spectra_method import PipelineConfig
+from algorithms.methods.spectra_config import PipelineConfig
 from app.model.settings import Path as SettingPath
 from app.model.settings import Setting, settings_of, what_became_of, with_value
 from app.page.lesson import equations

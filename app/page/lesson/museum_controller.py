@@ -10,6 +10,7 @@ import viser
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import pose_error
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
 from algorithms.methods.steps import MergeResult
 from app.model.merge_inputs import MergeInputs

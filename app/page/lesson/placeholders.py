@@ -8,12 +8,12 @@ from math import degrees, hypot, pi
 import numpy as np
 
 from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
-    MergeResult,
     ObservationDetail,
     ProvenDetail,
     WindowDetail,

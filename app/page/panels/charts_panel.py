@@ -10,13 +10,13 @@ import viser
 from viser import uplot
 
 from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
     MatchesDetail,
-    MergeResult,
     ProofDetail,
     ProvenDetail,
     RefineDetail,

@@ -10,10 +10,11 @@ from threading import RLock
 
 import viser
 
-from algorithms.common.display_text import visible
+from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import MapMergeError
-from algorithms.files.case_folder import observations_from_bytes, read_case
+from algorithms.files.case_folder import read_case
 from algorithms.files.map_file import map_from_bytes, parse_meta
+from algorithms.files.observation_file import observations_from_bytes
 from algorithms.maps.grid_map import GridMap
 from app.drawing.palette import QUIET
 from app.model.merge_inputs import Files, MergeInputs, Upload
@@ -45,7 +46,7 @@ Known = dict[tuple[Upload, Upload], GridMap]
 
 def _short(name: str) -> str:
     """The last part of a file's name only, and not much of it: it is shown to a person, nothing else."""
-    return visible(PurePath(name.replace("\\", "/")).name)[:80]
+    return show_hidden(PurePath(name.replace("\\", "/")).name)[:80]
 
 
 def _large(upload: Upload) -> bool:

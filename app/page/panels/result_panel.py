@@ -20,7 +20,7 @@ def result_html(
     result: MergeResult,
     inputs: MergeInputs,
     config: Any = None,
-    found: Conflicts | None = None,
+    found: Contradictions | None = None,
     faded: bool = False,
 ) -> str:
     """HTML of the whole result; faded where it is out of date.

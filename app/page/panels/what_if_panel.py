@@ -11,7 +11,7 @@ from typing import Any
 import viser
 
 from algorithms.common.pose import Pose2
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.decision import Verdict, VerdictConfig, judge
 from algorithms.verdict.probability_model import Fit, misfit_of, probability, quantities_of, shipped_model
 from algorithms.verdict.ranking import WINDOW_EDGE, Weighed

@@ -9,8 +9,9 @@ from typing import Any
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import fuse
+from algorithms.methods.merge_result import Answer
 from algorithms.methods.registry import METHODS
-from algorithms.methods.steps import Answer, AnswersDetail, AugmentDetail, ObservationDetail, Step
+from algorithms.methods.steps import AnswersDetail, AugmentDetail, ObservationDetail, Step
 from algorithms.observations.observation import Observation, encounters_of
 from app.evaluation.method_run import MethodRun
 from app.model.run_state import RunState

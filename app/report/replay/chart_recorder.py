@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from algorithms.common.pose import FloatArray
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
-    MergeResult,
     ObservationDetail,
     ProofDetail,
     ProvenDetail,

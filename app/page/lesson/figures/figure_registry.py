@@ -9,11 +9,11 @@ from math import radians
 import numpy as np
 
 from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import (
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
-    MergeResult,
     ObservationDetail,
     ProofDetail,
     ProvenDetail,

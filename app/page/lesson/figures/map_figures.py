@@ -10,7 +10,8 @@ import numpy as np
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, CellArray
 from algorithms.maps.map_fusion import Fusion
-from algorithms.methods.steps import AugmentDetail, HoughDetail, MergeResult
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.steps import AugmentDetail, HoughDetail
 from algorithms.observations.observation import Encounter
 from app.drawing.draw_items import ellipse
 from app.drawing.palette import VIRIDIS, Palette

@@ -1,0 +1,136 @@
+"""The transforms that branch and bound searches, numbered, and blocks of them by level."""
+
+from __future__ import annotations
+
+from math import ceil, pi, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.common.errors import TooLargeError
+from algorithms.common.pose import FloatArray, rotation, wrap_angles
+from algorithms.observations.search_window import CoupledWindow
+from algorithms.optimisation.objective import Objective, Side
+
+IntArray = NDArray[np.int64]
+
+MOST_ROOTS = 10_000_000  # blocks to begin with: half a gigabyte; a usual sighting makes thousands
+LEVELS = 4  # the coarsest blocks are 16 × 16 × 16 transforms
+RADII = (1, 2, 3, 4, 6, 8, 11, 16, 22, 32)  # cells; a table of maxima is made for each that is needed
+MERGE_FROM = 1  # from this level on, points that lie close together are looked up as one
+
+
+class TransformLattice:
+    """The transforms that are searched, numbered (turn, column, row); blocks of them by level.
+
+    The pivot is the first seen robot: T puts it at its place in the ref map plus the shift.
+    """
+
+    def __init__(self, objective: Objective, window: CoupledWindow) -> None:
+        self.window = window
+        pivot_ref = window.x_ref[0]
+        self.cell = max(side.grid.resolution for side in objective.sides)
+        reaches = [
+            float(np.linalg.norm(from_pivot(side, side.points, window), axis=1).max(initial=0.0))
+            for side in objective.sides
+        ]
+        self.reach = max(self.cell, *reaches)
+        self.disc = window.k * sqrt(float(np.linalg.eigvalsh(window.covariances[0])[-1]))
+        finest = [side.grid.resolution for side in objective.sides]
+        block = 2**LEVELS
+        self.turns = block * ceil(2 * pi * self.reach / self.cell / block)
+        self.levels = LEVELS
+        while self.levels and self.spread(self.levels) > (RADII[-1] - 1) * min(finest):
+            self.levels -= 1
+        # whole blocks, and a transform right on the sighting: there is one in every window
+        blocks = 2 * ceil(self.disc / (2**self.levels * self.cell) - 0.5) + 1
+        self.side = max(1, blocks) * 2**self.levels
+        self._pivot_ref = pivot_ref
+        # shifts along the ref grid's own axes: there a block of them is a square of its cells
+        self.yaw = objective.sides[0].grid.origin.theta
+
+    @property
+    def step(self) -> float:
+        """Turn between neighbours; radians."""
+        return float(2 * pi / self.turns)
+
+    def half(self, level: int) -> float:
+        """How far the outermost shifts of a block lie from its middle, along x and y; metres."""
+        return float((2**level - 1) * self.cell / 2)
+
+    def half_turn(self, level: int) -> float:
+        """The same of the turns; radians."""
+        return float((2**level - 1) * self.step / 2)
+
+    def spread(self, level: int) -> float:
+        """How far a block's transforms scatter the farthest point, its own cluster included; metres."""
+        shift = self.half(level) * sqrt(2)
+        swing = (self.reach + self.disc + shift) * chord(self.half_turn(level))
+        return float(shift + swing + cluster_edge(level, self.cell) * sqrt(2))
+
+    def coordinates(self, nodes: IntArray, level: int) -> FloatArray:
+        """(P, 3) shift of the pivot along the ref grid's axes, and turn, at the middles of (P, 3) blocks;
+        metres, radians.
+        """
+        middle = (nodes + 0.5) * 2**level - 0.5
+        out = np.empty((len(nodes), 3))
+        out[:, :2] = (middle[:, 1:] - self.side // 2) * self.cell
+        out[:, 2] = middle[:, 0] * self.step
+        return out
+
+    def poses(self, coordinates: FloatArray) -> FloatArray:
+        """(P, 3) x, y, theta of T_ref_mov from ``coordinates``; the angle wrapped."""
+        c, s = np.cos(coordinates[:, 2]), np.sin(coordinates[:, 2])
+        x, y = self.window.pivot
+        goes_to = coordinates[:, :2] @ rotation(self.yaw).T + self._pivot_ref
+        return np.column_stack(
+            [
+                goes_to[:, 0] - c * x + s * y,
+                goes_to[:, 1] - s * x - c * y,
+                wrap_angles(coordinates[:, 2]),
+            ]
+        )
+
+    def roots(self) -> IntArray:
+        """(P, 3) the coarsest blocks; raises TooLargeError where they are too many."""
+        count, sectors = self.side // 2**self.levels, self.turns // 2**self.levels
+        blocks = sectors * count**2
+        if blocks > MOST_ROOTS:
+            raise TooLargeError(
+                f"the sighting leaves the seen robot {self.disc:.3g} m around its place, which is {blocks:,} "
+                f"blocks of transforms at a resolution of {self.cell:g} m; the limit is {MOST_ROOTS:,}. "
+                "Use a coarser resolution, or smaller deviations of the sighting"
+            )
+        axes = np.arange(sectors), np.arange(count), np.arange(count)
+        return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+
+    @staticmethod
+    def children(nodes: IntArray) -> IntArray:
+        """(8·P, 3) the blocks one level finer that (P, 3) blocks consist of."""
+        octants = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), axis=-1).reshape(-1, 3)
+        return np.asarray(2 * nodes[:, None, :] + octants, dtype=np.int64).reshape(-1, 3)
+
+    def nearest_deviations(self, middles: FloatArray, level: int) -> FloatArray:
+        """(P, S) lower bound of the deviations from the sightings anywhere in blocks; (P, 3) x, y, theta."""
+        window = self.window
+        lever = np.linalg.norm(window.x_mov - window.pivot, axis=1)
+        slack = self.half(level) * sqrt(2) + lever * chord(self.half_turn(level))
+        sharpest = np.linalg.norm(window.whitening, ord=2, axis=(1, 2))
+        middle = window.deviations(middles)
+        return np.asarray(np.maximum(0.0, middle - slack * sharpest * (1 + 1e-9)), dtype=np.float64)
+
+
+def cluster_edge(level: int, cell: float) -> float:
+    """Edge of the squares in which points are looked up as one; metres."""
+    return cell * 2 ** (level - 1) if level >= MERGE_FROM else 0.0
+
+
+def from_pivot(side: Side, points: FloatArray, window: CoupledWindow) -> FloatArray:
+    """(N, 2) points of a side relative to the place that a turn leaves as it is."""
+    pivot = window.x_ref[0] if side.backward else window.x_mov[0]
+    return np.asarray(points + (side.anchor - pivot), dtype=np.float64)
+
+
+def chord(angle: float) -> float:
+    """How far a turn by so many radians moves a point at a distance of one."""
+    return 2 * sin(min(angle, pi) / 2)
