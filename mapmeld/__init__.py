@@ -26,12 +26,14 @@ if TYPE_CHECKING:  # type checkers and editors see the names here; at run time e
         TooLargeError,
     )
     from algorithms.common.pose import Pose2
-    from algorithms.files.case_folder import Case, read_case, read_observations, write_observations
+    from algorithms.files.case_folder import Case, read_case
     from algorithms.files.map_file import read_map, write_map
+    from algorithms.files.observation_file import read_observations, write_observations
     from algorithms.maps.grid_map import GridMap
     from algorithms.maps.map_fusion import Fusion
+    from algorithms.methods.merge_result import MergeResult
     from algorithms.methods.registry import METHODS, Method, merge, run
-    from algorithms.methods.steps import MergeResult, Step
+    from algorithms.methods.steps import Step
     from algorithms.observations.observation import Observation
     from algorithms.verdict.decision import Outcome, Verdict
 
@@ -75,12 +77,14 @@ _MODULES = {
         "TooLargeError",
     ),
     "algorithms.common.pose": ("Pose2",),
-    "algorithms.files.case_folder": ("Case", "read_case", "read_observations", "write_observations"),
+    "algorithms.files.case_folder": ("Case", "read_case"),
+    "algorithms.files.observation_file": ("read_observations", "write_observations"),
     "algorithms.files.map_file": ("read_map", "write_map"),
     "algorithms.maps.grid_map": ("GridMap",),
     "algorithms.maps.map_fusion": ("Fusion",),
     "algorithms.methods.registry": ("METHODS", "Method", "merge", "run"),
-    "algorithms.methods.steps": ("MergeResult", "Step"),
+    "algorithms.methods.merge_result": ("MergeResult",),
+    "algorithms.methods.steps": ("Step",),
     "algorithms.observations.observation": ("Observation",),
     "algorithms.verdict.decision": ("Outcome", "Verdict"),
 }

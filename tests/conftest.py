@@ -23,7 +23,6 @@ from algorithms.files.truth_file import TRUTH_FILE, Truth, truth_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import merge
-from algorithms.methods.steps import MergeResult
 from app.model.merge_inputs import MergeInputs
 from app.web.security.access_control import Access
 from app.web.viser_server import guarded_server

@@ -15,8 +15,9 @@ from algorithms.files.case_folder import Case
 from algorithms.files.map_file import map_to_bytes
 from app.page.application import make_server
 from app.page.panels.files_panel import FilesPanel
+from app.report.replay.chart_recorder import LEAST
 from app.web.security.access_control import Access
-from app.web.upload import LEAST, MAX_UPLOAD, MAX_UPLOADS, MOST, Recipient
+from app.web.upload import MAX_UPLOAD, MAX_UPLOADS, MOST, Recipient
 from app.web.viser_server import guarded_server
 
 IMAGE = "Map 1: image"

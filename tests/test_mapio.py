@@ -18,7 +18,6 @@ from PIL import Image
 from algorithms.common.errors import InputFileError
 from algorithms.common.pose import Pose2
 from algorithms.files.map_file import (
-    Shading,
     image_map_from_bytes,
     map_from_bytes,
     map_to_bytes,
@@ -26,6 +25,7 @@ from algorithms.files.map_file import (
     read_map,
     write_map,
 )
+from algorithms.files.thresholds import Shading
 from algorithms.maps.grid_map import COARSEST, FARTHEST, FINEST, MOST_TURN, GridMap
 
 places, turns = st.floats(-FARTHEST, FARTHEST), st.floats(-MOST_TURN, MOST_TURN)

@@ -17,11 +17,11 @@ from algorithms.files.truth_file import Truth
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge, run
 from algorithms.methods.steps import CandidatesDetail, HoughDetail
 from app.model import chart_data as charts
-from app.model.merge_inputs import MergeInputs
+from app.model.merge_inputs import MergeInputs, Upload
 from app.model.run_state import RunState
 from app.model.status_text import progress, sentence, typeset
 from app.page.editing.observation_panel import observations_html
-from app.page.panels.files_panel import Upload, inputs_from
+from app.page.panels.files_panel import inputs_from
 from app.page.panels.html_widgets import box, table
 from app.page.panels.result_panel import result_html
 from app.report.result_rows import numbers, times

@@ -17,6 +17,7 @@ from algorithms.methods.steps import AnswersDetail, ObservationDetail, ProofDeta
 from algorithms.observations.observation import Encounter, Observation
 from algorithms.observations.search_window import WindowConfig, coupled_window
 from algorithms.optimisation.optimiser import SearchState
+from algorithms.optimisation.search_box import SearchBox
 from app.jobs.job_thread import JobThread
 from app.jobs.runner import Runner
 from app.model.merge_job import MergeJob

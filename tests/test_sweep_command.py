@@ -59,7 +59,7 @@ def test_an_interrupted_sweep_says_how_far_it_came(case_folder, tmp_path, monkey
         return trial(*args)
 
     trial = sweeping.attempt
-    monkeypatch.setattr(sweeping, "attempt", attempt)
+    monkeypatch.setattr(sweeping, "run_method", attempt)
     words = ["sweep", str(case_folder), "--x", "augment.spread=1,2,3", *SMALL, "--out", str(tmp_path)]
     assert main([*words, "--jobs", "1"]) == 130
     assert "2 of 3 points are kept; the same command goes on there" in capsys.readouterr().out

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from algorithms.common.pose import Pose2
+from algorithms.files.grey_levels import NOTHING
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.maps.wall_distance import distance_to_walls, surface
 from algorithms.verdict.wall_map import (
@@ -19,7 +20,6 @@ from algorithms.verdict.wall_map import (
     LEVELS,
     NEAR,
     NEAR_WALL,
-    NOTHING,
     SAME_WALL,
     SECTORS,
     make_wall_map,

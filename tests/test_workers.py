@@ -25,7 +25,7 @@ from algorithms.maps.grid_map import FREE, GridMap
 from algorithms.methods.manual_merge import ManualMerge, refine
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
-from algorithms.methods.steps import MergeResult, ObservationDetail, Step
+from algorithms.methods.steps import ObservationDetail, Step
 from app.jobs.incremental_pickle import IncrementalPickle
 from app.jobs.runner import RunCallbacks
 from app.jobs.worker_pool import WorkerDiedError, WorkerPool

@@ -30,8 +30,8 @@ OBSERVER_POSE = "give [x, y, yaw] of robot 1 in map 1; m, m, rad"
 OBSERVED_POSE = "give [x, y] or [x, y, yaw] of robot 2 in map 2; m, m, rad"
 
 
-def read_observations(path: Path) -> tuple[Observation, ...]:
-    """Read an observation file; raises InputFileError."""
+def read_observations(path: Path | str) -> tuple[Observation, ...]:
+    """Read an observation file, of one sighting or a list of them; raises InputFileError."""
     path = Path(path)
     return observations_from_bytes(str(path), read_bytes(path, "an observation"))
 
@@ -79,7 +79,7 @@ def _observation(f: Fields) -> Observation:
     )
 
 
-def write_observations(path: Path, observations: Sequence[Observation]) -> None:
+def write_observations(path: Path | str, observations: Sequence[Observation]) -> None:
     """Write an observation file whole or not at all; raises OutputError, SettingError."""
     write_file(Path(path), observations_to_bytes(observations))
 

@@ -30,11 +30,14 @@ class MergeResult:
     covariance    : (3, 3) of x, y, theta; metres and radians
     value         : what the method's objective says of T_ref_mov: Γ, eq. (17), or metres of wall that
                     agree; None for a method without an objective
+    verdict       : whether to trust it, and why
+    fusion        : the merged map, in map 1's frame, and where the maps agree
     encounters    : where robot 2 was seen, a place per sighting
     answers       : everything the optimiser ended on, best first
     weighed       : T_ref_mov and the other answers that may be right, as the whole maps weigh them
     proof         : how the proof ended; None for a method without one
     search_found_it : whether the optimiser had come to the proven answer; None without a proof
+    timings_s     : seconds spent in each stage, by its name
     """
 
     T_ref_mov: Pose2

@@ -189,55 +189,6 @@ class CauseDetail:
     hint: str
 
 
-@dataclass(frozen=True, eq=False)
-class MergeResult:
-    """The answer, and all that is needed to report it; detail of the last step, stage "verdict" or "explain".
-
-    T_ref_mov     : best transform found, also where the merge is refused
-    covariance    : (3, 3) of x, y, theta; metres and radians
-    value         : what the method's objective says of T_ref_mov: Γ, eq. (17), or metres of wall that
-                    agree; None for a method without an objective
-    verdict       : whether to trust it, and why
-    fusion        : the merged map, in map 1's frame, and where the maps agree
-    encounters    : where robot 2 was seen, a place per sighting
-    answers       : everything the optimiser ended on, best first
-    weighed       : T_ref_mov and the other answers that may be right, as the whole maps weigh them
-    proof         : how the proof ended; None for a method without one
-    search_found_it : whether the optimiser had come to the proven answer; None without a proof
-    timings_s     : seconds spent in each stage, by its name
-    """
-
-    T_ref_mov: Pose2
-    covariance: FloatArray
-    value: float | None
-    verdict: Verdict
-    fusion: Fusion
-    encounters: tuple[Encounter, ...]
-    answers: tuple[Answer, ...]
-    method: str
-    seed: int
-    weighed: tuple[Weighed, ...] = ()
-    proof: ProofState | None = None
-    search_found_it: bool | None = None
-    timings_s: Mapping[str, float] = field(default_factory=dict)
-
-    @property
-    def encounter(self) -> Encounter:
-        """The first sighting's place."""
-        return self.encounters[0]
-
-    def with_hint(self, hint: str) -> MergeResult:
-        """The same, a hint in its verdict."""
-        return replace(self, verdict=replace(self.verdict, hint=hint))
-
-    @property
-    def proven_optimal(self) -> bool:
-        """Whether no transform of the whole circle fits better near the encounter than the search's best,
-        which is the first of the answers; the whole maps may have moved it, or named another one.
-        """
-        return self.proof is not None and self.proof.proven
-
-
 Detail = (
     ObservationDetail
     | AugmentDetail

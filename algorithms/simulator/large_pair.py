@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from algorithms.common.pose import FloatArray
-from algorithms.simulator.buildings.building_types import campus
+from algorithms.simulator.buildings.office import campus
 from algorithms.simulator.path_planning import PathPlanner
 from algorithms.simulator.portable_random import stream, ticks_of_degrees, whole
 from algorithms.simulator.robot import drive, make_body

@@ -102,7 +102,11 @@ def sheet(cells: CellArray, colour: Rgb, palette: Palette, most: int = MOST_PIXE
 
 
 def touches(
-    walls: Walls, told: Touch, palette: Palette, most: int = MOST_PIXELS, part: CellRegion = WHOLE
+    walls: WallLookup,
+    told: CellAgreement,
+    palette: Palette,
+    most: int = MOST_PIXELS,
+    part: CellRegion = WHOLE,
 ) -> GridPixels:
     """The walls of one map that the other one agrees with or denies; the rest transparent.
 
@@ -164,7 +168,7 @@ def merged_walls(
 
 
 def denied_walls(
-    fusion: Fusion, found: Conflicts, palette: Palette, most: int = MOST_PIXELS, part: CellRegion = WHOLE
+    fusion: Fusion, found: Contradictions, palette: Palette, most: int = MOST_PIXELS, part: CellRegion = WHOLE
 ) -> GridPixels:
     """Walls that the other map denies, in the colour of the map they are of; all other walls faint."""
     ref, mov = fusion.ref_cells[part], fusion.mov_cells[part]

@@ -86,7 +86,7 @@ def true_fusion(case: Case) -> Fusion | None:
 
 
 def run_method(
-    case: Case, method: str, config: Any, seed: int, true: Fusion | None, memo: Memo | None = None
+    case: Case, method: str, config: Any, seed: int, true: Fusion | None, memo: StageCache | None = None
 ) -> MethodRun:
     """Run a method and judge it; what goes wrong with it is in the answer.
 

@@ -174,7 +174,7 @@ def in_order(plan: SweepPlan, points: Sequence[SweepPoint]) -> list[SweepPoint]:
 def _work(case: Case, order: tuple[str, Any, tuple[int, ...]]) -> list[dict[str, Any]]:
     """All seeds of one point: what does not depend on the seed is done once for all of them."""
     method, config, seeds = order
-    true, memo = true_fusion(case), Memo()
+    true, memo = true_fusion(case), StageCache()
     return [run_method(case, method, config, seed, true, memo).plain() for seed in seeds]
 
 

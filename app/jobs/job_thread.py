@@ -13,7 +13,8 @@ from time import perf_counter
 from typing import Protocol
 
 from algorithms.common.errors import MapMergeError
-from algorithms.methods.steps import AnswersDetail, CandidatesDetail, MergeResult, Step
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.steps import AnswersDetail, CandidatesDetail, Step
 from app.jobs.runner import RunCallbacks, Runner
 from app.model.merge_job import MergeJob
 from app.model.playback import FRAME, InterruptibleWait, dwell

@@ -317,7 +317,7 @@ atexit.register(COMMON.close)
 @dataclass
 class _Tab:
     parcels: IncrementalPickle = field(default_factory=lambda: IncrementalPickle("worker"))
-    memo: Memo = field(default_factory=dict)
+    memo: StageCache = field(default_factory=dict)
     runs: dict[int, Iterator[Step]] = field(default_factory=dict)
 
 

@@ -7,7 +7,7 @@ from algorithms.verdict.contradictions import Contradiction, Contradictions
 MOST_PLACES = 12  # that are listed, and ringed on the map; the smaller ones are told in sum
 
 
-def summary(found: Conflicts) -> str:
+def summary(found: Contradictions) -> str:
     """How many places there are, how much wall, and what is not listed."""
     many = len(found.places)
     if found.wall == 0:

@@ -46,7 +46,7 @@ _OWN = {
     FeatureConfig: ObjectiveLabel("agreeing matches", "matches that agree", ""),
     MseConfig: _SIMILARITY,
     PhaseCorrelationConfig: _SIMILARITY,
-    SmmConfig: ObjectiveLabel("acceptance index", "acceptance index of the search", ""),
+    CarpinConfig: ObjectiveLabel("acceptance index", "acceptance index of the search", ""),
 }
 
 

@@ -29,7 +29,7 @@ class Handling(Part):
     """The part of a Page that is done by hand."""
 
     _method: RunState | None = None  # of the last run whose answer was not made by hand
-    _refining: tuple[Scales, Pose2] | None = None  # where map 2 was when its refinement began
+    _refining: tuple[ManualMerge, Pose2] | None = None  # where map 2 was when its refinement began
 
     def _handle_with(self, gui: viser.GuiApi) -> None:
         """Add both to the page."""

@@ -11,8 +11,8 @@ import viser
 
 from algorithms.common.errors import InputFileError, MapMergeError, TooLargeError
 from algorithms.files.case_folder import Case
-from algorithms.methods.steps import MergeResult
-from algorithms.verdict.contradictions import Conflicts
+from algorithms.methods.merge_result import MergeResult
+from algorithms.verdict.contradictions import Contradictions
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.legend import legend
 from app.drawing.palette import LIGHT, Palette

@@ -11,7 +11,6 @@ import numpy as np
 from algorithms.common.pose import Pose2
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
-from algorithms.methods.steps import MergeResult
 from app.model.merge_inputs import Files, MergeInputs
 from app.model.merge_job import Goal
 from app.model.run_state import RunState

@@ -10,9 +10,9 @@ import viser
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
-from algorithms.methods.manual_merge import Scales
-from algorithms.methods.steps import MergeResult
-from algorithms.verdict.contradictions import Conflicts
+from algorithms.methods.manual_merge import ManualMerge
+from algorithms.methods.merge_result import MergeResult
+from algorithms.verdict.contradictions import Contradictions
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import Palette
 from app.drawing.scene.height_view import HeightsView
@@ -62,7 +62,7 @@ class Part(ABC):
     _story: RunState
     _result: MergeResult | None
     _config: Any
-    _conflicts: Conflicts | None
+    _conflicts: Contradictions | None
     _method: RunState | None
     _hand: MapDragController
     _placing: PlacementController
@@ -74,7 +74,7 @@ class Part(ABC):
     _turn: RLock
     _files: FilesPanel
     _errand: CancellableTask
-    _refining: tuple[Scales, Pose2] | None
+    _refining: tuple[ManualMerge, Pose2] | None
 
     @property
     def inputs(self) -> MergeInputs:

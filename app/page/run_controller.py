@@ -30,7 +30,7 @@ from app.web import callback_errors as mishap
 class Telling(Part):
     """The part of a Page that listens to its session."""
 
-    _weighed: tuple[tuple[MergeResult, MergeInputs, Any], tuple[Conflicts, str]] | None = None
+    _weighed: tuple[tuple[MergeResult, MergeInputs, Any], tuple[Contradictions, str]] | None = None
 
     # --- what the session tells -------------------------------------------------------------------
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import viser
 
-from algorithms.methods.steps import MergeResult, RefineDetail
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.steps import RefineDetail
 from app.drawing.draw_items import mark
 from app.drawing.palette import DARK, LIGHT
 from app.drawing.scene.map_layers import Mode

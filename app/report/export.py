@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from algorithms.files.case_folder import OBSERVATION_FILE, observations_to_bytes
-from algorithms.methods.steps import MergeResult
+from algorithms.files.observation_file import OBSERVATION_FILE, observations_to_bytes
+from algorithms.methods.merge_result import MergeResult
 from app.model.merge_inputs import MergeInputs
 from app.report.result_files import (
     MERGED_FILES,

@@ -107,7 +107,7 @@ def _bare(reason: str) -> str:
     return rest[:1].upper() + rest[1:]
 
 
-def _pictures(result: MergeResult, inputs: MergeInputs, found: Conflicts, check: Check) -> str:
+def _pictures(result: MergeResult, inputs: MergeInputs, found: Contradictions, check: Check) -> str:
     figures = []
     check(0.3)
     if inputs.ref is not None and inputs.mov is not None:

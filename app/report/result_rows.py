@@ -10,7 +10,7 @@ import numpy as np
 from algorithms.common.pose import pose_error
 from algorithms.maps.map_fusion import fuse
 from algorithms.methods.manual_merge import BY_HAND
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
 from algorithms.observations.observation import Encounter, Observation
 from algorithms.verdict.performance_index import performance_index
 from app.model import status_text as words

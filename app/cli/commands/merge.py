@@ -156,8 +156,9 @@ def _without_answer(
 
 def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, tuple[Observation, ...]]:
     """Both maps and the observations that the command line names."""
-    from algorithms.files.map_file import IMAGE_SUFFIXES, Shading, read_image, read_map
+    from algorithms.files.map_file import IMAGE_SUFFIXES, read_image, read_map
     from algorithms.files.observation_file import read_observations
+    from algorithms.files.thresholds import Shading
 
     paths, given = (args.map1, args.map2), args.resolution or ()
     plain = [path.suffix.lower() in IMAGE_SUFFIXES for path in paths]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, get_args
 
 from algorithms.common.pose import FloatArray
-from algorithms.verdict.contradictions import Conflicts, Place
+from algorithms.verdict.contradictions import Contradiction, Contradictions
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import Palette, css
 from app.drawing.scene.map_layers import Mode

@@ -25,8 +25,8 @@ from algorithms.methods.steps import (
     WindowDetail,
 )
 from algorithms.observations.search_window import CoupledWindow
-from algorithms.verdict.cell_agreement import Touch, Walls
-from algorithms.verdict.contradictions import Conflicts
+from algorithms.verdict.cell_agreement import CellAgreement, WallLookup
+from algorithms.verdict.contradictions import Contradictions
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.draw_items import cloud, mark
 from app.drawing.palette import LIGHT, Palette, css
@@ -116,7 +116,7 @@ class MapView:
         """The page has moved map 2 by itself."""
         self._mov_at = at
 
-    def touch(self, walls: tuple[Walls, Walls], told: tuple[Touch, Touch]) -> None:
+    def touch(self, walls: tuple[WallLookup, WallLookup], told: tuple[CellAgreement, CellAgreement]) -> None:
         """Show which walls coincide and which are denied; see ``MapLayers.touch``."""
         self.ground.touch(walls, told)
 

@@ -13,6 +13,7 @@ from algorithms.methods.steps import MatchesDetail, WindowDetail
 from algorithms.observations.observation import Encounter, Observation
 from algorithms.observations.search_window import CoupledWindow, Window
 from algorithms.optimisation.branch_and_bound import ProofState
+from algorithms.optimisation.search_box import SearchBox
 from app.drawing.draw_items import Item, ellipse, mark, path, rectangle
 from app.drawing.palette import Palette, css
 from app.drawing.scene_layout import Rect, SceneLayout
@@ -277,7 +278,7 @@ def margins(sigma_x: float, sigma_y: float, colours: Palette) -> list[Item]:
     return [path(rectangle(-half, half), colours.margin, **DASHED, **label)]
 
 
-def box(b: Box, layout: SceneLayout, colours: Palette) -> list[Item]:
+def box(b: SearchBox, layout: SceneLayout, colours: Palette) -> list[Item]:
     """The optimiser's box around where its centre puts robot 2."""
     middle = layout.placed(b.transform(b.centre)).xy
     half = (b.high - b.low)[:2] / 2
@@ -293,7 +294,7 @@ def seen_robot(transforms: FloatArray, layout: SceneLayout) -> FloatArray:
     return np.column_stack([at, transforms[:, 2]])
 
 
-def footprint(b: Box, layout: SceneLayout) -> Rect:
+def footprint(b: SearchBox, layout: SceneLayout) -> Rect:
     """Rectangle that shows a box of transforms at the seen robot, with walls around it."""
     edges = list(zip(b.low.tolist(), b.high.tolist(), strict=True))
     corners = np.array(np.meshgrid(*edges)).reshape(3, -1).T

@@ -8,7 +8,7 @@ import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2, pose_error, wrap_angle
 from algorithms.methods.steps import ProvenDetail, RefineDetail
-from algorithms.observations.search_window import Box
+from algorithms.optimisation.search_box import SearchBox
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.draw_items import Item, cloud, mark, path
 from app.drawing.palette import Palette, css

@@ -12,10 +12,10 @@ import viser
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2, wrap_angle
-from algorithms.methods.manual_merge import Scales
-from algorithms.methods.spectra_method import PipelineConfig
-from algorithms.methods.steps import MergeResult
-from algorithms.verdict.cell_agreement import Walls
+from algorithms.methods.manual_merge import ManualMerge
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.spectra_config import PipelineConfig
+from algorithms.verdict.cell_agreement import WallLookup
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.scene.map_view import MapView
 from app.jobs.latest_request import LatestRequest

@@ -12,7 +12,6 @@ from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import pose_error
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
-from algorithms.methods.steps import MergeResult
 from app.model.merge_inputs import MergeInputs
 from app.model.settings import settings_of, value_at, word_for
 from app.model.status_text import apart_by

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from algorithms.methods.steps import MergeResult
-from algorithms.verdict.contradictions import Conflicts
+from algorithms.methods.merge_result import MergeResult
+from algorithms.verdict.contradictions import Contradictions
 from algorithms.verdict.decision import Verdict
 from app.drawing.palette import LIGHT
 from app.drawing.svg.verdict_bars import bars
@@ -48,7 +48,7 @@ def why_html(verdict: Verdict, faded: bool = False) -> str:
     )
 
 
-def places_html(found: Conflicts, faded: bool = False) -> str:
+def places_html(found: Contradictions, faded: bool = False) -> str:
     """HTML of the list, most wall first; faded and without effect where it is out of date."""
     dim = ' style="opacity:.4"' if faded else ""
     if not found.places:

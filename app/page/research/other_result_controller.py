@@ -11,7 +11,7 @@ import viser
 from algorithms.common.errors import MapMergeError
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.registry import METHODS
-from algorithms.verdict.contradictions import Conflicts, find_conflicts
+from algorithms.verdict.contradictions import Contradictions, find_conflicts
 from app.model.run_state import RunState
 from app.model.view_modes import MAP
 from app.page.cancellable_task import DownloadTask
@@ -101,7 +101,7 @@ class Researching(Part):
                 self._timeline.note(own, "back to one's own")
                 self._restore(own)
 
-    def _merged_by(self, guest: OtherResult) -> tuple[RunState, Conflicts]:
+    def _merged_by(self, guest: OtherResult) -> tuple[RunState, Contradictions]:
         """What it would have told, and where the maps then contradict each other; raises TooLargeError."""
         i = self._inputs
         assert i.ref is not None
@@ -111,7 +111,7 @@ class Researching(Part):
         assert fusion is not None
         return story, find_conflicts(fusion)
 
-    def _welcome(self, guest: OtherResult, story: RunState, found: Conflicts) -> None:
+    def _welcome(self, guest: OtherResult, story: RunState, found: Contradictions) -> None:
         """Draw it. Whoever calls is drawing."""
         self._story, self._guest = story, guest
         if self._run.view != MAP:

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.methods.steps import AugmentDetail, MergeResult, ObservationDetail, RefineDetail, Step
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.steps import AugmentDetail, ObservationDetail, RefineDetail, Step
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.legend import legend
 from app.drawing.palette import LIGHT

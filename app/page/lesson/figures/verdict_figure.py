@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from algorithms.methods.steps import MergeResult
+from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.probability_model import probability
 from app.drawing.palette import Palette
 from app.drawing.svg.svg_canvas import WIDE, SvgCanvas
