@@ -58,7 +58,7 @@ def test_an_interrupted_sweep_says_how_far_it_came(case_folder, tmp_path, monkey
             raise KeyboardInterrupt
         return trial(*args)
 
-    trial = sweeping.attempt
+    trial = sweeping.run_method
     monkeypatch.setattr(sweeping, "run_method", attempt)
     words = ["sweep", str(case_folder), "--x", "augment.spread=1,2,3", *SMALL, "--out", str(tmp_path)]
     assert main([*words, "--jobs", "1"]) == 130
