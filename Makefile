@@ -7,6 +7,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.10 p
 VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+TOOL := PYTHONPATH=tests/support $(BIN)/python tests/tools
 
 .PHONY: help run test bench fuzz soak audit samples screenshots equations replays verdict results clean
 
@@ -32,7 +33,7 @@ test: $(VENV)/ready-to-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	@chromium="$$($(BIN)/python tests/chromium.py)" && \
+	@chromium="$$($(BIN)/python tests/support/chromium.py)" && \
 	  echo "pytest, with $$chromium" && CHROMIUM="$$chromium" $(BIN)/python -m pytest -n 2 --dist worksteal $(ARGS)
 
 bench: $(VENV)/ready-to-test
@@ -41,10 +42,10 @@ bench: $(VENV)/ready-to-test
 
 fuzz: $(VENV)/ready-to-test
 	@$(PIP) install -e '.[fuzz]'
-	@$(BIN)/python tests/fuzz.py $(ARGS)
+	@$(TOOL)/fuzz.py $(ARGS)
 
 soak: $(VENV)/ready-to-test
-	@$(BIN)/python tests/soak.py $(ARGS)
+	@$(TOOL)/soak.py $(ARGS)
 
 # pip-audit in an environment of its own: what it brings is none of ours. --strict, or packages whose
 # state it cannot learn, all of them without a network, count as sound.
@@ -60,12 +61,12 @@ samples: $(VENV)/ready
 	$(BIN)/mapmeld samples sample_maps
 
 screenshots: $(VENV)/ready-to-test
-	@chromium="$$($(BIN)/python tests/chromium.py)" && \
-	  CHROMIUM="$$chromium" $(BIN)/python tests/browser/screenshots.py $(or $(ARGS),static/screenshots shown)
+	@chromium="$$($(BIN)/python tests/support/chromium.py)" && \
+	  CHROMIUM="$$chromium" $(TOOL)/screenshots.py $(or $(ARGS),static/screenshots shown)
 
 equations: $(VENV)/ready
 	@$(PIP) install -e '.[equations]'
-	@$(BIN)/python tests/equations.py
+	@$(TOOL)/equations.py
 
 replays: $(VENV)/ready
 	@for name in $(or $(ARGS),office_r2_r1 bent_r2_r1); do \
@@ -76,7 +77,7 @@ verdict: $(VENV)/ready
 
 results: $(VENV)/ready
 	@$(PIP) install -e '.[surf]'
-	@$(BIN)/python tests/results.py
+	@$(TOOL)/results.py
 
 clean:
 	rm -rf $(VENV) build dist out *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis .benchmarks

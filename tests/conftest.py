@@ -12,6 +12,7 @@ import pytest
 import viser
 from drawn import flat_pair
 from hypothesis import HealthCheck, settings
+from repository import ROOT
 from strangers import TOKEN, Stand, standing
 
 from algorithms.common.pose import Pose2
@@ -107,7 +108,7 @@ def strangers_folder(strangers: Case, tmp_path_factory: pytest.TempPathFactory) 
 @pytest.fixture(scope="session")
 def bent_folder() -> Path:
     """The folder of a sample that one of its robots bent; not to be written to."""
-    return Path(__file__).parents[1] / "sample_maps" / "bent_r2_r1"
+    return ROOT / "sample_maps" / "bent_r2_r1"
 
 
 @pytest.fixture

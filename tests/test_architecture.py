@@ -11,8 +11,8 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).parent.parent
 PLOTTERS = {"matplotlib", "plotly", "bokeh", "seaborn"}
 
 # A package imports packages of lower rows only; what lies in its folders belongs to it.

@@ -2,15 +2,11 @@
 
 import doctest
 import re
-import sys
 from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).parents[1]
-sys.path.append(str(ROOT / "tests" / "browser"))
-
-from screenshots import SHOWN  # noqa: E402
+from repository import ROOT
+from screenshots import SHOWN
 
 PAGES = [ROOT / "README.md", ROOT / "SECURITY.md", *sorted((ROOT / "docs").glob("*.md"))]
 

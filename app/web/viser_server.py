@@ -2,7 +2,7 @@
 
 Measured on viser 1.1.1: any web page that is open in the same browser could drive a server on this
 machine, any client could have a public tunnel opened, write any property of a widget, and fill the
-memory with uploads. What this leans on of viser's insides, tests/test_canaries.py holds it to.
+memory with uploads. What this leans on of viser's insides, tests/app/web/test_canaries.py holds it to.
 """
 
 from __future__ import annotations

@@ -13,12 +13,11 @@ from viser import uplot
 
 from algorithms.common.setting_bounds import Bounds
 from app.drawing.palette import LIGHT, QUIET, css
-from app.model.objective_label import AGREEMENT
 from app.model.settings import Setting
 from app.model.status_text import typeset
 from app.page.panels.sparing import put
 from app.page.research.comparison_panel import says_html
-from app.page.research.sweep_curves import Numbers, measures
+from app.page.research.sweep_curves import AGREEMENT, Numbers, measures
 from app.page.research.sweep_request import Wanted
 
 NOTHING = "none"
