@@ -32,7 +32,7 @@ def test_serve_answers_on_this_machine_alone_until_it_is_told_to_end(end):
                 assert answer.status == 200
             time.sleep(0.2)
             page.send_signal(end)
-            assert page.wait(timeout=20) == 0
+            assert page.wait(timeout=60) == 0
         finally:
             if page.poll() is None:
                 page.kill()
@@ -59,7 +59,7 @@ def test_a_tab_of_another_version_is_told_to_reload_and_stops_nobody_where_no_on
             with urllib.request.urlopen(url, timeout=20) as answer:
                 assert answer.status == 200
             page.send_signal(signal.SIGTERM)
-            assert page.wait(timeout=20) in (0, 130)
+            assert page.wait(timeout=60) in (0, 130)
             assert page.stderr.read() == ""
         finally:
             if page.poll() is None:
@@ -86,7 +86,7 @@ def test_a_page_answers_to_the_name_of_its_proxy_and_an_old_flag_tells_its_new_n
                     urllib.request.Request(url, headers={"Host": "evil.example"}), timeout=20
                 )
             page.send_signal(signal.SIGTERM)
-            assert page.wait(timeout=20) in (0, 130)
+            assert page.wait(timeout=60) in (0, 130)
             told = [line for line in page.stderr.read().splitlines() if "--" in line]
             old = ["mapmeld serve: --behind is now --proxy-host"]
             assert told == (old if flag == "--behind" else [])
