@@ -48,7 +48,6 @@ LONG_MODULES = {
     "app.drawing.scene.map_view",
     "app.drawing.scene.search_symbols",
     "app.evaluation.dataset_evaluation",
-    "app.jobs.worker_pool",
     "app.model.status_text",
     "app.page.lesson.lesson_controller",
     "app.page.page",
