@@ -228,7 +228,7 @@ class Telling(Part):
         elif view == MAP and self._hand.active:
             self._hand.redraw()
         elif view == MAP:
-            self._maps.show(story, self._tuning.config, camera or look, live)
+            self._run_view.show(story, self._tuning.config, camera or look, live)
         elif view == HEIGHTS:
             self._heights.show(story.get(AugmentDetail), self._palette, look)
         else:
@@ -253,7 +253,7 @@ class Telling(Part):
 
     def _maps_preview(self, job: MergeJob) -> None:
         if self._run.view == MAP:
-            self._maps.preview(self._story, job.config)
+            self._run_view.preview(self._story, job.config)
             self._stage.hud(legend=legend(self._palette, MAP, self._story, preview=True))
         elif self._run.view == HEIGHTS:
             self._draw(self._story, live=False)

@@ -59,7 +59,7 @@ class Looking(Part):
         with self.session.drawing:
             if self._run.view == MAP and self._comparison.choose(mode):
                 if not self._hand.active:
-                    self._maps.show(self._story, self._tuning.config, camera=False, live=False)
+                    self._run_view.show(self._story, self._tuning.config, camera=False, live=False)
                 self._tell_legend()
                 self._stage.flush()
 
