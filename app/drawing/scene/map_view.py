@@ -12,7 +12,7 @@ from algorithms.verdict.cell_agreement import CellAgreement, WallLookup
 from algorithms.verdict.contradictions import Contradictions
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import LIGHT, Palette
-from app.drawing.scene import search_symbols as signs
+from app.drawing.scene import robot_symbols as signs
 from app.drawing.scene.grid_image import Size
 from app.drawing.scene.map_layers import LAID_OVER, MapLayers, Mode
 from app.drawing.scene_layout import Rect, SceneLayout, known_hull
