@@ -49,7 +49,6 @@ LONG_MODULES = {
     "app.model.status_text",
     "app.page.lesson.lesson_controller",
     "app.page.page",
-    "app.page.panels.charts_panel",
 }
 LONG_FUNCTIONS = {"algorithms.methods.spectra_method.run", "algorithms.simulator.scenario.simulate"}
 LARGE_FOLDERS: set[str] = set()
