@@ -45,7 +45,6 @@ MOST_MODULES = 15  # of a folder, its __init__ apart
 LONG_MODULES = {
     "algorithms.methods.spectra_stages",
     "algorithms.verdict.wall_evidence",
-    "app.model.status_text",
     "app.page.lesson.lesson_controller",
     "app.page.page",
 }

@@ -15,6 +15,7 @@ from algorithms.verdict.contradictions import Contradictions, find_conflicts
 from app.drawing.legend import in_hand, legend
 from app.jobs.worker_pool import WorkerDiedError
 from app.model import status_text as words
+from app.model import verdict_text
 from app.model.merge_inputs import MergeInputs
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
@@ -164,7 +165,7 @@ class Telling(Part):
             self._export.replay.offer(i.name, partial(replay_of, job, self.session.told_again, i))
         self._draw(story, live=live)
         self._comparison.offer(self._conflicts, self._palette)
-        self._stage.hud(mood=words.mood(result.verdict), progress=None)
+        self._stage.hud(mood=verdict_text.mood(result.verdict), progress=None)
         self._say(story, result)
         self._museum.told(self._inputs, result.method, config, result)
 
@@ -247,7 +248,7 @@ class Telling(Part):
         """The verdict; over the swarm whether it found the proven optimum, and the verdict's first word."""
         found, reason = words.found_it(story), result.verdict.reason
         if result.method == BY_HAND:
-            reason = words.of_hand(result, taken=True)
+            reason = verdict_text.of_hand(result, taken=True)
         brief = f"{found} {reason.split(':')[0]}."
         self._stage.hud(state=brief if found and self._run.view == SWARM else reason)
 

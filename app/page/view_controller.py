@@ -10,7 +10,7 @@ from algorithms.methods.steps import RefineDetail
 from app.drawing.draw_items import mark
 from app.drawing.palette import DARK, LIGHT
 from app.drawing.scene.map_layers import Mode
-from app.model import status_text as words
+from app.model import verdict_text as words
 from app.model.view_modes import HEIGHTS, MAP, SWARM
 from app.page.part import Part
 

@@ -29,7 +29,7 @@ from app.drawing.palette import css
 from app.drawing.scene import search_symbols as signs
 from app.drawing.scene.map_view import OF_A_RUN, SLIDE_MS, MapView
 from app.drawing.scene_layout import Rect, known_hull, union
-from app.model import status_text as words
+from app.model import verdict_text as words
 from app.model.run_state import RunState
 
 TURN_MS, FOLLOW_MS = 900.0, 70.0

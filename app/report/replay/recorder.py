@@ -22,6 +22,7 @@ from app.drawing.scene.map_view import MapView
 from app.drawing.scene.run_view import RunView
 from app.drawing.scene_layout import lay_out
 from app.model import status_text as words
+from app.model import verdict_text
 from app.model.merge_inputs import MergeInputs
 from app.model.playback import FRAME, dwell
 from app.model.run_state import RunState
@@ -122,9 +123,9 @@ def record(steps: Iterable[Step], inputs: MergeInputs, config: Any) -> Recording
             break
     assert result is not None
     rows = _typeset(numbers(result, inputs, config))
-    mood = words.mood(result.verdict)
+    mood = verdict_text.mood(result.verdict)
     stage.hud(mood=mood, state=result.verdict.reason)
-    stage.extra(table={"rows": rows, "says": words.remedy(result), "mood": mood})
+    stage.extra(table={"rows": rows, "says": verdict_text.remedy(result), "mood": mood})
     stage.flush()
     return {
         "frames": stage.frames,
