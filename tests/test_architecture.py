@@ -45,14 +45,8 @@ MOST_MODULES = 15  # of a folder, its __init__ apart
 LONG_MODULES = {
     "algorithms.methods.spectra_stages",
     "algorithms.verdict.wall_evidence",
-    "app.drawing.scene.map_view",
-    "app.drawing.scene.search_symbols",
-    "app.evaluation.dataset_evaluation",
-    "app.jobs.worker_pool",
-    "app.model.status_text",
     "app.page.lesson.lesson_controller",
     "app.page.page",
-    "app.page.panels.charts_panel",
 }
 LONG_FUNCTIONS = {"algorithms.methods.spectra_method.run", "algorithms.simulator.scenario.simulate"}
 LARGE_FOLDERS: set[str] = set()

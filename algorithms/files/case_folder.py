@@ -76,3 +76,14 @@ def case_folders(root: Path) -> list[Path]:
             f"a case is a folder of {FIRST_MAP_FILE}, {SECOND_MAP_FILE} and {OBSERVATION_FILE}",
         )
     return folders
+
+
+def name_in(root: Path, folder: Path) -> str:
+    """What a case is called: its place under the root; the root's own name where it is the case."""
+    inside = folder.relative_to(root).as_posix()
+    return folder.resolve().name if inside == "." else inside
+
+
+def group_of(name: str) -> str:
+    """Name of a case up to its first "_"."""
+    return name.rsplit("/", 1)[-1].split("_", 1)[0]

@@ -22,7 +22,7 @@ import numpy as np
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.files.atomic_write import write_files
-from algorithms.files.case_folder import Case, case_folders, read_case
+from algorithms.files.case_folder import Case, case_folders, group_of, name_in, read_case
 from algorithms.files.observation_file import ROUGH_OBSERVATION_FILE
 from algorithms.files.truth_file import Truth
 from algorithms.methods import registry as methods
@@ -34,15 +34,8 @@ from algorithms.verdict.model_fit import Example, Told, cross_validated, fit, mo
 from algorithms.verdict.probability_model import MODEL_FILE, VerdictModel
 from app.cli.executor_flags import executor_for
 from app.cli.progress_bar import bar
+from app.evaluation.crossed_pairs import Crossing, building_of, crossed_case, crossings
 from app.evaluation.csv_tables import aligned, markdown
-from app.evaluation.dataset_evaluation import (
-    Crossing,
-    building_of,
-    crossed_case,
-    crossings,
-    group_of,
-    name_in,
-)
 from app.evaluation.reliability_figure import reliability_figure
 from app.jobs.executor import Executor, LostTask, Task
 from app.system import data_paths

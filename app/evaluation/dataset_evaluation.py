@@ -4,12 +4,8 @@ probabilities are what they say.
 
 from __future__ import annotations
 
-import random
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from itertools import permutations
-from math import radians
 from pathlib import Path
 from statistics import median
 from time import perf_counter
@@ -17,32 +13,20 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.common.errors import InputFileError, MapMergeError, NoAnswerError
-from algorithms.common.pose import pose_error
-from algorithms.files.case_folder import Case, case_folders, read_case
+from algorithms.common.errors import MapMergeError, NoAnswerError
+from algorithms.files.case_folder import Case, case_folders, group_of, name_in, read_case
 from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE
-from algorithms.files.truth_file import TRUTH_FILE, Truth, read_truth
 from algorithms.methods import registry as methods
-from algorithms.methods.merge_result import MergeResult
-from algorithms.simulator.wrong_pairs import crossed
 from algorithms.verdict.calibration import brier_score, calibration_error, reliability
+from app.evaluation.crossed_pairs import Crossing, crossed_case
+from app.evaluation.method_run import judge_case
 from app.jobs.executor import Executor, LostTask, SerialExecutor, Task
 from app.report.result_files import plain, report_of
 
-FINE_M = 0.15
-FINE_RAD = radians(1)
 OVERALL = "overall"
 
 Entry = dict[str, Any]
 """What is told of one case: case, observation, report or no_answer or error, seconds, truth."""
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """A wrong pair: map 1 and the observer of one case, map 2 and the seen robot of another building's."""
-
-    observer: Path
-    observed: Path
 
 
 @dataclass(frozen=True)
@@ -102,35 +86,6 @@ def evaluate_both(order: EvaluationTask, executor: Executor | None = None) -> It
         yield from evaluate(replace(order, rough=True), executor, folders)
 
 
-def crossings(root: Path, count: int, seed: int = 0) -> list[Crossing]:
-    """So many wrong pairs of the cases in a folder, different ones, by chance; fewer where there are not so
-    many pairs of different buildings.
-
-    raises : InputFileError for a case that cannot be read, or where all are of one building
-    """
-    known: dict[Path, str] = {}
-    for folder in case_folders(root):
-        path = folder / TRUTH_FILE
-        truth = read_truth(path) if path.exists() else None
-        if truth is None or truth.expected == "merge":
-            known[folder] = building_of(group_of(name_in(root, folder)), truth)
-    pairs = [Crossing(a, b) for a, b in permutations(known, 2) if known[a] != known[b]]
-    if not pairs:
-        raise InputFileError(
-            root, "holds cases of one building only", "wrong pairs need two buildings or more"
-        )
-    return random.Random(seed).sample(pairs, min(count, len(pairs)))
-
-
-def building_of(group: str, truth: Truth | None) -> str:
-    """Which building a case is of: what its truth names as source, without the numbers of surveys (HIH_01);
-    the group of its name where nothing is named.
-    """
-    words = [] if truth is None else truth.source.split()
-    kept = [word for word in words if word != "+" and not re.fullmatch(r"\w+_\d+", word)]
-    return " ".join(kept) or group
-
-
 def rough_folders(root: Path) -> list[Path]:
     """The case folders that hold a badly measured observation, too."""
     return [folder for folder in case_folders(root) if (folder / ROUGH_OBSERVATION_FILE).exists()]
@@ -183,18 +138,6 @@ def _read(what: Path | Crossing, order: EvaluationTask) -> LoadedCase | Entry:
         return entry | _failed(error) | {"seconds": perf_counter() - began}
 
 
-def crossed_case(a: Case, b: Case) -> Case:
-    """The wrong pair that two cases of different buildings make."""
-    return Case(
-        name=f"{a.name} x {b.name}",
-        ref=a.ref,
-        mov=b.mov,
-        observations=tuple(map(crossed, a.observations, b.observations)),
-        observation_file=a.observation_file,
-        truth=Truth(None, expected="refuse"),
-    )
-
-
 def _failed(error: Exception) -> Entry:
     """What is told of a case that could not be run: a bug in one case must not cost the others."""
     known = isinstance(error, MapMergeError)
@@ -207,48 +150,6 @@ def _entry(what: Path | Crossing, order: EvaluationTask) -> Entry:
         "case": " x ".join(name_in(order.root, folder) for folder in names),
         "observation": ROUGH_OBSERVATION_FILE if order.rough else OBSERVATION_FILE,
     }
-
-
-def name_in(root: Path, folder: Path) -> str:
-    """What a case is called: its place under the root; the root's own name where it is the case."""
-    inside = folder.relative_to(root).as_posix()
-    return folder.resolve().name if inside == "." else inside
-
-
-def judge_case(case: Case, result: MergeResult | None) -> dict[str, Any] | None:
-    """How far a merge is from the truth; None where no truth is known.
-
-    Two maps that share no place have no right transform: there, right means refused.
-
-    result : None for a method that found no transform, which refuses
-    """
-    truth = case.truth
-    if truth is None:
-        return None
-    distance = angle = None
-    if truth.T_ref_mov is not None and result is not None:
-        distance, angle = pose_error(result.T_ref_mov, truth.T_ref_mov, result.encounter.x_mov)
-    if truth.expected == "refuse":
-        right, fine = result is None or not result.verdict.accepted, False
-    elif result is None:
-        right = fine = False
-    else:
-        assert distance is not None
-        assert angle is not None
-        right = truth.allows(distance, angle)
-        fine = distance <= FINE_M and angle <= FINE_RAD
-    return {
-        "distance": distance,
-        "angle": angle,
-        "right": right,
-        "fine": fine,
-        "expected": truth.expected,
-    }
-
-
-def group_of(name: str) -> str:
-    """Name of a case up to its first "_"."""
-    return name.rsplit("/", 1)[-1].split("_", 1)[0]
 
 
 def totals_of(entries: Sequence[Entry]) -> dict[str, dict[str, Any]]:

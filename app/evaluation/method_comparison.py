@@ -10,9 +10,8 @@ from threading import Event
 from typing import Any
 
 from algorithms.common.errors import MapMergeError
-from algorithms.files.case_folder import Case, case_folders, read_case
+from algorithms.files.case_folder import Case, case_folders, name_in, read_case
 from algorithms.methods.registry import METHODS
-from app.evaluation.dataset_evaluation import name_in
 from app.evaluation.method_run import MethodRun, run_method, true_fusion
 from app.jobs.executor import Executor, LostTask, Shared, Task
 

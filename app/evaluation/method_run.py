@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from math import atan2, hypot
+from math import atan2, hypot, radians
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 from algorithms.common.errors import MapMergeError, NoAnswerError
-from algorithms.common.pose import Pose2
+from algorithms.common.pose import Pose2, pose_error
 from algorithms.files.case_folder import Case
 from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
@@ -21,8 +21,10 @@ from algorithms.methods.stage_runner import StageCache
 from algorithms.observations.observation import Observation
 from algorithms.verdict.decision import Outcome
 from algorithms.verdict.performance_index import performance_index
-from app.evaluation.dataset_evaluation import judge_case
 from app.model.settings import settings_of, value_at
+
+FINE_M = 0.15
+FINE_RAD = radians(1)
 
 
 @dataclass(frozen=True)
@@ -108,6 +110,37 @@ def run_method(
     assert isinstance(last.detail, MergeResult)
     result = last.detail
     return _judged(case, result, result.verdict.reason, sum(result.timings_s.values()), true)
+
+
+def judge_case(case: Case, result: MergeResult | None) -> dict[str, Any] | None:
+    """How far a merge is from the truth; None where no truth is known.
+
+    Two maps that share no place have no right transform: there, right means refused.
+
+    result : None for a method that found no transform, which refuses
+    """
+    truth = case.truth
+    if truth is None:
+        return None
+    distance = angle = None
+    if truth.T_ref_mov is not None and result is not None:
+        distance, angle = pose_error(result.T_ref_mov, truth.T_ref_mov, result.encounter.x_mov)
+    if truth.expected == "refuse":
+        right, fine = result is None or not result.verdict.accepted, False
+    elif result is None:
+        right = fine = False
+    else:
+        assert distance is not None
+        assert angle is not None
+        right = truth.allows(distance, angle)
+        fine = distance <= FINE_M and angle <= FINE_RAD
+    return {
+        "distance": distance,
+        "angle": angle,
+        "right": right,
+        "fine": fine,
+        "expected": truth.expected,
+    }
 
 
 def _judged(

@@ -10,11 +10,8 @@ import atexit
 import contextlib
 import itertools
 import logging
-import pickle
 import signal
-import traceback
 from collections.abc import Callable, Generator, Iterator
-from dataclasses import dataclass, field
 from math import inf
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
@@ -24,14 +21,13 @@ from typing import Any
 
 from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import MapMergeError
-from algorithms.methods.stage_runner import StageCache
 from algorithms.methods.steps import Step
 from app.jobs.fair_semaphore import FairSemaphore
 from app.jobs.incremental_pickle import IncrementalPickle
 from app.jobs.process_executor import SPAWN
 from app.jobs.runner import RunCallbacks, Runner
+from app.jobs.worker_process import Failed, serve
 from app.model.merge_job import MergeJob
-from app.system.memory import give_back, whole
 
 log = logging.getLogger(__name__)
 
@@ -39,7 +35,6 @@ MOST = 4  # each takes 200 MB before it has done anything, and has threads for a
 HANGS = 10.0  # seconds that a step goes on unwanted, or a word is not heard, until its process is ended
 HANGS_BESIDE = 60.0  # where other runs would end with it; and until a run has to have begun
 LOOK_S = 0.25  # how often it is looked
-SHARE = 0.5  # of this machine's memory that a worker may have; more is a MemoryError, not the end of others
 
 
 class WorkerDiedError(MapMergeError):
@@ -116,7 +111,7 @@ class _Worker:
             if self._closed:
                 raise WorkerDiedError
             line, theirs = SPAWN.Pipe()
-            process = SPAWN.Process(target=_serve, args=(theirs,), name="mapmeld-merge", daemon=True)
+            process = SPAWN.Process(target=serve, args=(theirs,), name="mapmeld-merge", daemon=True)
             try:
                 with _deaf():
                     process.start()
@@ -273,7 +268,7 @@ class _Place(Runner):
         return step
 
     def _heard(self, answer: tuple[Any, ...]) -> tuple[Any, ...]:
-        if not isinstance(answer[0], _Failed):
+        if not isinstance(answer[0], Failed):
             return answer
         failed = answer[0]
         if failed.anew:
@@ -298,98 +293,5 @@ class _ThereError(Exception):
         return f"\n{self.args[0]}"
 
 
-@dataclass(frozen=True)
-class _Failed:
-    """anew : the parcels no longer agree."""
-
-    error: Exception
-    trace: str
-    anew: bool = False
-
-
 COMMON = WorkerPool()
 atexit.register(COMMON.close)
-
-
-# ---- what runs in the other process
-
-
-@dataclass
-class _Tab:
-    parcels: IncrementalPickle = field(default_factory=lambda: IncrementalPickle("worker"))
-    memo: StageCache = field(default_factory=dict)
-    runs: dict[int, Iterator[Step]] = field(default_factory=dict)
-
-
-def _serve(line: Connection) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # see _deaf
-    _bound_memory()
-    tabs: dict[int, _Tab] = {}
-    with contextlib.suppress(EOFError, OSError):  # the first process is gone
-        while True:
-            line.send(_obey(tabs, *line.recv()))
-
-
-def _obey(tabs: dict[int, _Tab], verb: str, number: int, *what: Any) -> tuple[Any, ...]:
-    if verb == "forget":
-        if tabs.pop(number, None) is not None:
-            give_back()
-        return ()
-    tab = tabs.setdefault(number, _Tab())
-    if verb == "start":
-        return _started(tabs, number, tab, *what)
-    (run,) = what
-    if verb == "leave":
-        tab.runs.pop(run, None)
-        return ()
-    try:
-        step = next(tab.runs[run], None)
-    except Exception as error:
-        del tab.runs[run]
-        return (_failed(error),)
-    if step is None:
-        del tab.runs[run]
-        return (None,)
-    try:
-        return (tab.parcels.pack(step),)
-    except Exception as error:
-        del tabs[number]
-        return (_failed(error, anew=True),)
-
-
-def _started(
-    tabs: dict[int, _Tab], number: int, tab: _Tab, aside: bool, turns: int, data: bytes
-) -> tuple[Any, ...]:
-    try:
-        for _ in range(turns):
-            tab.parcels.turn_over()
-        job: MergeJob = tab.parcels.unpack(data)
-    except Exception as error:
-        del tabs[number]
-        return (_failed(error, anew=True),)
-    try:
-        steps = job.run(dict(tab.memo) if aside else tab.memo)
-    except Exception as error:
-        return (_failed(error),)
-    run = next(_numbers)
-    tab.runs[run] = steps
-    return (run,)
-
-
-def _failed(error: Exception, anew: bool = False) -> _Failed:
-    trace = traceback.format_exc()
-    try:
-        pickle.loads(pickle.dumps(error))
-    except Exception:  # not every library's errors can travel
-        error = RuntimeError(f"{type(error).__name__}: {error}")
-    return _Failed(error, trace, anew)
-
-
-def _bound_memory() -> None:
-    """Have what is too much for this machine fail here, before the system ends whom it likes."""
-    try:
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_DATA, (int(SHARE * whole()),) * 2)
-    except (ImportError, AttributeError, ValueError, OSError):  # not on every system
-        log.debug("memory is not bounded", exc_info=True)

@@ -1,4 +1,4 @@
-"""The state of the page in words: one sentence, in one place."""
+"""What the page says of a run while it works: one sentence, in one place."""
 
 from __future__ import annotations
 
@@ -9,9 +9,7 @@ import numpy as np
 
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.maps.map_fusion import Fusion
-from algorithms.methods.manual_merge import BY_HAND
 from algorithms.methods.merge_result import MergeResult
-from algorithms.methods.registry import METHODS
 from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
@@ -29,10 +27,9 @@ from algorithms.methods.steps import (
     WindowDetail,
 )
 from algorithms.optimisation.branch_and_bound import ProofState
-from algorithms.verdict.decision import NEXT_TO_NO_WALL, SAME_PLACE, Outcome, Verdict
-from algorithms.verdict.probability_model import OTHERS
 from app.model.objective_label import ObjectiveLabel
 from app.model.run_state import RunState
+from app.model.verdict_text import fits_nowhere
 
 # Share of the work done when a stage begins; refining and proving take what lies before the next.
 _SHARE: dict[type, float] = {
@@ -53,9 +50,6 @@ _SHARE: dict[type, float] = {
     TriedDetail: 0.99,
     MergeResult: 1.0,
 }
-LEAST_LIKELY = 0.005  # of a rival; what is less likely rounds to nothing
-MOODS = {Outcome.MERGED: "accepted", Outcome.BENT: "bent", Outcome.REFUSED: "refused"}
-"""The colour of an outcome: green, amber, vermilion."""
 _MANY_BLOCKS = 20_000  # a proof has seldom more; nobody knows before its end how many there will be
 
 READY = "Ready. Press Merge."
@@ -146,11 +140,6 @@ def _weighing(detail: WeighedDetail) -> str:
     return f"{named}, {off} from where the search had ended."
 
 
-def fits_nowhere(state: ProofState) -> bool:
-    """Whether it is known that no transform of the window has a value above zero."""
-    return state.stopped is not None and not state.empty and state.ceiling <= 0
-
-
 def _proving(state: ProofState, measure: ObjectiveLabel) -> str:
     blocks = f"{state.nodes:,} blocks bounded"
     if state.empty:
@@ -212,33 +201,6 @@ def apart_by(distance: float, turn: float) -> str:
     return f"{distance:.1f} m and {degrees(turn):.0f}°"
 
 
-def rival(result: MergeResult) -> str:
-    """How the rival in doubt differs, and how likely it is: "180° turned, 48%"; empty without one, and where
-    nobody would believe in either.
-    """
-    other = result.verdict.rival
-    if other is None or likelihood_of_rival(result) < LEAST_LIKELY:
-        return ""
-    distance, turn = pose_error(result.T_ref_mov, other, result.encounter.x_mov)
-    shifted = distance > SAME_PLACE and degrees(turn) < 1
-    how = f"{distance:.1f} m shifted" if shifted else f"{degrees(turn):.0f}° turned"
-    return f"{how}, {likelihood_of_rival(result):.0%}"
-
-
-def odds_of_rival(verdict: Verdict) -> str:
-    """How likely the next best place is beside the named one."""
-    odds = verdict.ambiguity or 0.0
-    if odds > 1:  # of what no search has named
-        return "likelier than this"
-    return f"{odds:.0%} as likely" if odds > 0 else "none"
-
-
-def likelihood_of_rival(result: MergeResult) -> float:
-    """That the rival in doubt is right instead."""
-    verdict = result.verdict
-    return min(1.0 - verdict.probability, verdict.probability * (verdict.ambiguity or 0.0))
-
-
 def progress(story: RunState) -> float:
     """Share of the run that is done, 0 … 1."""
     detail = story.last.detail if story.last else None
@@ -252,83 +214,3 @@ def progress(story: RunState) -> float:
     if isinstance(detail, ProofDetail):
         share += 0.15 * detail.state.nodes / (detail.state.nodes + _MANY_BLOCKS)
     return share
-
-
-def of_hand(result: MergeResult, taken: bool = False) -> str:
-    """What the verdict says of a transform made by hand.
-
-    taken : whether it is the answer now
-    """
-    reason = result.verdict.reason
-    if taken:
-        return f"By hand. {reason}"
-    clause = reason.split(": ", 1)[-1]
-    return f"By hand, would be {result.verdict.outcome.value}: {clause}"
-
-
-def optimum(proof: ProofState) -> str:
-    """How the proof ended: "proven", or that it is not, and why."""
-    if proof.empty:
-        return "none: the sightings exclude each other"
-    if fits_nowhere(proof):
-        return "nothing fits"
-    return "proven" if proof.proven else f"not proven: {proof.stopped or 'not finished'}"
-
-
-def mood(verdict: Verdict) -> str:
-    """The colour that a verdict is shown in."""
-    return MOODS[verdict.outcome]
-
-
-def likelihood(probability: float) -> str:
-    """A probability as a number in a table."""
-    if probability > 0.9995:
-        return "> 99.9%"
-    return "< 0.1%" if probability < 0.0005 else f"{probability:.1%}"
-
-
-def remedy(result: MergeResult) -> str:
-    """What would help after a refusal, or what to mind of a bent merge; empty where nothing is to be said."""
-    verdict, proof = result.verdict, result.proof
-    if verdict.outcome is Outcome.BENT:
-        return (
-            "Where walls are double a robot may find a passage too narrow, or lose its way. Map again with "
-            "loops closed or better odometry."
-        )
-    if verdict.accepted:
-        return ""
-    if verdict.only_bent:
-        return "Map again with loops closed or better odometry; or take bent merges, too (without --strict)."
-    if verdict.hint:
-        return verdict.hint
-    if result.method in METHODS and not METHODS[result.method].uses_observation:
-        return "This method does not look at the observation: take one that does."
-    if proof is not None and proof.empty:
-        return "Check the numbers of the sightings, leave the odd one out, or widen the window's margin."
-    if proof is not None and fits_nowhere(proof):
-        return "Are these maps of one building? Check the observation's numbers, or widen the window."
-    if proof is not None and not proof.proven:
-        return "Give the proof more patience, or narrow the window, and merge again."
-    if verdict.rival is not None and (verdict.ambiguity or 0.0) > 1:
-        if result.method == BY_HAND:
-            return "Made by hand: refine from there, or snap to the proven optimum."
-        return "This method has missed a better place: take the default one, which proves that it finds it."
-    first = next(iter(verdict.against), "")
-    told = result.weighed[0].evidence
-    if first in ("contradiction", "unbent") and told.rigid_contradicting < NEXT_TO_NO_WALL:
-        first = "across"  # hardly anything contradicts: too little is shared
-    return REMEDIES.get(first, REMEDIES[""])
-
-
-REMEDIES = {
-    OTHERS: "A second observation would tell the two places apart; so would maps that share more.",
-    "contradiction": "Are these maps of one building? Check the observation's numbers; a second observation "
-    "may find a better place.",
-    "unbent": "Are these maps of one building? Check the observation's numbers; a second observation "
-    "may find a better place.",
-    "across": "Let one of the robots drive on, so that the maps share more, and merge again; or give a "
-    "second observation.",
-    "misfit": "Check the observation's numbers, or widen the window.",
-    "": "Let one of the robots drive on, so that the maps share more, or give a second observation.",
-}
-"""What would help, by what speaks most against a merge."""

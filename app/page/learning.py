@@ -92,7 +92,7 @@ class Learning(Part):
             if self._run.view != MAP:
                 self._draw(story, live=False)
             elif story.reached(AugmentDetail):
-                self._maps.show(story, self._tuning.config, camera=look, live=True)
+                self._run_view.show(story, self._tuning.config, camera=look, live=True)
             else:
                 self._maps.apart()
             if turn is not None and self._run.view == MAP:

@@ -19,6 +19,7 @@ from app.drawing.palette import LIGHT, Palette
 from app.drawing.scene.height_view import HeightsView
 from app.drawing.scene.map_comparison import MODES, MapComparison
 from app.drawing.scene.map_view import MapView
+from app.drawing.scene.run_view import RunView
 from app.drawing.scene.swarm_view import SwarmView
 from app.drawing.scene_layout import lay_out
 from app.jobs import worker_pool as workers
@@ -75,6 +76,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         self._stage: BrowserMessages = TabMessages(client)
         self._channel = BrowserEvents(client.gui, self._stage)
         self._maps = MapView(client, self._stage)
+        self._run_view = RunView(self._maps, self._stage)
         self._heights = HeightsView(client, self._stage)
         self._swarm = SwarmView(self._stage)
         self._comparison = MapComparison(self._stage, self._maps)

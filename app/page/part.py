@@ -18,6 +18,7 @@ from app.drawing.palette import Palette
 from app.drawing.scene.height_view import HeightsView
 from app.drawing.scene.map_comparison import MapComparison
 from app.drawing.scene.map_view import MapView
+from app.drawing.scene.run_view import RunView
 from app.drawing.scene.swarm_view import SwarmView
 from app.jobs.job_thread import JobThread
 from app.model.merge_inputs import MergeInputs
@@ -47,6 +48,7 @@ class Part(ABC):
     _client: viser.ClientHandle
     _stage: BrowserMessages
     _maps: MapView
+    _run_view: RunView
     _heights: HeightsView
     _swarm: SwarmView
     _plots: ChartsPanel

@@ -15,6 +15,7 @@ from algorithms.verdict.contradictions import Contradictions, find_conflicts
 from app.drawing.legend import in_hand, legend
 from app.jobs.worker_pool import WorkerDiedError
 from app.model import status_text as words
+from app.model import verdict_text
 from app.model.merge_inputs import MergeInputs
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
@@ -164,7 +165,7 @@ class Telling(Part):
             self._export.replay.offer(i.name, partial(replay_of, job, self.session.told_again, i))
         self._draw(story, live=live)
         self._comparison.offer(self._conflicts, self._palette)
-        self._stage.hud(mood=words.mood(result.verdict), progress=None)
+        self._stage.hud(mood=verdict_text.mood(result.verdict), progress=None)
         self._say(story, result)
         self._museum.told(self._inputs, result.method, config, result)
 
@@ -228,7 +229,7 @@ class Telling(Part):
         elif view == MAP and self._hand.active:
             self._hand.redraw()
         elif view == MAP:
-            self._maps.show(story, self._tuning.config, camera or look, live)
+            self._run_view.show(story, self._tuning.config, camera or look, live)
         elif view == HEIGHTS:
             self._heights.show(story.get(AugmentDetail), self._palette, look)
         else:
@@ -247,13 +248,13 @@ class Telling(Part):
         """The verdict; over the swarm whether it found the proven optimum, and the verdict's first word."""
         found, reason = words.found_it(story), result.verdict.reason
         if result.method == BY_HAND:
-            reason = words.of_hand(result, taken=True)
+            reason = verdict_text.of_hand(result, taken=True)
         brief = f"{found} {reason.split(':')[0]}."
         self._stage.hud(state=brief if found and self._run.view == SWARM else reason)
 
     def _maps_preview(self, job: MergeJob) -> None:
         if self._run.view == MAP:
-            self._maps.preview(self._story, job.config)
+            self._run_view.preview(self._story, job.config)
             self._stage.hud(legend=legend(self._palette, MAP, self._story, preview=True))
         elif self._run.view == HEIGHTS:
             self._draw(self._story, live=False)

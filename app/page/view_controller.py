@@ -10,7 +10,7 @@ from algorithms.methods.steps import RefineDetail
 from app.drawing.draw_items import mark
 from app.drawing.palette import DARK, LIGHT
 from app.drawing.scene.map_layers import Mode
-from app.model import status_text as words
+from app.model import verdict_text as words
 from app.model.view_modes import HEIGHTS, MAP, SWARM
 from app.page.part import Part
 
@@ -59,7 +59,7 @@ class Looking(Part):
         with self.session.drawing:
             if self._run.view == MAP and self._comparison.choose(mode):
                 if not self._hand.active:
-                    self._maps.show(self._story, self._tuning.config, camera=False, live=False)
+                    self._run_view.show(self._story, self._tuning.config, camera=False, live=False)
                 self._tell_legend()
                 self._stage.flush()
 

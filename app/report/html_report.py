@@ -16,6 +16,7 @@ from app.drawing.palette import LIGHT
 from app.drawing.svg.verdict_bars import bars
 from app.model import chart_data as charts
 from app.model import status_text as words
+from app.model import verdict_text
 from app.model.contradiction_text import MOST_PLACES, signed, summary, whose
 from app.model.merge_inputs import MergeInputs
 from app.model.objective_label import measure_of
@@ -82,7 +83,7 @@ def report_page(
 
 def _verdict(result: MergeResult, inputs: MergeInputs) -> str:
     verdict, T = result.verdict, result.T_ref_mov
-    then = words.remedy(result)
+    then = verdict_text.remedy(result)
     stop, reason = STRONG.get(verdict.outcome, ""), verdict.reason
     if stop:
         reason = _bare(reason)
@@ -96,7 +97,7 @@ def _verdict(result: MergeResult, inputs: MergeInputs) -> str:
     where = typeset(where)
     read = "".join(f"<p>{escape(remark)}</p>" for remark in inputs.readings())
     return (
-        f'<div class="verdict {words.mood(verdict)}">{stop}<p>{escape(reason)}</p>{more}</div>'
+        f'<div class="verdict {verdict_text.mood(verdict)}">{stop}<p>{escape(reason)}</p>{more}</div>'
         f"{read}<p>{where}</p>"
     )
 
@@ -138,7 +139,7 @@ def _likely(result: MergeResult) -> list[str]:
     verdict = result.verdict
     said = (
         f"{merges_of(verdict.probability).capitalize()}, by what merges of simulated buildings teach: "
-        f"{words.likelihood(verdict.probability)}."
+        f"{verdict_text.likelihood(verdict.probability)}."
     )
     caption = (
         "What moves the probability: to the right what speaks for the merge, to the left what speaks against "

@@ -14,6 +14,7 @@ from algorithms.methods.merge_result import MergeResult
 from algorithms.observations.observation import Encounter, Observation
 from algorithms.verdict.performance_index import performance_index
 from app.model import status_text as words
+from app.model import verdict_text
 from app.model.merge_inputs import MergeInputs
 from app.model.objective_label import measure_of
 
@@ -66,7 +67,7 @@ def numbers(result: MergeResult, inputs: MergeInputs, config: Any = None) -> lis
     else:
         rows.append(("eq. (23), at the estimated T", _share(performance_index(result.fusion))))
     rows += [
-        ("likely right", words.likelihood(verdict.probability)),
+        ("likely right", verdict_text.likelihood(verdict.probability)),
         ("acceptance index", f"{verdict.acceptance_index:.1%}"),
         ("area known to both", f"{verdict.overlap_area:.1f} m²"),
         ("wall in view of both", f"{verdict.shared_wall:.1f} m"),
@@ -87,9 +88,9 @@ def _rivals(result: MergeResult) -> list[tuple[str, ...]]:
     verdict = result.verdict
     if verdict.ambiguity is None:
         return []
-    rows: list[tuple[str, ...]] = [("next best place", words.odds_of_rival(verdict))]
-    if words.rival(result):
-        rows.append(("rival in doubt", words.rival(result)))
+    rows: list[tuple[str, ...]] = [("next best place", verdict_text.odds_of_rival(verdict))]
+    if verdict_text.rival(result):
+        rows.append(("rival in doubt", verdict_text.rival(result)))
     return rows
 
 
@@ -109,7 +110,7 @@ def _proof(result: MergeResult) -> list[tuple[str, ...]]:
     """Whether there can be a better answer, and whether the search alone had found this one."""
     if result.proof is None:
         return []
-    rows = [("optimum", words.optimum(result.proof)), ("blocks bounded", f"{result.proof.nodes:,}")]
+    rows = [("optimum", verdict_text.optimum(result.proof)), ("blocks bounded", f"{result.proof.nodes:,}")]
     if result.proven_optimal and result.search_found_it is not None:
         rows.append(("found by the search", "yes" if result.search_found_it else "no"))
     return rows

@@ -79,11 +79,11 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     from app.cli.executor_flags import executor_for
     from app.cli.progress_bar import bar
     from app.cli.setting_flags import config_from
+    from app.evaluation.crossed_pairs import crossings
     from app.evaluation.dataset_evaluation import (
         OVERALL,
         EvaluationTask,
         calibration_of,
-        crossings,
         evaluate,
         evaluate_both,
         is_wrong_accepted,

@@ -224,7 +224,7 @@ def _summary(
     files: Mapping[str, bytes],
     removed: list[str],
 ) -> list[str]:
-    from app.model import status_text as words
+    from app.model import verdict_text as words
     from app.model.objective_label import measure_of
 
     T, verdict, proof, measure = result.T_ref_mov, result.verdict, result.proof, measure_of(config)

@@ -6,7 +6,7 @@ from algorithms.verdict.decision import Outcome, Verdict
 from algorithms.verdict.probability_model import OTHERS, QUANTITIES
 from app.drawing.palette import LIGHT, Palette, Rgb, css
 from app.drawing.svg.svg_canvas import INK, WIDE, SvgCanvas, worded
-from app.model import status_text as words
+from app.model import verdict_text as words
 
 AMBER: Rgb = (0x7A, 0x52, 0x00)  # as words, on a light page
 

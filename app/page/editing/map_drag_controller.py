@@ -19,7 +19,7 @@ from algorithms.verdict.cell_agreement import WallLookup
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.scene.map_view import MapView
 from app.jobs.latest_request import LatestRequest
-from app.model import status_text as words
+from app.model import verdict_text as words
 from app.page.editing.transform_panel import HandWishes, TransformPanel, weighed_html
 from app.page.host import MapHost
 from app.page.panels.html_widgets import box

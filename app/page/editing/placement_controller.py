@@ -13,7 +13,7 @@ from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.observation import Observation
 from app.drawing.browser_messages import BrowserMessages
-from app.drawing.scene import search_symbols as signs
+from app.drawing.scene import robot_symbols as signs
 from app.drawing.scene.map_view import MapView
 from app.drawing.scene_layout import SceneLayout, lay_out
 from app.model import status_text as words

@@ -12,7 +12,7 @@ import viser
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.methods.merge_result import MergeResult
 from app.drawing.palette import LIGHT, QUIET
-from app.model import status_text as words
+from app.model import verdict_text as words
 from app.model.objective_label import measure_of
 from app.page.panels.html_widgets import box, table
 

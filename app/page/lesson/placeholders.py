@@ -21,7 +21,7 @@ from algorithms.methods.steps import (
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.branch_and_bound import ProofState
 from app.model.objective_label import measure_of
-from app.model.status_text import likelihood
+from app.model.verdict_text import likelihood
 from app.page.lesson.lesson_run import LessonRun
 
 Number = tuple[tuple[type, ...], Callable[[LessonRun], str]]  # what the run must have come to, and the words

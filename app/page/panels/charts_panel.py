@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 import viser
 from viser import uplot
 
@@ -29,6 +28,7 @@ from app.drawing.palette import LIGHT, css
 from app.model import chart_data as charts
 from app.model import status_text as words
 from app.model.run_state import RunState
+from app.page.panels.chart_widgets import dots, empty, entitle, line, plot
 from app.page.panels.html_widgets import box, table
 
 TURN, SHIFT, SWARM, PROOF, RESULT = "Turn", "Shift", "Swarm", "Proof", "Result"
@@ -48,22 +48,6 @@ HINTS = {
     "has ruled out, turn by turn, appears here during a merge.",
     RESULT: "The verdict and its numbers appear here after a merge.",
 }
-NOTHING = (np.array([0.0, 1.0]), np.full(2, np.nan))
-
-
-def _dots(label: str, colour: str, size: float, rim: str | None = None) -> uplot.Series:
-    # no fill of the series itself: it would reach from mark to mark
-    points = {"show": True, "size": size, "fill": colour, "stroke": rim or colour, "width": 1}
-    return uplot.Series(label=label, width=0, stroke=colour, points=points)  # type: ignore[typeddict-item]
-
-
-def _line(label: str, colour: str, width: float = 1.5, **more: Any) -> uplot.Series:
-    return uplot.Series(label=label, stroke=colour, width=width, points={"show": False}, **more)
-
-
-def _entitle(plot: Any, title: str) -> None:
-    if plot.title != title:  # a chart is built anew for a new title
-        plot.title = title
 
 
 class ChartsPanel:
@@ -79,23 +63,23 @@ class ChartsPanel:
             self._pages = gui.add_button_group("", (TURN, SHIFT, SWARM, PROOF, RESULT))
             self._pages.on_click(lambda _: self._choose())
             self._hint = gui.add_html("")
-            self._hough = self._plot(
+            self._hough = plot(
                 gui,
                 *charts.HOUGH,
-                (_line("map 1", REF), _line("map 2", MOV)),
+                (line("map 1", REF), line("map 2", MOV)),
                 190,
             )
-            self._turns = self._plot(
+            self._turns = plot(
                 gui,
                 *charts.TURNS,
-                (_line("CC", GREY), _dots("candidates", MARK, 8), _dots("at hand", BEST, 10)),
+                (line("CC", GREY), dots("candidates", MARK, 8), dots("at hand", BEST, 10)),
                 190,
             )
-            self._circle = self._plot(
+            self._circle = plot(
                 gui,
                 charts.CIRCLE[0].format("agreement"),
                 charts.CIRCLE[1],
-                (_line("agreement", GREY), _dots("best", BEST, 10)),
+                (line("agreement", GREY), dots("best", BEST, 10)),
                 230,
                 None,
                 (30.0, 45.0, 90.0, 180.0),
@@ -107,42 +91,42 @@ class ChartsPanel:
             for axis, number, names in (("x", "(13)", charts.SHIFT_X), ("y", "(14)", charts.SHIFT_Y)):
                 self._shifts.append(
                     (
-                        self._plot(
+                        plot(
                             gui,
                             f"{axis.upper()} spectra, eq. {number}; map 2 turned and shifted",
                             f"{axis} (m)",
-                            (_line("map 1", REF), _line("map 2", MOV)),
+                            (line("map 1", REF), line("map 2", MOV)),
                             140,
                         ),
-                        self._plot(
+                        plot(
                             gui,
                             *names,
-                            (window, _line("C", GREY), _dots("shift", BEST, 9)),
+                            (window, line("C", GREY), dots("shift", BEST, 9)),
                             140,
                         ),
                     )
                 )
             colours = (BEST, MARK, REF, GREY)
-            self._climb = self._plot(
+            self._climb = plot(
                 gui,
                 charts.CLIMB[0].format("value"),
                 charts.CLIMB[1],
-                tuple(_line(f"{k + 1}", colour, 2.2 if k == 0 else 1.3) for k, colour in enumerate(colours)),
+                tuple(line(f"{k + 1}", colour, 2.2 if k == 0 else 1.3) for k, colour in enumerate(colours)),
                 230,
                 None,
             )
             self._candidates = gui.add_html("")
             self._proof_says = gui.add_html("")
-            self._proof = self._plot(
+            self._proof = plot(
                 gui,
                 charts.PROOF[0].format("value"),
                 charts.PROOF[1],
                 (
-                    _line("ceiling", GREY, 1.4, fill="rgba(107,114,128,.16)"),
-                    _line("best met", MARK, 1, fill="rgba(230,159,0,.55)"),
-                    _line("floor", RIVAL, 1, dash=(3, 4), alpha=0.8),
-                    _dots("optimum", OPTIMUM, 11, RIM),
-                    _dots("rivals", RIVAL, 9),
+                    line("ceiling", GREY, 1.4, fill="rgba(107,114,128,.16)"),
+                    line("best met", MARK, 1, fill="rgba(230,159,0,.55)"),
+                    line("floor", RIVAL, 1, dash=(3, 4), alpha=0.8),
+                    dots("optimum", OPTIMUM, 11, RIM),
+                    dots("rivals", RIVAL, 9),
                 ),
                 250,
                 ticks=(30.0, 45.0, 90.0, 180.0),
@@ -153,41 +137,6 @@ class ChartsPanel:
         self._panel.set_width(WIDTH)
         self.page = TURN
         self._show_page()
-
-    def _plot(
-        self,
-        gui: viser.GuiApi,
-        title: str,
-        label: str,
-        series: tuple[uplot.Series, ...],
-        height: int,
-        top: float | None = 1.1,
-        ticks: tuple[float, ...] = (),
-    ) -> Any:
-        small = "11px system-ui, sans-serif"
-        return gui.add_uplot(
-            (NOTHING[0], *(NOTHING[1] for _ in series)),
-            (uplot.Series(label=label), *series),
-            title=title,
-            scales={
-                "x": uplot.Scale(time=False),
-                "y": uplot.Scale(auto=True) if top is None else uplot.Scale(range=(0.0, top)),
-            },
-            axes=(
-                uplot.Axis(
-                    label=label,
-                    labelSize=16,
-                    labelFont=small,
-                    font=small,
-                    size=26,
-                    **({"incrs": ticks} if ticks else {}),
-                ),
-                uplot.Axis(font=small, size=46 if top is None else 42),
-            ),
-            legend=uplot.Legend(show=True, live=False),
-            height=height,
-            padding=(10, 14, 0, 0),  # room for the outermost numbers of both axes
-        )
 
     def add_tab(self, title: str, icon: viser.IconName) -> Any:
         """A further tab of the dock, to be filled in a ``with``."""
@@ -260,9 +209,9 @@ class ChartsPanel:
         self._shown.clear()
         self._candidates.content = self.result.content = ""
         self._proof_says.content = self._rivals.content = ""
-        pairs = (plot for pair in self._shifts for plot in pair)
-        for plot in (self._hough, self._turns, self._circle, *pairs, self._climb, self._proof):
-            plot.data = (NOTHING[0], *(NOTHING[1] for _ in plot.data[1:]))
+        pairs = (chart for pair in self._shifts for chart in pair)
+        for chart in (self._hough, self._turns, self._circle, *pairs, self._climb, self._proof):
+            chart.data = empty(len(chart.data) - 1)
         self._show_page()
 
     def show(self, story: RunState, follow: bool) -> None:
@@ -291,7 +240,7 @@ class ChartsPanel:
         measure = story.measure
         if refine is not None and self._new("climb", refine):
             self._climb.data = charts.courses(story.courses, LINES)
-            _entitle(self._climb, charts.CLIMB[0].format(measure.row))
+            entitle(self._climb, charts.CLIMB[0].format(measure.row))
         if found is not None and self._new("candidates", (found, refine)):
             rows = charts.candidate_rows(found.candidates, story.courses, measure)
             sign = measure.unit or measure.name
@@ -323,7 +272,7 @@ class ChartsPanel:
             "x": uplot.Scale(time=False, range=(-180.0, 180.0)),
             "y": uplot.Scale(range=charts.circle_range(detail)),
         }
-        _entitle(self._circle, charts.CIRCLE[0].format(measure))
+        entitle(self._circle, charts.CIRCLE[0].format(measure))
         self._circle.data = charts.circle(detail)
 
     def _prove(self, story: RunState, state: ProofState) -> None:
@@ -334,7 +283,7 @@ class ChartsPanel:
                 "x": uplot.Scale(time=False, range=(-180.0, 180.0)),
                 "y": uplot.Scale(range=span),
             }
-        _entitle(self._proof, charts.PROOF[0].format(measure.row))
+        entitle(self._proof, charts.PROOF[0].format(measure.row))
         self._proof.data = charts.proof(state, span[1])
         self._proof_says.content = box(words.proof_says(state, measure), "plain")
         rows = charts.proof_rows(state, measure)

@@ -9,7 +9,7 @@ from algorithms.verdict.contradictions import Contradictions
 from algorithms.verdict.decision import Verdict
 from app.drawing.palette import LIGHT
 from app.drawing.svg.verdict_bars import bars
-from app.model import status_text as words
+from app.model import verdict_text as words
 from app.model.contradiction_text import MOST_PLACES, signed, summary, whose
 from app.model.merge_inputs import MergeInputs
 from app.page.panels.html_widgets import box, table

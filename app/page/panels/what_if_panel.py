@@ -18,7 +18,7 @@ from algorithms.verdict.ranking import WINDOW_EDGE, Weighed
 from algorithms.verdict.wall_evidence import Evidence
 from app.drawing.palette import LIGHT, QUIET
 from app.drawing.svg.verdict_bars import bars
-from app.model import status_text as words
+from app.model import verdict_text as words
 from app.page.panels.html_widgets import box
 
 HOW = (

@@ -118,7 +118,7 @@ class Researching(Part):
             self._run.view = MAP
             self._turn_view()
         with self._client.atomic():
-            self._maps.show(story, guest.config, camera=self._run.follow, live=False)
+            self._run_view.show(story, guest.config, camera=self._run.follow, live=False)
             self._comparison.offer(found, self._palette)
             self._plots.tell(guest.html())
             self._export.outdate(NOT_YOURS)

@@ -19,8 +19,10 @@ from app.drawing.legend import legend
 from app.drawing.palette import LIGHT
 from app.drawing.scene.grid_image import Size
 from app.drawing.scene.map_view import MapView
+from app.drawing.scene.run_view import RunView
 from app.drawing.scene_layout import lay_out
 from app.model import status_text as words
+from app.model import verdict_text
 from app.model.merge_inputs import MergeInputs
 from app.model.playback import FRAME, dwell
 from app.model.run_state import RunState
@@ -97,6 +99,7 @@ def record(steps: Iterable[Step], inputs: MergeInputs, config: Any) -> Recording
     stage = Recorder(scene)
     maps = MapView(SimpleNamespace(scene=scene), stage, Size(PICTURE, PICTURE))  # type: ignore[arg-type]
     maps.load(inputs, lay_out(inputs.ref, inputs.mov, inputs.at, ASPECT), LIGHT)
+    view = RunView(maps, stage)
     story, marks, result = RunState(config), [{"t": 0.0, "name": "Maps"}], None
     stage.hud(state=words.SIDE_BY_SIDE, mood="running", legend=legend(LIGHT, MAP, story))
     stage.extra(curves=[], table=beginning(inputs))
@@ -114,15 +117,15 @@ def record(steps: Iterable[Step], inputs: MergeInputs, config: Any) -> Recording
         stay = dwell(step, 1.0, again=True)
         if stay >= FRAME or stage.time - drawn_at >= FRAME or result is not None:
             drawn_at = stage.time
-            _draw(story, stage, maps, inputs, config)
+            _draw(story, stage, view, inputs, config)
         stage.time += stay
         if result is not None:
             break
     assert result is not None
     rows = _typeset(numbers(result, inputs, config))
-    mood = words.mood(result.verdict)
+    mood = verdict_text.mood(result.verdict)
     stage.hud(mood=mood, state=result.verdict.reason)
-    stage.extra(table={"rows": rows, "says": words.remedy(result), "mood": mood})
+    stage.extra(table={"rows": rows, "says": verdict_text.remedy(result), "mood": mood})
     stage.flush()
     return {
         "frames": stage.frames,
@@ -154,11 +157,11 @@ def _typeset(rows: Iterable[tuple[str, ...]]) -> list[list[str]]:
     return [[name, *map(typeset, values)] for name, *values in rows]
 
 
-def _draw(story: RunState, stage: Recorder, maps: MapView, inputs: MergeInputs, config: Any) -> None:
+def _draw(story: RunState, stage: Recorder, view: RunView, inputs: MergeInputs, config: Any) -> None:
     detail = story.last.detail if story.last else None
     later = isinstance(detail, RefineDetail) and detail.index > 0
     stage.particles = LATER_PARTICLES if later else PARTICLES
-    maps.show(story, config, camera=True, live=True)
+    view.show(story, config, camera=True, live=True)
     stage.hud(state=words.sentence(story), mood="running", legend=legend(LIGHT, MAP, story))
     seen = isinstance(detail, (ObservationDetail, AugmentDetail))
     stage.extra(curves=curves(story), table=observed(inputs) if seen else None)

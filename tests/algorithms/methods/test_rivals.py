@@ -41,7 +41,7 @@ from algorithms.methods.baselines.phase_correlation import DIRECTIONS, turn_corr
 from algorithms.methods.registry import METHODS, merge, run
 from algorithms.methods.steps import MatchesDetail, ObservationDetail, TurnsDetail
 from app.model import chart_data as charts
-from app.model import status_text as words
+from app.model import verdict_text as words
 
 # Both robots have seen the whole flat.
 REF, MOV = drawn_map(T_REF_WORLD, name="ref"), drawn_map(T_MOV_WORLD, name="mov")

@@ -3,18 +3,15 @@
 import json
 import os
 from dataclasses import replace
-from math import radians
 from pathlib import Path
 
 import pytest
 
 from algorithms.common.errors import NoAnswerError
-from algorithms.common.pose import Pose2
-from algorithms.files.truth_file import Truth
 from algorithms.methods import registry as methods
 from app.cli.main import main
 from app.evaluation import dataset_evaluation as evaluate
-from app.evaluation.dataset_evaluation import EvaluationTask, judge_case, run_case, totals_of
+from app.evaluation.dataset_evaluation import EvaluationTask, run_case, totals_of
 from app.jobs.executor import SerialExecutor
 from app.jobs.process_executor import ProcessExecutor
 
@@ -24,54 +21,6 @@ DEFAULTS = methods.METHODS[METHOD].defaults
 
 def order(root, **more):
     return EvaluationTask(Path(root), METHOD, DEFAULTS, **more)
-
-
-def off_by(case, result, metres=0.0, angle=0.0, **truth):
-    """The case with a truth so far from the result, at the seen robot."""
-    at = result.encounter.x_mov
-    x, y = result.T_ref_mov.apply(at).tolist()
-    turn = Pose2(theta=result.T_ref_mov.theta + angle)
-    dx, dy = turn.apply(at).tolist()
-    return replace(case, truth=Truth(Pose2(x + metres - dx, y - dy, turn.theta), **truth))
-
-
-@pytest.mark.parametrize(
-    ("metres", "degrees", "right", "fine"),
-    [
-        (0.14, 0.9, True, True),
-        (0.16, 0.9, True, False),
-        (0.14, 1.1, True, False),
-        (0.49, 2.9, True, False),
-        (0.51, 0.0, False, False),
-        (0.0, -3.1, False, False),
-    ],
-)
-def test_right_and_fine_are_within_the_stated_distance_and_angle(
-    small_case, result, metres, degrees, right, fine
-):
-    truth = judge_case(off_by(small_case, result, metres, radians(degrees)), result)
-    assert truth["distance"] == pytest.approx(metres, abs=1e-9)
-    assert truth["angle"] == pytest.approx(abs(radians(degrees)), abs=1e-9)
-    assert (truth["right"], truth["fine"]) == (right, fine)
-
-
-def test_the_distance_is_taken_at_the_seen_robot_not_at_the_origin(small_case, result):
-    truth = judge_case(off_by(small_case, result, 0.0, radians(2)), result)
-    assert truth["distance"] == pytest.approx(0.0, abs=1e-9)
-
-
-def test_a_case_may_state_a_tolerance_of_its_own(small_case, result):
-    case = off_by(small_case, result, 0.8, radians(4), tolerance_m=1.0, tolerance_rad=radians(5))
-    assert judge_case(case, result)["right"]
-
-
-@pytest.mark.parametrize("accepted", [True, False])
-def test_two_maps_of_different_places_are_right_when_refused(small_case, result, accepted):
-    case = replace(small_case, truth=Truth(None, expected="refuse"))
-    verdict = replace(result.verdict, accepted=accepted)
-    truth = judge_case(case, replace(result, verdict=verdict))
-    assert truth["right"] is not accepted
-    assert truth["distance"] is None
 
 
 def entry(name, accepted=True, right=True, fine=False, seconds=1.0, judged=True):
@@ -143,60 +92,6 @@ def test_a_wrong_pair_that_was_refused_counts_as_a_transform_that_is_not_right()
 def test_a_method_without_an_answer_gives_it_no_chance(unanswering, case_folder):
     told = evaluate.calibration_of([run_case(case_folder, order(case_folder))])
     assert (told["n"], told["ece"], told["brier"]) == (1, 0.0, 0.0)
-
-
-@pytest.mark.parametrize(
-    ("source", "building"),
-    [
-        ("MIT_Stata B2_03 + B2_04", "MIT_Stata"),
-        ("MIT_Stata B2_05", "MIT_Stata"),
-        ("Intel Lab", "Intel Lab"),
-        ("", "flat"),
-    ],
-)
-def test_two_surveys_of_one_building_are_no_wrong_pair(source, building):
-    assert evaluate.building_of("flat", Truth(Pose2(), source=source)) == building
-
-
-@pytest.fixture
-def two_buildings(case_maker, small_case, strangers, tmp_path):
-    """Two cases of a flat, one of a hall, and one that must be refused."""
-    case_maker(small_case, "flat_1")
-    case_maker(small_case, "flat_2")
-    seen = replace(strangers.observations[0], observer=Pose2(1.0, -2.0, 0.3))
-    case_maker(replace(strangers, ref=strangers.mov, observations=(seen,), truth=Truth(Pose2())), "hall_1")
-    case_maker(strangers, "neg_1")
-    return tmp_path / "cases"
-
-
-def test_wrong_pairs_are_of_different_buildings_and_the_same_ones_every_time(two_buildings):
-    found = evaluate.crossings(two_buildings, 700)
-    pairs = {(each.observer.name, each.observed.name) for each in found}
-    flats = ("flat_1", "flat_2")
-    assert pairs == {(flat, "hall_1") for flat in flats} | {("hall_1", flat) for flat in flats}
-    assert evaluate.crossings(two_buildings, 2) == evaluate.crossings(two_buildings, 2)
-    assert len(evaluate.crossings(two_buildings, 2)) == 2
-
-
-def test_a_folder_of_one_building_has_no_wrong_pairs(case_folder, capsys):
-    assert main(["evaluate", str(case_folder), "--wrong-pairs", "3"]) == 2
-    assert "wrong pairs need two buildings" in capsys.readouterr().err
-
-
-def test_evaluate_tells_how_true_the_probabilities_are_and_what_became_of_wrong_pairs(
-    two_buildings, tmp_path, capsys
-):
-    words = ["--wrong-pairs", "3", "--json", str(tmp_path / "out.json")]
-    assert main(["evaluate", str(two_buildings), *words]) == 0
-    told = json.loads((tmp_path / "out.json").read_text())
-    assert [entry["truth"]["expected"] for entry in told["wrong_pairs"]] == ["refuse"] * 3
-    assert all(" x " in entry["case"] for entry in told["wrong_pairs"])
-    assert told["calibration"]["n"] == 4 + 3
-    assert all(entry["report"]["verdict"]["quantities"] for entry in told["cases"])
-    said = capsys.readouterr().out
-    assert "wrong pairs: 3, accepted 0, failed 0" in said
-    assert f"ECE {told['calibration']['ece']:.3f}" in said
-    assert told["totals"]["flat"]["right_accepted"] == 2
 
 
 @pytest.mark.parametrize("count", ["0", "-1", "many"])

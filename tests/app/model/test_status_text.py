@@ -1,4 +1,4 @@
-"""What the page says while it proves, and after: sentences, remedies, rivals."""
+"""What the page says while it searches and proves, and of the end of it."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ from algorithms.common.pose import Pose2
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS, run
 from algorithms.methods.steps import ProofDetail, ProvenDetail, Step
-from algorithms.optimisation.branch_and_bound import ProofState
-from algorithms.verdict.decision import Outcome
 from app.model import status_text as words
 from app.model.objective_label import AGREEMENT, GAMMA, measure_of
 from app.model.run_state import RunState
@@ -29,11 +27,6 @@ def told(small_case) -> RunState:
     for step in run("spectra-proven", small_case.ref, small_case.mov, small_case.observations, PROVEN):
         story.tell(step)
     return story
-
-
-@pytest.fixture(scope="module")
-def result(told) -> MergeResult:
-    return told.get(MergeResult)
 
 
 def proving(told: RunState, **changes) -> str:
@@ -89,14 +82,6 @@ def test_sightings_that_exclude_each_other_and_maps_that_fit_nowhere_are_told_ap
     }
     assert "every sighting" in ended(told, False, **nothing, empty=True, ceiling=0.0)
     assert "nothing anywhere is above" in ended(told, False, **nothing, ceiling=0.0)
-    assert words.optimum(proof_state(**nothing, ceiling=0.0)) == "nothing fits"
-    assert words.optimum(proof_state(**nothing, empty=True)).startswith("none")
-
-
-def test_an_unproven_optimum_says_why():
-    given_up = proof_state(proven=False, stopped="not all searched: 12,300 blocks", ceiling=31.0)
-    assert words.optimum(given_up) == "not proven: not all searched: 12,300 blocks"
-    assert words.optimum(proof_state()) == "proven"
 
 
 @pytest.mark.parametrize(
@@ -136,94 +121,6 @@ def test_each_objective_has_its_name():
     assert AGREEMENT.text(-2.0) == "−2.0 m"
     assert GAMMA.text(0.012345) == "0.01235"
     assert AGREEMENT.text(-inf) == GAMMA.text(-inf) == "–"
-
-
-def refused(result: MergeResult, proof: ProofState | None = None, **changes) -> MergeResult:
-    verdict = replace(result.verdict, accepted=False, outcome=Outcome.REFUSED, **changes)
-    return replace(result, verdict=verdict, proof=proof)
-
-
-def test_an_accepted_merge_needs_no_remedy(result):
-    assert words.remedy(result) == ""
-
-
-def test_a_bent_merge_is_told_what_to_mind(result):
-    bent = replace(result, verdict=replace(result.verdict, outcome=Outcome.BENT))
-    assert "double" in words.remedy(bent)
-    assert words.mood(bent.verdict) == "bent"
-
-
-@pytest.mark.parametrize(
-    ("against", "remedy"),
-    [
-        ("others", "second observation would tell"),
-        ("across", "drive on"),
-        ("misfit", "Check the observation's numbers"),
-        ("contradiction", "maps of one building"),
-        ("unbent", "maps of one building"),
-    ],
-)
-def test_what_speaks_most_against_a_merge_decides_what_would_help(result, against, remedy):
-    contributions = dict.fromkeys(result.verdict.contributions, 1.0) | {"misfit": -0.6, against: -5.0}
-    told = replace(result.weighed[0].evidence, rigid_contradicting=9.0)
-    contradicted = replace(result, weighed=(replace(result.weighed[0], evidence=told),))
-    assert remedy in words.remedy(refused(contradicted, proof_state(), contributions=contributions))
-
-
-def test_maps_that_share_little_and_contradict_nowhere_are_not_said_to_be_of_two_buildings(result):
-    contributions = dict.fromkeys(result.verdict.contributions, 1.0) | {"unbent": -5.0}
-    told = replace(result.weighed[0].evidence, rigid_contradicting=0.1)
-    little = replace(result, weighed=(replace(result.weighed[0], evidence=told),))
-    assert "share more" in words.remedy(refused(little, contributions=contributions))
-
-
-def test_a_rival_that_nobody_would_believe_in_is_not_told(result):
-    likely = {"rival": Pose2(1.0, 2.0, 3.0), "probability": 0.6}
-    assert words.rival(refused(result, ambiguity=0.5, **likely)).endswith("turned, 30%")
-    assert words.rival(refused(result, ambiguity=0.001, **likely)) == ""
-    assert words.odds_of_rival(refused(result, ambiguity=1e20, **likely).verdict) == "likelier than this"
-
-
-def test_a_merge_that_is_refused_for_its_bend_alone_says_how_to_take_it(result):
-    assert "--strict" in words.remedy(refused(result, only_bent=True))
-
-
-def test_a_cause_that_was_found_is_told_before_anything_else(result):
-    hint = "Mirrored, map 2 agrees on 99% of 42 m of wall."
-    assert words.remedy(refused(result, proof_state(), hint=hint)) == hint
-
-
-@pytest.mark.parametrize(
-    ("changes", "remedy"),
-    [
-        ({"proven": False, "stopped": "not all searched"}, "patience"),
-        ({"best": None, "proven": False, "empty": True}, "the odd one"),
-        ({"best": None, "proven": False, "ceiling": 0.0}, "of one building"),
-    ],
-)
-def test_a_proof_that_failed_has_its_remedy(result, changes, remedy):
-    assert remedy in words.remedy(refused(result, proof_state(**{"ceiling": 30.0} | changes)))
-
-
-def test_a_rival_is_told_by_how_it_differs_and_how_likely_it_is(result):
-    doubt = {"probability": 0.6, "ambiguity": 0.5}
-    at = replace(result, T_ref_mov=Pose2(1.0, 2.0, 0.5))
-    turned = Pose2.from_array(proof_state().rivals[0])
-    assert words.rival(refused(at, rival=turned, **doubt)) == "178° turned, 30%"
-    assert words.rival(refused(at, rival=Pose2(1.9, 2.0, 0.5), **doubt)) == "0.9 m shifted, 30%"
-    assert words.rival(result) == ""
-
-
-def test_two_answers_are_never_told_to_be_likelier_together_than_certain(result):
-    doubtful = refused(result, rival=Pose2(), probability=0.8, ambiguity=1.0)
-    assert words.likelihood_of_rival(doubtful) == pytest.approx(0.2)
-
-
-@pytest.mark.parametrize(
-    ("probability", "told"), [(0.99999, "> 99.9%"), (0.9944, "99.4%"), (0.5, "50.0%"), (1e-6, "< 0.1%")]
-)
-def test_no_probability_is_told_to_be_certain(probability, told):
-    assert words.likelihood(probability) == told
 
 
 def test_the_swarm_that_is_shown_in_the_end_is_the_one_that_got_highest(told):

@@ -10,6 +10,7 @@ from app.drawing.palette import Palette
 from app.drawing.svg.svg_canvas import WIDE, SvgCanvas
 from app.drawing.svg.verdict_bars import bars
 from app.model import status_text as words
+from app.model import verdict_text
 from app.page.lesson.lesson_run import LessonRun
 
 ANSWER = 54.0  # height of an answer's row
@@ -33,7 +34,7 @@ def answers(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         y, found = 30 + ANSWER * row, each.evidence
         name = "named" if row == 0 else words.apart(each.T_ref_mov, told[0].T_ref_mov, result) + " away"
         sheet.text(0, y + 12, name, 12, bold=row == 0)
-        sheet.text(WIDE, y + 12, f"by itself {words.likelihood(probability(each.score))}", 11, "end")
+        sheet.text(WIDE, y + 12, f"by itself {verdict_text.likelihood(probability(each.score))}", 11, "end")
         wide = 0.0
         for metres, colour in (
             (found.agreeing, palette.agreed),

@@ -1,0 +1,161 @@
+"""The robots as signs over the map, as data: where they stood, what they saw, what they are held by."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos
+from typing import Any
+
+import numpy as np
+
+from algorithms.common.pose import FloatArray
+from algorithms.observations.observation import Encounter, Observation
+from app.drawing.draw_items import Item, ellipse, mark, path
+from app.drawing.palette import Palette
+from app.drawing.scene_layout import SceneLayout
+from app.model.observation_draft import ObservationDraft
+
+ZERO = np.zeros(2)  # the meeting place of the first sighting, in both frames
+TURN_ARM = 90  # px from robot 2 to the knob that turns map 2; map_editing.js knows it as the knob's arm
+KNOB_ARM = 34  # px from a robot to the knob that turns it; map_editing.js knows it as ARM
+QUIET = 0.55  # opacity of what is told beside the first sighting
+
+
+def robots(
+    o: Observation, layout: SceneLayout, colours: Palette, mov: bool, together: bool, seen: bool
+) -> list[Item]:
+    """Both robots with their names.
+
+    mov      : whether map 2 is there
+    together : map 2 lies on map 1; the meeting place is then marked by robot 2 itself
+    seen     : whether robot 2 is drawn
+    """
+    near, far = _sides(o, 14)
+    first = o.observer.xy - layout.anchor_ref
+    items = [mark("robot", first, colours.ref, a=o.observer.theta, r=9, t="robot 1", **near)]
+    if mov and seen:
+        known = o.observed_heading is not None
+        shape, how = ("robot", {"a": o.observed_heading, "r": 9}) if known else ("dot", {"r": 6})
+        items.append(mark(shape, ZERO, colours.mov, "mov", t="robot 2", **how, **far))
+    if not together:
+        items.append(mark("ring", ZERO, colours.conflict, r=7, t="x̂₁ seen here", size=11, **far))
+        if mov:
+            items.append(mark("ring", ZERO, colours.conflict, "mov", r=13))
+    return items
+
+
+def sight(
+    o: Observation,
+    at: Encounter,
+    layout: SceneLayout,
+    colours: Palette,
+    mov: bool,
+    together: bool,
+    close: bool,
+) -> list[Item]:
+    """The line of sight, the doubt of its far end, and which two places of the maps are one.
+
+    close : seen from so near that the doubt is more than a dot
+    """
+    first = o.observer.xy - layout.anchor_ref
+    items = [path(np.array([first, ZERO]), colours.text, w=1.6, d=[5, 4], halo=True)]
+    if close:
+        doubt = ellipse(ZERO, at.covariance + 1e-9 * np.eye(2), 3)
+        lowest = doubt[int(doubt[:, 1].argmin())]
+        name = {"t": "3 σ of the sighting", "tp": lowest, "dy": 11, "align": "center"}
+        items.append(path(doubt, colours.text, w=1, close=True, halo=True, **name))
+    if mov and not together:
+        items.append(path(np.array([ZERO, layout.apart.xy]), colours.margin, w=1, d=[1, 5]))
+    return items
+
+
+def further(
+    seen: Sequence[Observation],
+    places: Sequence[Encounter],
+    layout: SceneLayout,
+    colours: Palette,
+    mov: bool,
+    together: bool,
+) -> list[Item]:
+    """Every sighting beyond the first, quieter and with its number: robots, line of sight and its end.
+
+    together : map 2 lies on map 1; robot 2 then stands at the end of the line as far as T fits
+    """
+    items = []
+    for number, (o, at) in enumerate(zip(seen, places, strict=True), 1):
+        if number == 1:
+            continue
+        first, end = o.observer.xy - layout.anchor_ref, at.x_ref - layout.anchor_ref
+        _, far = _sides(o, 9)
+        name = {"t": str(number), "size": 11, **far}
+        items.append(path(np.array([first, end]), colours.text, alpha=QUIET, w=1, d=[2, 5]))
+        items.append(mark("robot", first, colours.ref, alpha=QUIET, a=o.observer.theta, r=6))
+        # once the maps lie together, the number stands beside robot 2 alone
+        items.append(mark("ring", end, colours.conflict, alpha=QUIET, r=4, **({} if together else name)))
+        if mov:
+            known = o.observed_heading is not None
+            shape, how = ("robot", {"a": o.observed_heading, "r": 6}) if known else ("dot", {"r": 4})
+            there = at.x_mov - layout.anchor_mov
+            items.append(mark(shape, there, colours.mov, "mov", alpha=QUIET, **how, **name))
+    return items
+
+
+def _sides(o: Observation, dx: float) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Where names stand at the near and the far end of a line of sight: beyond it."""
+    left, right = {"dx": -dx, "align": "right"}, {"dx": dx, "align": "left"}
+    return (left, right) if cos(o.observer.theta + o.bearing) >= 0 else (right, left)
+
+
+def drafts(
+    draft: ObservationDraft, others: Sequence[ObservationDraft], layout: SceneLayout, colours: Palette
+) -> list[Item]:
+    """Robots as they are being placed, with knobs on the chosen draft's; the other drafts are quiet."""
+    items = []
+    for one in others:
+        items += _draft(one, layout, colours, QUIET)
+    items += _draft(draft, layout, colours, 1.0)
+    return items
+
+
+def _draft(draft: ObservationDraft, layout: SceneLayout, colours: Palette, alpha: float) -> list[Item]:
+    items: list[Item] = []
+    chosen = alpha == 1.0
+    first = draft.observer.xy - layout.anchor_ref if draft.observer else None
+    if first is not None and draft.seen is not None:
+        end = np.array(draft.seen) - layout.anchor_ref
+        items.append(path(np.array([first, end]), colours.text, alpha=alpha, w=1.6, d=[5, 4], halo=chosen))
+        name = {"t": "robot 2, seen here", "size": 11, "dx": 14} if chosen else {}
+        items.append(mark("ring", end, colours.conflict, alpha=alpha, r=7, **name))
+    if first is not None and draft.observer is not None:
+        a = draft.observer.theta
+        if chosen:
+            items.append(mark("dot", first, colours.ref, a=a, r=5, arm=KNOB_ARM))
+        name = {"t": "robot 1", **_beside(a)} if chosen else {}
+        items.append(mark("robot", first, colours.ref, alpha=alpha, a=a, r=9, **name))
+    if draft.observed is not None:
+        there = np.array(draft.observed) - layout.anchor_mov
+        name = {"t": "robot 2", **_beside(draft.heading or 0.0)} if chosen else {}
+        if draft.heading is None:
+            if chosen:  # nobody knows which way it looked: the knob can tell
+                knob = mark("ring", there, colours.mov, "mov", alpha=QUIET, a=0.0, r=5, arm=KNOB_ARM)
+                items.append(knob)
+            items.append(mark("dot", there, colours.mov, "mov", alpha=alpha, r=7, **name))
+        else:
+            if chosen:
+                items.append(mark("dot", there, colours.mov, "mov", a=draft.heading, r=5, arm=KNOB_ARM))
+            shape = mark("robot", there, colours.mov, "mov", alpha=alpha, a=draft.heading, r=9, **name)
+            items.append(shape)
+    return items
+
+
+def _beside(heading: float) -> dict[str, Any]:
+    """Where a robot's name stands clear of its knob."""
+    return {"dx": -14, "align": "right"} if cos(heading) >= 0 else {"dx": 14, "align": "left"}
+
+
+def grip(hull: FloatArray, colours: Palette) -> list[Item]:
+    """What map 2 is held by: its outline, and a knob to turn it about its anchor; in its own frame."""
+    return [
+        path(hull, colours.mov, "mov", w=1.4, close=True, d=[7, 5], halo=True),
+        mark("dot", ZERO, colours.mov, "mov", r=8, a=0.0, arm=TURN_ARM, t="turn"),
+    ]

@@ -1,0 +1,205 @@
+"""A run in the map view, step by step: levels, windows, candidates, the swarm, the proof, the answer."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from algorithms.common.pose import Pose2
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.steps import (
+    AnswersDetail,
+    AugmentDetail,
+    CandidatesDetail,
+    HoughDetail,
+    MatchesDetail,
+    ProofDetail,
+    ProvenDetail,
+    RefineDetail,
+    ShiftDetail,
+    TurnsDetail,
+    WindowDetail,
+)
+from algorithms.observations.search_window import CoupledWindow
+from app.drawing.browser_messages import BrowserMessages
+from app.drawing.draw_items import cloud, mark
+from app.drawing.palette import css
+from app.drawing.scene import search_symbols as signs
+from app.drawing.scene.map_view import OF_A_RUN, SLIDE_MS, MapView
+from app.drawing.scene_layout import Rect, known_hull, union
+from app.model import verdict_text as words
+from app.model.run_state import RunState
+
+TURN_MS, FOLLOW_MS = 900.0, 70.0
+MOST_PARTICLES = 600  # drawn; more would be a blot
+
+
+class RunView:
+    """Draws the newest step of a run over both maps, and says where the camera goes."""
+
+    def __init__(self, maps: MapView, stage: BrowserMessages) -> None:
+        self._maps, self._stage = maps, stage
+
+    def show(self, story: RunState, config: Any, camera: bool, live: bool) -> None:
+        """Draw the newest state of a run.
+
+        config : of the method that runs; Σ_aug is drawn from it
+        camera : whether the camera goes along
+        live   : the run is told at a pace: map 2 glides from place to place
+        """
+        detail = story.last.detail if story.last else None
+        self._maps.ground.lift(story.get(AugmentDetail))
+        glide = 1.0 if live else 0.0
+        look: Rect | None = None
+        if isinstance(detail, (AugmentDetail, HoughDetail)):
+            look = self._lifted(detail.match.turns[0] if isinstance(detail, HoughDetail) else 0.0, glide)
+            self._rings(config)
+        elif isinstance(detail, (WindowDetail, ShiftDetail, CandidatesDetail)):
+            look = self._candidates(story, glide)
+        elif isinstance(detail, RefineDetail):
+            look = self._refine(story, detail, glide)
+        elif isinstance(detail, ProofDetail):
+            look = self._prove(story, detail, glide)
+        elif isinstance(detail, MatchesDetail):
+            look = self._matches(detail)
+        elif isinstance(detail, TurnsDetail):
+            look = self._turned_best(detail, glide)
+        elif isinstance(detail, (AnswersDetail, ProvenDetail, Fusion, MergeResult)):
+            look = self._answer(story, glide)
+        if camera and look is not None:
+            self._stage.look_down(look)
+
+    def preview(self, story: RunState, config: Any) -> None:
+        """Draw what a moved slider does before there is a merge: levels, Σ_aug, windows, the box's size."""
+        self._maps.ground.lift(story.get(AugmentDetail))
+        self._lifted(0.0, 0.0)
+        if not story.reached(AugmentDetail):  # a method without levels
+            self._maps.ground.show("sources")
+        self._rings(config)
+        box = getattr(config, "box", None)
+        if box is not None:
+            self._stage.layer("box", signs.margins(box.sigma_x, box.sigma_y, self._maps.palette))
+        self._windows(story, self._maps.layout.view())
+
+    def _windows(self, story: RunState, view: Rect) -> None:
+        window, found = story.get(WindowDetail), story.get(CandidatesDetail)
+        if window is None or self._maps.inputs.at is None:
+            return
+        at_hand = found.candidates[0] if found else story.shifts[-1].candidate if story.shifts else None
+        turn = at_hand.T_ref_mov.theta if at_hand else 0.0
+        drawn = signs.windows(window, turn, self._maps.layout, self._maps.palette, view)
+        self._stage.layer("window", drawn)
+
+    def _lifted(self, turn: float, glide: float) -> Rect:
+        turned = Pose2(self._maps.layout.apart.x, self._maps.layout.apart.y, turn)
+        self._maps.ground.show("levels")
+        self._maps.place(turned, glide * TURN_MS)
+        self._maps.clear(*OF_A_RUN)
+        self._maps.draw_robots(together=False)
+        return union(self._maps.layout.view(), self._maps.layout.view(turned))
+
+    def _rings(self, config: Any) -> None:
+        augment = getattr(config, "augment", None)
+        if augment is not None:
+            self._stage.layer("aug", signs.rings(augment.covariance(), self._maps.palette, both=True))
+
+    def _candidates(self, story: RunState, glide: float) -> Rect:
+        colours, found = self._maps.palette, story.get(CandidatesDetail)
+        self._maps.ground.show("sources")
+        self._maps.clear("aug", "swarm", "rival", "best")
+        self._windows(story, self._maps.layout.swept())
+        tried = found.candidates if found else [shift.candidate for shift in story.shifts]
+        places = [self._maps.layout.placed(candidate.T_ref_mov) for candidate in tried]
+        marks = [mark("diamond", place.xy, colours.particle, r=5) for place in places]
+        if found:
+            marks[0] = mark("diamond", places[0].xy, colours.best, r=6)
+        self._stage.layer("box", marks[::-1])  # the best on top
+        if places:
+            self._maps.place(places[0] if found else places[-1], glide * SLIDE_MS)
+        self._maps.draw_robots(together=bool(places))
+        return self._maps.layout.swept()
+
+    def _matches(self, detail: MatchesDetail) -> Rect:
+        """Both maps side by side, with lines between the features that look alike; once there is a transform,
+        map 2 is turned by it, and the lines that agree run side by side.
+        """
+        look = self._beside(detail.T_ref_mov.theta if detail.T_ref_mov is not None else 0.0, 0.0)
+        self._stage.layer(
+            "matches", signs.matches(detail, self._maps.mov_at, self._maps.layout, self._maps.palette)
+        )
+        return look
+
+    def _turned_best(self, detail: TurnsDetail, glide: float) -> Rect:
+        """Map 2 beside map 1, turned as agrees best so far."""
+        tried = np.isfinite(detail.scores)
+        turn = detail.best
+        if turn is None:
+            turn = float(detail.turns[np.nanargmax(np.where(tried, detail.scores, -np.inf))])
+        return self._beside(turn, glide * SLIDE_MS)
+
+    def _beside(self, turn: float, milliseconds: float) -> Rect:
+        turned = Pose2(self._maps.layout.apart.x, self._maps.layout.apart.y, turn)
+        self._maps.ground.show("sources")
+        self._maps.place(turned, milliseconds)
+        self._maps.clear(*OF_A_RUN)
+        self._maps.draw_robots(together=False)
+        return union(self._maps.layout.view(), self._maps.layout.view(turned))
+
+    def _refine(self, story: RunState, detail: RefineDetail, glide: float) -> Rect | None:
+        layout, colours, state = self._maps.layout, self._maps.palette, detail.state
+        self._maps.ground.show("sources")
+        self._maps.clear("aug", "rival")
+        window = story.get(WindowDetail)
+        coupled = window is not None and isinstance(window.window, CoupledWindow)
+        discs = signs.discs(window.coupled, layout, colours, below=True) if window and coupled else None
+        self._stage.layer("window", discs)
+        best = layout.placed(detail.box.transform(state.best))
+        self._maps.place(best, glide * FOLLOW_MS)
+        self._maps.draw_robots(together=True, seen=False)  # the swarm's best stands there
+        step = -(-len(state.poses) // MOST_PARTICLES)
+        where = signs.seen_robot(detail.box.transforms(state.poses[::step]), layout)
+        particles = cloud(where, colours.particle, r=2.6, alpha=0.8, glide=str(detail.index))
+        self._stage.layer("swarm", [particles])
+        self._stage.layer("best", [mark("diamond", best.xy, colours.best, r=6, rim="#ffffff")])
+        if self._maps.boxed is detail.box:
+            return None
+        self._maps.boxed = detail.box
+        self._stage.layer("box", signs.box(detail.box, layout, colours))
+        return signs.footprint(detail.box, layout)
+
+    def _prove(self, story: RunState, detail: ProofDetail, glide: float) -> Rect | None:
+        self._maps.ground.show("sources")
+        self._maps.clear("aug", "swarm", "box", "rival")
+        if story.answer is None:
+            return None
+        at = self._maps.layout.placed(story.answer)
+        self._maps.place(at, glide * SLIDE_MS)
+        self._maps.draw_robots(together=True)
+        self._stage.layer("window", signs.discs(detail.window, self._maps.layout, self._maps.palette))
+        self._stage.layer("best", signs.proof(detail.state, self._maps.layout, self._maps.palette))
+        return self._maps.layout.view(at)
+
+    def _answer(self, story: RunState, glide: float) -> Rect | None:
+        fusion, result = story.get(Fusion), story.get(MergeResult)
+        if story.answer is None:
+            return None
+        at = self._maps.layout.placed(story.answer)
+        self._maps.clear("aug", "window", "swarm", "box", "rival", "matches")
+        self._maps.place(at, glide * SLIDE_MS)
+        self._maps.draw_robots(together=True)
+        star = mark("star", at.xy, self._maps.palette.answer, r=9, rim=css(self._maps.palette.rim))
+        self._stage.layer("best", [star])
+        if fusion is not None:
+            self._maps.ground.merge(fusion)
+        mov = self._maps.inputs.mov
+        if result is None or result.verdict.rival is None or mov is None or self._maps.mode != "overlay":
+            return self._maps.layout.view(at)
+        rival = self._maps.layout.placed(result.verdict.rival)
+        self._maps.ground.ghost(rival)
+        heading = self._maps.inputs.observations[0].observed_heading
+        hull = known_hull(mov) - self._maps.layout.anchor_mov
+        doubt = signs.rival(rival, hull, heading, words.rival(result), self._maps.palette)
+        self._stage.layer("rival", doubt)
+        return union(self._maps.layout.view(at), self._maps.layout.view(rival))
