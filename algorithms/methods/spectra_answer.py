@@ -23,7 +23,7 @@ from algorithms.optimisation.subcell_peak import Peak, peak_at
 from algorithms.verdict.decision import is_bent
 from algorithms.verdict.probability_model import shipped_model
 from algorithms.verdict.ranking import Weighed, better_beside, elsewhere, ranked, weigh
-from algorithms.verdict.wall_evidence import PATCH
+from algorithms.verdict.slipping_patches import PATCH
 from algorithms.verdict.whole_maps import WholeMaps, make_whole_maps
 
 LEAST_DEVIATION = 0.01  # metres; no pair of rasters is known to fit better
