@@ -15,14 +15,9 @@ from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
 from algorithms.methods.merge_result import Answer, MergeResult, finish_merge
+from algorithms.methods.spectra_answer import covariance_at, whole_maps_of
 from algorithms.methods.spectra_config import PipelineConfig
-from algorithms.methods.spectra_stages import (
-    OPTIMISERS,
-    augment_both,
-    covariance_at,
-    objective_of,
-    whole_maps_of,
-)
+from algorithms.methods.spectra_stages import OPTIMISERS, augment_both, objective_of
 from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import AnswersDetail, Detail, ObservationDetail, RefineDetail, Step
 from algorithms.observations.observation import (

@@ -7,18 +7,9 @@ from collections.abc import Iterator
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
 from algorithms.methods.merge_result import finish_merge
+from algorithms.methods.spectra_answer import covariance_at, doubts, peak_of, value_of, weigh_answers
 from algorithms.methods.spectra_config import PipelineConfig
-from algorithms.methods.spectra_stages import (
-    augment_both,
-    covariance_at,
-    doubts,
-    peak_of,
-    prove_optimum,
-    refine,
-    search,
-    value_of,
-    weigh_answers,
-)
+from algorithms.methods.spectra_stages import augment_both, prove_optimum, refine, search
 from algorithms.methods.stage_runner import StageCache, StageRunner
 from algorithms.methods.steps import (
     AnswersDetail,

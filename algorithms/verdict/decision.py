@@ -13,7 +13,8 @@ from algorithms.common.setting_bounds import Bounds, check_bounds
 from algorithms.maps.map_fusion import Fusion
 from algorithms.verdict.probability_model import OTHERS, VerdictModel, log_odds_over, shipped_model
 from algorithms.verdict.ranking import Weighed, probability_of
-from algorithms.verdict.wall_evidence import Apart, Evidence
+from algorithms.verdict.slipping_patches import Apart
+from algorithms.verdict.wall_evidence import Evidence
 
 SAME_PLACE = 0.5  # metres; answers farther apart are said to be apart, nearer ones turned
 SPEAKS = 0.5  # log-odds; what moves them by less is not named among the reasons

@@ -18,7 +18,8 @@ from algorithms.observations.search_window import WindowConfig, coupled_window
 from algorithms.verdict.decision import Outcome, VerdictConfig, judge, merges_of
 from algorithms.verdict.probability_model import Fit, misfit_of, quantities_of, shipped_model
 from algorithms.verdict.ranking import Weighed, weigh
-from algorithms.verdict.wall_evidence import Apart, Evidence
+from algorithms.verdict.slipping_patches import Apart
+from algorithms.verdict.wall_evidence import Evidence
 from algorithms.verdict.whole_maps import make_whole_maps
 
 REF, MOV, SEEN, T = flat_pair()

@@ -14,7 +14,8 @@ from algorithms.common import parallel_kernels as kernels
 from algorithms.common.pose import Pose2, rotation
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.maps.robots import NOWHERE, Robots
-from algorithms.verdict.wall_evidence import PATCH, SLIP, Evidence, evidence
+from algorithms.verdict.slipping_patches import PATCH, SLIP
+from algorithms.verdict.wall_evidence import Evidence, evidence
 from algorithms.verdict.wall_map import make_wall_map
 
 REF, MOV, SEEN, T = flat_pair()
@@ -216,7 +217,10 @@ def test_a_turn_of_the_whole_by_a_patch_turn_is_bent_not_wrong():
 
 def test_of_a_map_with_very_much_wall_a_part_stands_for_all(monkeypatch):
     whole = weighed(REF, MOV, T)
-    for name in ("algorithms.verdict.wall_map.MOST_POINTS", "algorithms.verdict.wall_evidence.MOST_SLIPPING"):
+    for name in (
+        "algorithms.verdict.wall_map.MOST_POINTS",
+        "algorithms.verdict.slipping_patches.MOST_SLIPPING",
+    ):
         monkeypatch.setattr(name, 300)
     part = weighed(REF, MOV, T)
     assert len(make_wall_map(REF).points) <= 300
