@@ -62,7 +62,7 @@ def make_server(
     camera.fov, camera.near, camera.far = radians(4), 10.0, 5000.0
     pages: dict[int, Page] = {}
     keep = SessionStore()
-    budget = CellQuota(make_room=keep.forget_all)
+    quota = CellQuota(make_room=keep.forget_all)
     housekeeping = MemoryCleanup()
 
     @server.on_client_connect
@@ -71,7 +71,7 @@ def make_server(
             client.gui.add_markdown(f"{MOST_TABS} tabs are open already. Close one, then reload this page.")
             return
         log.info("a tab came", extra=facts(tab=client.client_id, tabs=len(pages) + 1))
-        pages[client.client_id] = Page(client, initial, keep, server.arrivals, lesson, budget)
+        pages[client.client_id] = Page(client, initial, keep, server.uploads, lesson, quota)
 
     @server.on_client_disconnect
     def _(client: viser.ClientHandle) -> None:

@@ -67,9 +67,9 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         client: viser.ClientHandle,
         initial: Case | None,
         keep: SessionStore,
-        arrivals: Uploads,
+        uploads: Uploads,
         lesson: Path | None = None,
-        budget: CellQuota | None = None,
+        quota: CellQuota | None = None,
     ) -> None:
         self._client = client
         self._palette: Palette = LIGHT
@@ -89,21 +89,21 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         self._merged = False  # from the first Merge on, a moved slider runs the whole method again
         self._asked = False  # whether anything was asked for at all
         self._keep, self._key, self._gone = keep, "", False
-        self._budget = budget or CellQuota()
+        self._quota = quota or CellQuota()
         self._turn = RLock()  # wishes come one after the other; taken before session.drawing
         self.session = JobThread(self, workers.COMMON.bench())
         self._channel.on("compare", self._compare, mode=MODES)
         self._closer = ZoomController(self._channel, self._stage, self._maps.ground, self.session.drawing)
-        self._errand = CancellableTask(
-            self._stage, self.session.drawing, lambda yes: self._run.stoppable("errand", yes)
+        self._task = CancellableTask(
+            self._stage, self.session.drawing, lambda yes: self._run.stoppable("task", yes)
         )
         inputs = MergeInputs.of(initial) if initial else MergeInputs()
         self._build(inputs.name)
-        self._arrivals = arrivals
-        arrivals.welcome(
+        self._uploads = uploads
+        uploads.welcome(
             client.client_id, Recipient(lambda yes: self._run.stoppable("sending", yes), self._report)
         )
-        self._channel.on("unsend", lambda: arrivals.stop(client.client_id))
+        self._channel.on("unsend", lambda: uploads.stop(client.client_id))
         self._learn_with(client.gui, lesson)
         self._channel.on("hello", lambda **who: self._greet(inputs, **who), key=str, again=bool)
         self._stage.flush()  # the page says hello when it has read where to
@@ -125,8 +125,8 @@ class Page(Looking, Telling, Handling, Learning, Researching):
 
     def close(self) -> None:
         """The tab is gone; what it leaves behind is kept for a while."""
-        self._arrivals.farewell(self._client.client_id)
-        self._errand.stop()
+        self._uploads.farewell(self._client.client_id)
+        self._task.stop()
         with self._turn:
             self._gone = True
             if self._key:
@@ -141,7 +141,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         return SavedTab(history, self._run.dark, self._run.speed, self._research_leaves())
 
     def _end(self) -> None:
-        self._budget.release(self)
+        self._quota.release(self)
         self._channel.close()
         self._lesson.close()
         self._hand.close()
@@ -170,10 +170,10 @@ class Page(Looking, Telling, Handling, Learning, Researching):
                 learn=self._learn,
             ),
         )
-        self._files = FilesPanel(gui, self._load, self._report, chosen, self._save, self._turn, self._errand)
+        self._files = FilesPanel(gui, self._load, self._report, chosen, self._save, self._turn, self._task)
         self._observation = ObservationPanel(gui)
         self._tuning = SettingsPanel(gui, self._changed, self._report, self._turn)
-        self._export = ExportPanel(client, self._errand)
+        self._export = ExportPanel(client, self._task)
         self._what_if = WhatIfPanel(gui, lambda: self._tuning.config.verdict)
         self._handle_with(gui)
         self._timeline = UndoController(gui, self._channel, self._turn, self._restore)
@@ -204,10 +204,10 @@ class Page(Looking, Telling, Handling, Learning, Researching):
 
     def _stop(self) -> None:
         """Leave what is read, or else what is run, or else what is on its way."""
-        if self._errand.stop():
+        if self._task.stop():
             return
         if not self.session.busy:
-            self._arrivals.stop(self._client.client_id)
+            self._uploads.stop(self._client.client_id)
             return
         self.session.stop()  # at once, whatever else is being carried out
         with self._turn:
@@ -254,7 +254,7 @@ class Page(Looking, Telling, Handling, Learning, Researching):
         self.session.stop()  # a run of others may have been asked for while this waited for its turn
         try:
             grids = [grid for grid in (inputs.ref, inputs.mov) if grid is not None]
-            self._budget.claim(self, sum(grid.cells.size for grid in grids))
+            self._quota.claim(self, sum(grid.cells.size for grid in grids))
             layout = lay_out(inputs.ref, inputs.mov, inputs.at)
         except MapMergeError as error:
             self._report(error)

@@ -75,7 +75,7 @@ class Part(ABC):
     _asked: bool
     _turn: RLock
     _files: FilesPanel
-    _errand: CancellableTask
+    _task: CancellableTask
     _refining: tuple[ManualMerge, Pose2] | None
 
     @property

@@ -42,7 +42,7 @@ NO_REQUEST = HttpReply(400, "this is no request of the page")
 def guarded_server(host: str, port: int, access: Access, most: int) -> viser.ViserServer:
     """A ViserServer that answers whom ``access`` lets in.
 
-    Its ``gate`` counts what it let nobody do, its ``arrivals`` take in files.
+    Its ``gate`` counts what it let nobody do, its ``uploads`` take in files.
 
     most : connections of pages at a time, and so many of files
     """
@@ -55,7 +55,7 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
     real_serve = websockets.asyncio.server.serve
     live: set[Any] = set()
     files: set[Any] = set()  # connections that bring one
-    arrivals = Uploads(gate, lambda: server.get_clients())
+    uploads = Uploads(gate, lambda: server.get_clients())
 
     def serve(handler: Any, at: str, on: int, *, process_request: Callable[..., Any], **options: Any) -> Any:
         async def ask(connection: Any, request: Any) -> Any:
@@ -85,7 +85,7 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
                 gate.guard(connection)
             among.add(connection)
             try:
-                await (arrivals.receive if brings else handler)(connection)
+                await (uploads.receive if brings else handler)(connection)
             except RuntimeError:
                 if not ending():  # viser tells who has gone in threads that may have ended already
                     raise
@@ -117,7 +117,7 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
     for kind in (messages.ShareUrlRequest, messages.ShareUrlDisconnect):
         server._websock_server.unregister_handler(kind)
     server._thread_executor.submit = watched(server._thread_executor.submit)  # type: ignore[method-assign]
-    server.gate, server.arrivals = gate, arrivals  # type: ignore[attr-defined]
+    server.gate, server.uploads = gate, uploads  # type: ignore[attr-defined]
     return server
 
 

@@ -86,7 +86,7 @@ def test_a_file_on_its_way_is_told_of_holds_up_nothing_and_can_be_left(open_tab,
         tab.press("Stop")
         settle(shown.is_hidden, "nothing on its way")
         settle(lambda: not kept(), "nothing to stay")
-        settle(lambda: not server.arrivals._coming, "the end")
+        settle(lambda: not server.uploads._coming, "the end")
         settle(stop.is_disabled, "nothing to stop")
         assert (tab.state, table.text_content()) == (before, empty)
 

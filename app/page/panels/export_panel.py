@@ -24,8 +24,8 @@ _OUTDATED = "Out of date: a setting was changed."
 class ExportPanel:
     """Holds the result that can be downloaded; None while there is none, or it is out of date."""
 
-    def __init__(self, client: viser.ClientHandle, errand: CancellableTask) -> None:
-        self._client, self._deliver = client, DownloadTask(client, errand)
+    def __init__(self, client: viser.ClientHandle, task: CancellableTask) -> None:
+        self._client, self._deliver = client, DownloadTask(client, task)
         self._harvest: ResultFiles | None = None
         gui = client.gui
         with gui.add_folder("Export", order=70):
@@ -40,7 +40,7 @@ class ExportPanel:
             self._one = gui.add_dropdown("One file", ALONE, visible=False, hint="A file of the zip, alone.")
             self._alone = gui.add_button("Download this file", color=QUIET, visible=False)
             self._alone.on_click(lambda _: self._ask(self._one.value))
-            self.replay = ReplayButton(client, errand)
+            self.replay = ReplayButton(client, task)
             self.replay.visible(False)
             self._line = gui.add_html("")
             self._note = gui.add_html(_NOTHING)  # last, so that nothing moves when it comes

@@ -121,12 +121,12 @@ class FilesPanel:
         chosen: str,
         save: Callable[[str, bytes], None],
         turn: RLock | None = None,
-        errand: CancellableTask | None = None,
+        task: CancellableTask | None = None,
     ) -> None:
         """save : sends a file to the person
-        errand : says what is being done, where it takes a while, and lets it be left
+        task : says what is being done, where it takes a while, and lets it be left
         """
-        self._load, self._report, self._errand = load, report, errand
+        self._load, self._report, self._task = load, report, task
         self._uploads: dict[str, Upload] = {}
         self._known: Known = {}
         self._placed = False
@@ -229,10 +229,10 @@ class FilesPanel:
 
     def _read(self, upload: Upload) -> MergeInputs:
         """What the files make up now that this one has come; raises Cancelled where Stop was pressed."""
-        if self._errand is None or not _large(upload):
+        if self._task is None or not _large(upload):
             self._offer_forms()
             return inputs_from(self._uploads, self._known)
-        with self._errand(f"Reading {upload.name}, {len(upload.content) / 1e6:.3g} MB.") as check:
+        with self._task(f"Reading {upload.name}, {len(upload.content) / 1e6:.3g} MB.") as check:
             self._offer_forms(check)
             return inputs_from(self._uploads, self._known, check)
 

@@ -15,8 +15,8 @@ from app.system.cancellation import Check
 class ReplayButton:
     """Holds the run that can be recorded; None while there is none, or it is out of date."""
 
-    def __init__(self, client: viser.ClientHandle, errand: CancellableTask) -> None:
-        self._deliver = DownloadTask(client, errand)
+    def __init__(self, client: viser.ClientHandle, task: CancellableTask) -> None:
+        self._deliver = DownloadTask(client, task)
         self._name = ""
         self._make: Callable[[Check], bytes] | None = None
         self._button = client.gui.add_button(

@@ -30,7 +30,7 @@ class Researching(Part):
 
     def _research_with(self, gui: viser.GuiApi) -> None:
         """Add both tabs to the dock of the plots."""
-        self._deliver = DownloadTask(self._client, self._errand)
+        self._deliver = DownloadTask(self._client, self._task)
         both = self._turn, self.session.drawing
         with self._plots.add_tab("Compare", viser.Icon.SCALE):
             self._compare_tab = ComparisonController(gui, self._channel, *both, self)
@@ -74,7 +74,7 @@ class Researching(Part):
         self.session.stop()
         inputs = self._inputs
         try:
-            with self._errand(f"Laying it over map 1: {guest.title}.") as check:
+            with self._task(f"Laying it over map 1: {guest.title}.") as check:
                 seen = self._merged_by(guest)
                 check()
         except Cancelled:

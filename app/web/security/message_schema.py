@@ -4,7 +4,7 @@ viser reads a frame into mappings and lists before it looks at it, and a mapping
 it takes a minute to be read, in which nothing else runs. Here a frame is read as what it says it is: keys
 are the names of fields, values are shallow, and nothing of the sender's choice is ever built.
 
-Files come by connections of their own (arrivals.py): viser's messages for them are none of the page's.
+Files come by connections of their own (upload.py): viser's messages for them are none of the page's.
 """
 
 from __future__ import annotations

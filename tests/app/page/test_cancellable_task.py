@@ -52,13 +52,13 @@ class Person:
     def __init__(self) -> None:
         self.stage = Silent()
         self.stage.hud(**BEFORE)
-        self.errand = CancellableTask(self.stage, RLock(), self._stoppable)
+        self.task = CancellableTask(self.stage, RLock(), self._stoppable)
         self.impatient, self.could_stop = False, []
 
     def _stoppable(self, yes: bool) -> None:
         self.could_stop.append(yes)
         if yes and self.impatient:
-            self.errand.stop()
+            self.task.stop()
 
     @property
     def said(self):
@@ -104,7 +104,7 @@ def test_a_file_whose_reading_is_stopped_leaves_everything_as_it_was(server, per
         loaded.append(inputs)
         person.stage.hud(**BEFORE)
 
-    panel = FilesPanel(server.gui, load, reports.append, "", lambda *_: None, errand=person.errand)
+    panel = FilesPanel(server.gui, load, reports.append, "", lambda *_: None, task=person.task)
     if with_yaml:
         panel._take("yaml1", Upload("m.yaml", YAML))
     panel._take("image1", Upload("first", image(kind)))
@@ -124,7 +124,7 @@ def test_a_file_whose_reading_is_stopped_leaves_everything_as_it_was(server, per
 
 
 def test_a_small_file_is_read_without_a_word_and_a_small_png_of_many_pixels_is_not(server, person):
-    panel = FilesPanel(server.gui, lambda _: None, lambda _: None, "", lambda *_: None, errand=person.errand)
+    panel = FilesPanel(server.gui, lambda _: None, lambda _: None, "", lambda *_: None, task=person.task)
     panel._take("image1", Upload("small.png", image("png", 100)))
     assert person.could_stop == []
     packed = io.BytesIO()
@@ -139,7 +139,7 @@ def test_a_replay_whose_recording_is_stopped_is_not_sent_and_can_be_made_after_a
 ):
     sent = []
     client = SimpleNamespace(gui=server.gui, send_file_download=lambda name, *_, **__: sent.append(name))
-    button = ReplayButton(client, person.errand)
+    button = ReplayButton(client, person.task)
 
     def make(check):
         check(0.5)
@@ -159,18 +159,18 @@ def test_a_replay_whose_recording_is_stopped_is_not_sent_and_can_be_made_after_a
 
 
 def test_stop_has_nothing_to_stop_before_and_after(person):
-    assert not person.errand.stop()
-    with person.errand("Reading."):
+    assert not person.task.stop()
+    with person.task("Reading."):
         assert person.said["state"] == "Reading."
-    assert not person.errand.stop()
-    with pytest.raises(InputFileError), person.errand("Reading."):
+    assert not person.task.stop()
+    with pytest.raises(InputFileError), person.task("Reading."):
         raise InputFileError("m.pgm", "is cut off", "copy it anew")
-    assert not person.errand.stop()
+    assert not person.task.stop()
 
 
 def test_words_aside_are_taken_back_and_tell_how_far_it_is(person, monkeypatch):
     monkeypatch.setattr("app.page.cancellable_task.perf_counter", iter(range(100)).__next__)
-    with person.errand("Making the files.", aside=True) as check:
+    with person.task("Making the files.", aside=True) as check:
         check(0.5)
         assert person.said == {"state": "Making the files.", "mood": "running", "progress": 0.5}
     assert person.said == BEFORE
@@ -180,8 +180,8 @@ def test_stop_ends_everything_that_is_under_way_at_once(person):
     left = []
 
     def both():
-        with person.errand("Reading.") as first, person.errand("Making the files.", aside=True) as second:
-            assert person.errand.stop()
+        with person.task("Reading.") as first, person.task("Making the files.", aside=True) as second:
+            assert person.task.stop()
             for check in (first, second):
                 with pytest.raises(Cancelled):
                     check()
@@ -198,8 +198,8 @@ def test_stop_ends_everything_that_is_under_way_at_once(person):
 def test_of_two_at_a_time_the_words_of_one_that_goes_on_are_said_and_in_the_end_those_from_before(
     person, first_ends_first
 ):
-    first = person.errand("Making the files.", aside=True)
-    second = person.errand("Recording.", aside=True)
+    first = person.task("Making the files.", aside=True)
+    second = person.task("Recording.", aside=True)
     first.__enter__()
     second.__enter__()
     ends = [(first, "Recording."), (second, "Making the files.")]
@@ -214,10 +214,10 @@ def test_of_two_at_a_time_the_words_of_one_that_goes_on_are_said_and_in_the_end_
 
 def test_stop_is_seen_at_once_and_a_second_one_is_for_somebody_else(person):
     def slow():
-        with person.errand("Reading."):
-            assert person.errand.stop()
+        with person.task("Reading."):
+            assert person.task.stop()
             assert person.said == BEFORE  # though it has not looked up yet
-            assert not person.errand.stop()
+            assert not person.task.stop()
             raise OSError("what becomes of it is of no matter any more")
 
     with pytest.raises(Cancelled):
@@ -225,16 +225,16 @@ def test_stop_is_seen_at_once_and_a_second_one_is_for_somebody_else(person):
 
 
 def test_a_press_at_the_last_moment_still_counts(person):
-    with pytest.raises(Cancelled), person.errand("Reading."):
-        person.errand.stop()
+    with pytest.raises(Cancelled), person.task("Reading."):
+        person.task.stop()
     assert person.said == BEFORE
 
 
 def test_what_a_run_has_said_meanwhile_stays_said(person):
     def overtaken():
-        with person.errand("Reading."):
+        with person.task("Reading."):
             person.stage.hud(state="Merged.", mood="accepted", progress=None)
-            person.errand.stop()
+            person.task.stop()
 
     with pytest.raises(Cancelled):
         overtaken()

@@ -414,7 +414,7 @@ def test_all_tabs_together_make_the_server_hold_no_more_than_it_bears(stock, our
     ]
     assert all("most" in file.hear() for file in files)
     last, refused = visitors[-1], []
-    ours.server.arrivals.welcome(last.room.client.client_id, Recipient(lambda can: None, refused.append))
+    ours.server.uploads.welcome(last.room.client.client_id, Recipient(lambda can: None, refused.append))
     before = ours.server.gate.dropped.copy()
     assert WireFile(last, "upload", "one more.pgm", b"", size=MAX_UPLOAD).over() == "refused"
     assert ours.server.gate.dropped - before == {"uploads of all": 1}

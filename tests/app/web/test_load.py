@@ -268,18 +268,18 @@ def test_what_fails_in_its_turn_gives_the_turn_back():
 
 def test_one_tab_may_hold_as_much_as_a_map_may_have_and_a_second_one_what_is_left():
     room = []
-    budget = CellQuota(100, make_room=lambda: room.append(1))
-    budget.claim("a", 150)  # alone: a single map is bounded elsewhere
+    quota = CellQuota(100, make_room=lambda: room.append(1))
+    quota.claim("a", 150)  # alone: a single map is bounded elsewhere
     with pytest.raises(TooLargeError, match="close one of them, or make the maps coarser"):
-        budget.claim("b", 1)
-    budget.claim("a", 60)
-    budget.claim("b", 40)
+        quota.claim("b", 1)
+    quota.claim("a", 60)
+    quota.claim("b", 40)
     assert room
     with pytest.raises(TooLargeError):
-        budget.claim("b", 41)
-    budget.claim("a", 60)  # what is held already does not count against itself
-    budget.release("a")
-    budget.claim("b", 100)
+        quota.claim("b", 41)
+    quota.claim("a", 60)  # what is held already does not count against itself
+    quota.release("a")
+    quota.claim("b", 100)
 
 
 def test_a_server_waits_for_what_is_being_made_and_begins_nothing_more():

@@ -142,7 +142,7 @@ def test_stop_leaves_the_run_that_is_told_of_before_the_file_that_comes_meanwhil
 def test_a_file_that_takes_but_a_moment_cannot_be_stopped_and_moves_no_button(server, tab):
     told: list[bool] = []
     (number,) = server.get_clients()
-    server.arrivals.welcome(number, Recipient(told.append, lambda error: None))
+    server.uploads.welcome(number, Recipient(told.append, lambda error: None))
     file = WireFile(tab, IMAGE, "short.pgm", b"P5")
     file.part(2)
     assert file.over() == "arrived"
@@ -177,7 +177,7 @@ def test_nothing_of_a_file_stays_when(server, tab, end, word):
     file = WireFile(tab, IMAGE, "long.pgm", LONG)
     file.part(MOST)
     assert end(tab, file) == word
-    until(lambda: kept(server) == [] and not server.arrivals._coming, "its bytes to be free")
+    until(lambda: kept(server) == [] and not server.uploads._coming, "its bytes to be free")
 
 
 def test_a_file_that_is_too_large_is_refused_with_a_reason_before_any_of_it_is_sent(server, tab):
