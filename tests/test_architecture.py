@@ -45,7 +45,7 @@ MOST_MODULES = 15  # of a folder, its __init__ apart
 LONG_MODULES = {
     "app.page.page",
 }
-LONG_FUNCTIONS = {"algorithms.methods.spectra_method.run", "algorithms.simulator.scenario.simulate"}
+LONG_FUNCTIONS: set[str] = set()
 LARGE_FOLDERS: set[str] = set()
 CIRCLES: set[frozenset[str]] = set()
 SAME_NAMES = {"Host"}
