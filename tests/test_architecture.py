@@ -43,10 +43,9 @@ MOST_STATEMENT_LINES = 93  # of a function
 MOST_MODULES = 15  # of a folder, its __init__ apart
 # what is over these today; a change may only take from the lists
 LONG_MODULES = {
-    "app.page.lesson.lesson_controller",
     "app.page.page",
 }
-LONG_FUNCTIONS = {"algorithms.methods.spectra_method.run", "algorithms.simulator.scenario.simulate"}
+LONG_FUNCTIONS: set[str] = set()
 LARGE_FOLDERS: set[str] = set()
 CIRCLES: set[frozenset[str]] = set()
 SAME_NAMES = {"Host"}

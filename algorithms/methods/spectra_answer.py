@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import hypot, radians
 
 import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2, pose_error
 from algorithms.maps.grid_map import GridMap
-from algorithms.methods.merge_result import Answer
+from algorithms.maps.map_fusion import Fusion
+from algorithms.methods.merge_result import Answer, MergeResult, finish_merge
 from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.spectra_stages import RIVAL_FLOOR
-from algorithms.methods.steps import AnswersDetail, ProvenDetail, WeighedDetail
+from algorithms.methods.steps import (
+    AnswersDetail,
+    CandidatesDetail,
+    ObservationDetail,
+    ProvenDetail,
+    WeighedDetail,
+)
 from algorithms.observations.observation import Encounter
 from algorithms.observations.search_window import CoupledWindow, Window, coupled_window
 from algorithms.optimisation.branch_and_bound import MOST_RIVALS
@@ -27,19 +34,6 @@ from algorithms.verdict.slipping_patches import PATCH
 from algorithms.verdict.whole_maps import WholeMaps, make_whole_maps
 
 LEAST_DEVIATION = 0.01  # metres; no pair of rasters is known to fit better
-
-
-def doubts(refined: AnswersDetail, proven: ProvenDetail | None) -> list[str]:
-    """What the search itself has against its answer."""
-    if proven is None:
-        return [] if refined.answers[0].value > 0 else ["near the encounter no walls coincide"]
-    if proven.state.empty:
-        return ["the sightings contradict each other: no transform agrees with all of them"]
-    if proven.state.proven:
-        return []
-    if proven.state.stopped and proven.state.ceiling <= 0:
-        return ["wherever robot 2 may have stood, more wall contradicts than agrees"]
-    return ["the search was stopped before it had ruled out a better place"]
 
 
 def weigh_answers(
@@ -108,7 +102,56 @@ def others(
     return kept[1:]
 
 
-def value_of(
+def answer_of(
+    seen: ObservationDetail,
+    found: CandidatesDetail,
+    refined: AnswersDetail,
+    proven: ProvenDetail | None,
+    weighed: WeighedDetail,
+    fusion: Fusion,
+    config: PipelineConfig,
+    method: str,
+    seed: int,
+    timings_s: Mapping[str, float],
+) -> MergeResult:
+    """What all stages have come to, judged.
+
+    timings_s : seconds of each stage so far
+    """
+    named, *others = weighed.answers
+    peak = _peak_of(weighed, proven)
+    return finish_merge(
+        named,
+        others,
+        fusion,
+        seen.encounters,
+        covariance_at(named, found.objective, peak, found.window, seen.encounters, config),
+        config.verdict,
+        value=_value_of(named, refined, proven, found.objective),
+        answers=refined.answers,
+        method=method,
+        seed=seed,
+        doubts=_doubts(refined, proven),
+        proof=proven.state if proven else None,
+        search_found_it=proven.search_found_it if proven else None,
+        timings_s=timings_s,
+    )
+
+
+def _doubts(refined: AnswersDetail, proven: ProvenDetail | None) -> list[str]:
+    """What the search itself has against its answer."""
+    if proven is None:
+        return [] if refined.answers[0].value > 0 else ["near the encounter no walls coincide"]
+    if proven.state.empty:
+        return ["the sightings contradict each other: no transform agrees with all of them"]
+    if proven.state.proven:
+        return []
+    if proven.state.stopped and proven.state.ceiling <= 0:
+        return ["wherever robot 2 may have stood, more wall contradicts than agrees"]
+    return ["the search was stopped before it had ruled out a better place"]
+
+
+def _value_of(
     named: Weighed, refined: AnswersDetail, proven: ProvenDetail | None, objective: Objective
 ) -> float:
     """What the method's objective says of the named answer."""
@@ -118,7 +161,7 @@ def value_of(
     return float(objective(named.T_ref_mov.array()[None])[0])
 
 
-def peak_of(weighed: WeighedDetail, proven: ProvenDetail | None) -> Peak | None:
+def _peak_of(weighed: WeighedDetail, proven: ProvenDetail | None) -> Peak | None:
     """The peak that the named answer stands on; None where it is not known."""
     named = weighed.answers[0]
     if weighed.peak is not None:

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
-from algorithms.methods.merge_result import finish_merge
-from algorithms.methods.spectra_answer import covariance_at, doubts, peak_of, value_of, weigh_answers
+from algorithms.methods.spectra_answer import answer_of, weigh_answers
 from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.spectra_stages import augment_both, prove_optimum, refine, search
 from algorithms.methods.stage_runner import StageCache, StageRunner
@@ -15,7 +14,6 @@ from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,
-    Detail,
     HoughDetail,
     ObservationDetail,
     ProvenDetail,
@@ -107,28 +105,10 @@ def run(
             fuse(ref, mov, best, config.conflict, robots_of(seen.encounters, config.verdict.robot_size))
         ],
     )
-
-    def judged() -> list[Detail]:
-        named, *others = weighed.answers
-        return [
-            finish_merge(
-                named,
-                others,
-                fusion,
-                seen.encounters,
-                covariance_at(
-                    named, found.objective, peak_of(weighed, proven), found.window, seen.encounters, config
-                ),
-                config.verdict,
-                value=value_of(named, refined, proven, found.objective),
-                answers=refined.answers,
-                method=method,
-                seed=seed,
-                doubts=doubts(refined, proven),
-                proof=proven.state if proven else None,
-                search_found_it=proven.search_found_it if proven else None,
-                timings_s=runner.timings_s,
-            )
-        ]
-
-    yield from runner.stage("verdict", (fusion, refined, proven, config.verdict, method), judged)
+    yield from runner.stage(
+        "verdict",
+        (fusion, refined, proven, config.verdict, method),
+        lambda: [
+            answer_of(seen, found, refined, proven, weighed, fusion, config, method, seed, runner.timings_s)
+        ],
+    )

@@ -15,7 +15,7 @@ from algorithms.simulator.buildings.floor_plan import Building
 from algorithms.simulator.changes import with_pillars
 from algorithms.simulator.path_planning import PathPlanner
 from algorithms.simulator.portable_random import chance, stream, uniform
-from algorithms.simulator.robot import Conditions, Robot, drive, make_body
+from algorithms.simulator.robot import Conditions, Robot, RobotModel, drive, make_body
 from algorithms.simulator.room_tours import TourPlanner
 from algorithms.simulator.sighting import (
     ROUGH_BEARING,
@@ -141,17 +141,7 @@ def simulate(
     asked = overlap if isinstance(overlap, tuple) else (overlap, overlap)
     near_1, near_2 = (LOOSE if a is None else TOLERANCE for a in asked)
     aim_1, aim_2 = (d if a is None else a for a, d in zip(asked, drawn, strict=True))
-    b1, b2, b3 = (
-        make_body(
-            f"R{n + 1}",
-            seed,
-            kind,
-            reach,
-            resolutions[n] if resolutions else None,
-            conditions[n] if conditions else None,
-        )
-        for n in range(3)
-    )
+    b1, b2, b3 = _bodies(kind, seed, reach, resolutions, conditions)
     building = build(kind, seed, floor)
     if pillars:
         building = with_pillars(building, stream(seed, kind, f"pillars of floor {floor}"))
@@ -183,6 +173,27 @@ def simulate(
         case_of(pair, kind, source, stream(seed, kind, f"case {n}"), back) for n, pair in enumerate(pairs)
     )
     return Scenario(building, (pair_1.observed, r2, pair_2.observer), pairs, cases)
+
+
+def _bodies(
+    kind: str,
+    seed: int,
+    reach: float,
+    resolutions: tuple[float, float, float] | None,
+    conditions: tuple[Conditions, Conditions, Conditions] | None,
+) -> list[RobotModel]:
+    """R1, R2 and R3 as they are built."""
+    return [
+        make_body(
+            f"R{n + 1}",
+            seed,
+            kind,
+            reach,
+            resolutions[n] if resolutions else None,
+            conditions[n] if conditions else None,
+        )
+        for n in range(3)
+    ]
 
 
 def _nearest_pair(

@@ -11,25 +11,20 @@ import viser
 
 from algorithms.common.errors import MapMergeError
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
-from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.steps import Step
 from app.jobs.job_thread import JobThread
 from app.jobs.runner import TappedRunner
 from app.model.merge_inputs import MergeInputs
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
-from app.page.lesson.figures.figure_registry import PICTURES, FigureSlider
+from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.hosts import Host
+from app.page.lesson.lesson_display import LessonDisplay
 from app.page.lesson.lesson_panel import LessonPanel, LessonWishes
 from app.page.lesson.lesson_run import LessonRun, keep
-from app.page.lesson.lesson_texts import StepText, files, filled, read_step, with_settings
-from app.page.lesson.placeholders import NUMBERS, numbers_of
+from app.page.lesson.lesson_texts import StepText, files, read_step, with_settings
+from app.page.lesson.placeholders import NUMBERS
 from app.page.panels.settings_panel import SettingsPanel
-
-OWN = "Your own settings and results come back when you leave."
-WAIT = "Working it out on these maps …"
-NO_MAPS = "Load two maps and an observation: the lesson is about them."
-NOT_HERE = "The method as it is set does not come to this. Choose another method, or put its settings back."
 
 
 class LessonController:
@@ -46,6 +41,7 @@ class LessonController:
             go=self.go, move=self.move, leave=self.leave, turn=self._dialled, try_=self._try
         )
         self._panel = LessonPanel(gui, wishes)
+        self._display = LessonDisplay(host, self._panel)
         self._session = JobThread(self, TappedRunner(host.session.bench, self._record), beside=host.session)
         self.open = False
         self._own: tuple[str, Any] = (DEFAULT_METHOD, METHODS[DEFAULT_METHOD].defaults)
@@ -55,7 +51,6 @@ class LessonController:
         self._steps: list[Step] = []
         self._study = LessonRun(MergeInputs(), None)
         self._done = False  # whether the run has come to its end
-        self._places: tuple[int, ...] = ()
         self._tried: tuple[int, Any] | None = None  # which thing to try, and the settings before it
         self._told: set[int] = set()  # whose answers are shown
         self._wish = 0  # the newest turn of a dial: older ones need not be drawn any more
@@ -128,7 +123,7 @@ class LessonController:
             if not self.open or not 0 <= index < len(self._files):
                 return
             self._put_back()
-            self._index, self._places, self._told = index, (), set()
+            self._index, self._display.places, self._told = index, (), set()
             try:
                 self._text = read_step(self._files[index], PICTURES, NUMBERS)
             except MapMergeError as error:
@@ -149,7 +144,7 @@ class LessonController:
         mine = self._wish
         with self._turn:
             if self.open and mine == self._wish:
-                self._places = self._panel.places
+                self._display.places = self._panel.places
                 self._show(fresh=False, moved=True)
 
     def _try(self, number: int) -> None:
@@ -191,14 +186,9 @@ class LessonController:
         self._session.stop()
         self._done = False
         self._study = LessonRun(i, config, self._host.seed)
-        if self._possible and i.ref is not None and i.mov is not None:
+        if self._study.possible and i.ref is not None and i.mov is not None:
             job = MergeJob(i.ref, i.mov, i.observations, config, self._tuning.method, self._host.seed)
             self._session.request(job)
-
-    @property
-    def _possible(self) -> bool:
-        """Whether there are maps, and a method that goes through all the stages."""
-        return self._study.inputs.complete and isinstance(self._study.config, PipelineConfig)
 
     def _record(self, told: Iterator[Step]) -> Iterator[Step]:
         """Keep the steps of a run."""
@@ -259,46 +249,7 @@ class LessonController:
             text, study = self._text, self._study
             if text is None or not self.open:
                 return
-            numbers = numbers_of(study) if self._possible else {}
             if not moved:
-                self._panel.text(self._index, text.title, filled(text.body, numbers), text.equations, OWN)
-                answers = [
-                    filled(trial.answer, numbers) if k in self._told else ""
-                    for k, trial in enumerate(text.trials)
-                ]
-                self._panel.trials(text.trials, answers)
-            self._draw(text, study, fresh)
-
-    def _draw(self, text: StepText, study: LessonRun, fresh: bool) -> None:
-        host, says = (
-            self._host,
-            f"Lesson, step {self._index + 1} of {len(self._files)}: {text.title}",
-        )
-        picture = PICTURES.get(text.picture)
-        ready = picture is not None and self._possible and study.reached(*picture.needs)
-        if picture is None or not ready:
-            waiting = "" if picture is None else NO_MAPS if not study.inputs.complete else WAIT
-            over = self._done or not self._possible
-            self._panel.picture(NOT_HERE if waiting == WAIT and over else waiting)
-            self._panel.dials((), ())
-            host.present(RunState(study.config), says, [], None, fresh, waiting == WAIT and not over)
-            return
-        dials = picture.dials(study)
-        places = self._placed(dials)
-        self._panel.dials(dials, places)
-        self._panel.picture(picture.draw(study, places, host.palette))
-        host.present(
-            picture.story(study, places),
-            says,
-            picture.ink(study, places, host.layout, host.palette),
-            picture.turn(study, places) if picture.turn else None,
-            fresh,
-            False,
-        )
-
-    def _placed(self, dials: tuple[FigureSlider, ...]) -> tuple[int, ...]:
-        """Where the dials stand, or where they begin."""
-        if len(self._places) != len(dials):
-            self._places = tuple(dial.start for dial in dials)
-        self._places = tuple(min(k, dial.count - 1) for k, dial in zip(self._places, dials, strict=True))
-        return self._places
+                self._display.words(self._index, text, study, self._told)
+            says = f"Lesson, step {self._index + 1} of {len(self._files)}: {text.title}"
+            self._display.picture(text, study, says, fresh, self._done)

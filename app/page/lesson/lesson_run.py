@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from algorithms.common.pose import FloatArray
+from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.spectra_stages import values_in
 from algorithms.methods.steps import AugmentDetail, CandidatesDetail, RefineDetail, Step, WindowDetail
 from algorithms.optimisation.likelihood_field import make_agreement
@@ -46,6 +47,11 @@ class LessonRun:
 
     def __init__(self, inputs: MergeInputs, config: Any, seed: int = 0, steps: tuple[Step, ...] = ()) -> None:
         self.inputs, self.config, self.seed, self.steps = inputs, config, seed, steps
+
+    @property
+    def possible(self) -> bool:
+        """Whether there are maps, and a method that goes through all the stages."""
+        return self.inputs.complete and isinstance(self.config, PipelineConfig)
 
     def all(self, kind: type[D]) -> list[D]:
         """Every detail of a kind."""

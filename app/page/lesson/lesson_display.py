@@ -1,0 +1,75 @@
+"""Draws the step of the lesson at hand: its words and its picture in the dock, its run on the map."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from app.model.run_state import RunState
+from app.page.lesson.figures.figure_registry import PICTURES, FigureSlider
+from app.page.lesson.hosts import Host
+from app.page.lesson.lesson_panel import LessonPanel
+from app.page.lesson.lesson_run import LessonRun
+from app.page.lesson.lesson_texts import StepText, filled
+from app.page.lesson.placeholders import numbers_of
+
+OWN = "Your own settings and results come back when you leave."
+WAIT = "Working it out on these maps …"
+NO_MAPS = "Load two maps and an observation: the lesson is about them."
+NOT_HERE = "The method as it is set does not come to this. Choose another method, or put its settings back."
+
+
+class LessonDisplay:
+    """Draws a step as far as the run has come; whoever calls is drawing.
+
+    places : where the dials of the picture stand; empty: where they begin
+    """
+
+    def __init__(self, host: Host, panel: LessonPanel) -> None:
+        self._host, self._panel = host, panel
+        self.places: tuple[int, ...] = ()
+
+    def words(self, index: int, text: StepText, study: LessonRun, told: Collection[int]) -> None:
+        """Show what a step says.
+
+        told : numbers of the things to try whose answers are shown
+        """
+        numbers = numbers_of(study) if study.possible else {}
+        self._panel.text(index, text.title, filled(text.body, numbers), text.equations, OWN)
+        answers = [filled(trial.answer, numbers) if k in told else "" for k, trial in enumerate(text.trials)]
+        self._panel.trials(text.trials, answers)
+
+    def picture(self, text: StepText, study: LessonRun, says: str, fresh: bool, done: bool) -> None:
+        """Draw a step's picture, and what belongs to it on the map; or say why there is none yet.
+
+        says  : the sentence over the map
+        fresh : look at the map anew
+        done  : the run has come to its end
+        """
+        host, picture = self._host, PICTURES.get(text.picture)
+        ready = picture is not None and study.possible and study.reached(*picture.needs)
+        if picture is None or not ready:
+            waiting = "" if picture is None else NO_MAPS if not study.inputs.complete else WAIT
+            over = done or not study.possible
+            self._panel.picture(NOT_HERE if waiting == WAIT and over else waiting)
+            self._panel.dials((), ())
+            host.present(RunState(study.config), says, [], None, fresh, waiting == WAIT and not over)
+            return
+        dials = picture.dials(study)
+        places = self._placed(dials)
+        self._panel.dials(dials, places)
+        self._panel.picture(picture.draw(study, places, host.palette))
+        host.present(
+            picture.story(study, places),
+            says,
+            picture.ink(study, places, host.layout, host.palette),
+            picture.turn(study, places) if picture.turn else None,
+            fresh,
+            False,
+        )
+
+    def _placed(self, dials: tuple[FigureSlider, ...]) -> tuple[int, ...]:
+        """Where the dials stand, or where they begin."""
+        if len(self.places) != len(dials):
+            self.places = tuple(dial.start for dial in dials)
+        self.places = tuple(min(k, dial.count - 1) for k, dial in zip(self.places, dials, strict=True))
+        return self.places

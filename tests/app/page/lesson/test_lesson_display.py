@@ -1,0 +1,94 @@
+"""A step of the lesson is drawn as far as the run has come, and says what it waits for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from unittest.mock import Mock
+
+import pytest
+
+from algorithms.methods.registry import METHODS, run
+from algorithms.methods.steps import HoughDetail, Step
+from app.drawing.palette import LIGHT
+from app.drawing.scene_layout import lay_out
+from app.model.merge_inputs import MergeInputs
+from app.page.lesson.figures.figure_registry import PICTURES
+from app.page.lesson.lesson_display import NO_MAPS, NOT_HERE, WAIT, LessonDisplay
+from app.page.lesson.lesson_panel import LessonPanel
+from app.page.lesson.lesson_run import LessonRun
+from app.page.lesson.lesson_texts import StepText, files, lesson_folder, read_step
+from app.page.lesson.placeholders import NUMBERS
+
+CONFIG = METHODS["spectra-proven"].defaults
+
+
+@pytest.fixture(scope="module")
+def hough() -> StepText:
+    """A step whose picture is of the spectra."""
+    steps = [read_step(path, PICTURES, NUMBERS) for path in files(lesson_folder())]
+    return next(step for step in steps if step.picture == "hough")
+
+
+@pytest.fixture(scope="module")
+def until_hough(inputs) -> tuple[Step, ...]:
+    """A run that has come to the spectra and no farther."""
+    told = []
+    for step in run("spectra-proven", inputs.ref, inputs.mov, inputs.observations, CONFIG):
+        told.append(step)
+        if isinstance(step.detail, HoughDetail):
+            break
+    return tuple(told)
+
+
+@pytest.fixture
+def panel() -> Mock:
+    return Mock(LessonPanel)
+
+
+@pytest.fixture
+def page(inputs) -> Mock:
+    return Mock(palette=LIGHT, layout=lay_out(inputs.ref, inputs.mov, inputs.at))
+
+
+@pytest.fixture
+def display(page, panel) -> LessonDisplay:
+    return LessonDisplay(page, panel)
+
+
+def drawn(display: LessonDisplay, panel: Mock, text: StepText, study: LessonRun, done: bool = False) -> str:
+    display.picture(text, study, "Lesson", fresh=True, done=done)
+    return panel.picture.call_args.args[0]
+
+
+def test_what_the_run_has_not_come_to_is_waited_for_and_once_it_is_over_no_more(
+    display, page, panel, hough, inputs
+):
+    study = LessonRun(inputs, CONFIG)
+    assert drawn(display, panel, hough, study) == WAIT
+    assert page.present.call_args.args[-1] is True  # busy
+    assert drawn(display, panel, hough, study, done=True) == NOT_HERE
+    assert page.present.call_args.args[-1] is False
+
+
+def test_without_maps_or_with_a_method_of_other_stages_nothing_is_waited_for(display, panel, hough, inputs):
+    assert drawn(display, panel, hough, LessonRun(MergeInputs(), CONFIG)) == NO_MAPS
+    assert drawn(display, panel, hough, LessonRun(inputs, METHODS["mse"].defaults)) == NOT_HERE
+
+
+def test_a_picture_is_drawn_once_its_stage_is_there_with_its_dials_where_they_begin(
+    display, panel, hough, inputs, until_hough
+):
+    study = LessonRun(inputs, CONFIG, 0, until_hough)
+    assert drawn(display, panel, hough, study).startswith("<svg")
+    dials, places = panel.dials.call_args.args
+    assert places == tuple(dial.start for dial in dials)
+    display.places = tuple(10**6 for _ in dials)  # of maps that had more to show
+    drawn(display, panel, hough, study)
+    assert panel.dials.call_args.args[1] == tuple(dial.count - 1 for dial in dials)
+
+
+def test_an_answer_is_told_only_where_it_was_asked_for(display, panel, hough, inputs, until_hough):
+    trial = Mock(answer="so it is")
+    text = replace(hough, trials=(trial, trial))
+    display.words(0, text, LessonRun(inputs, CONFIG, 0, until_hough), {1})
+    assert panel.trials.call_args.args[1] == ["", "so it is"]
