@@ -52,3 +52,13 @@ def test_a_loop_whose_code_cannot_be_kept_on_disk_is_compiled_all_the_same(compi
     namespace = {}
     exec("def twice(x):\n    return x + x\n", namespace)  # without a file there is no place to keep it
     assert compiler(namespace["twice"])(21) == 42
+
+
+def test_a_loop_may_call_another_one_that_nobody_has_called_before():
+    namespace = {"kernel": kernels.kernel}
+    exec(
+        "@kernel\ndef twice(x):\n    return x + x\n@kernel\ndef four_times(x):\n    return twice(twice(x))\n",
+        namespace,
+    )
+    assert namespace["four_times"](21) == 84
+    assert namespace["twice"](21) == 42
