@@ -13,9 +13,9 @@ from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from functools import cache, update_wrapper
 from itertools import pairwise
 from pickle import UnpicklingError
@@ -29,6 +29,22 @@ R = TypeVar("R")
 
 
 _UNREADABLE = (OSError, EOFError, UnpicklingError)
+_kept_only = False
+
+
+class NotKeptError(Exception):
+    """A kernel would have to be compiled."""
+
+
+@contextmanager
+def kept_only() -> Iterator[None]:
+    """For a process with one thread: a kernel whose compiled code was not kept raises NotKeptError."""
+    global _kept_only
+    _kept_only = True
+    try:
+        yield
+    finally:
+        _kept_only = False
 
 
 class _Kept:
@@ -43,12 +59,15 @@ class _Kept:
     def load_overload(self, signature: Any, context: Any) -> Any:
         """The compiled code of an earlier run, None where there is none."""
         try:
-            return self._store.load_overload(signature, context)
+            found = self._store.load_overload(signature, context)
         except _UNREADABLE as error:  # another user's, or torn by a power cut
             _say_once(f"compiled code of an earlier run cannot be used: {error}")
             with suppress(OSError):
                 self._store.flush()  # begun anew, it can be
-            return None
+            found = None
+        if found is None and _kept_only:
+            raise NotKeptError
+        return found
 
     def save_overload(self, signature: Any, compiled: Any) -> None:
         """Keep compiled code, if the disk lets us."""
@@ -94,6 +113,8 @@ class _Kernel:
             loop: Any = njit(nogil=True, cache=True, fastmath=self._fastmath)(self._function)
             loop._cache = _Kept(loop._cache)
         except RuntimeError:  # nowhere to keep the compiled code: a read-only installation without a home
+            if _kept_only:
+                raise NotKeptError from None
             loop = njit(nogil=True, fastmath=self._fastmath)(self._function)
         return loop
 

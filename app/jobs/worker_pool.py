@@ -26,19 +26,20 @@ from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import MapMergeError
 from algorithms.methods.stage_runner import StageCache
 from algorithms.methods.steps import Step
+from app.jobs import forked_start
 from app.jobs.fair_semaphore import FairSemaphore
 from app.jobs.incremental_pickle import IncrementalPickle
-from app.jobs.process_executor import SPAWN
 from app.jobs.runner import RunCallbacks, Runner
 from app.model.merge_job import MergeJob
 from app.system.memory import give_back, whole
 
 log = logging.getLogger(__name__)
 
-MOST = 4  # each takes 200 MB before it has done anything, and has threads for all cores
+MOST = 4  # each has threads for all cores
 HANGS = 10.0  # seconds that a step goes on unwanted, or a word is not heard, until its process is ended
 HANGS_BESIDE = 60.0  # where other runs would end with it; and until a run has to have begun
 LOOK_S = 0.25  # how often it is looked
+START = forked_start.context()
 SHARE = 0.5  # of this machine's memory that a worker may have; more is a MemoryError, not the end of others
 
 
@@ -115,11 +116,15 @@ class _Worker:
         with self._starting:
             if self._closed:
                 raise WorkerDiedError
-            line, theirs = SPAWN.Pipe()
-            process = SPAWN.Process(target=_serve, args=(theirs,), name="mapmeld-merge", daemon=True)
+            line, theirs = START.Pipe()
+            process = START.Process(target=_serve, args=(theirs,), name="mapmeld-merge", daemon=True)
             try:
                 with _deaf():
+                    forked_start.start_parent()
                     process.start()
+            except (EOFError, ConnectionError) as error:  # the process that is copied has died
+                line.close()
+                raise WorkerDiedError from error
             except BaseException:
                 line.close()
                 raise
