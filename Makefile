@@ -9,7 +9,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 TOOL := PYTHONPATH=tests/support $(BIN)/python tests/tools
 
-.PHONY: help run test bench fuzz soak audit samples screenshots equations replays verdict results clean
+.PHONY: help run test bench fuzz soak idle audit samples screenshots equations replays verdict results clean
 
 help:
 	@echo "make run          open the tool on a sample, in the browser (ARGS=--no-browser: only serve it)"
@@ -17,6 +17,7 @@ help:
 	@echo "make bench        time the stages of a merge"
 	@echo "make fuzz         feed every reader of files with damaged ones (ARGS='--seconds 300')"
 	@echo "make soak         many tabs for ten minutes: memory, answers, leaks (ARGS='--minutes 2 --waves 4')"
+	@echo "make idle         what a server takes that nobody uses (ARGS=--merge: and once a tab has merged)"
 	@echo "make audit        ask pip-audit for known holes in what is installed (needs the network)"
 	@echo "make samples      simulate the maps in sample_maps again"
 	@echo "make screenshots  take the pictures of the README and the guides again"
@@ -46,6 +47,9 @@ fuzz: $(VENV)/ready-to-test
 
 soak: $(VENV)/ready-to-test
 	@$(TOOL)/soak.py $(ARGS)
+
+idle: $(VENV)/ready-to-test
+	@$(TOOL)/idle_memory.py $(ARGS)
 
 # pip-audit in an environment of its own: what it brings is none of ours. --strict, or packages whose
 # state it cannot learn, all of them without a network, count as sound.

@@ -203,6 +203,20 @@ def test_what_is_tested_without_a_browser_loads_no_server(package):
     assert "viser" not in loaded_by(*modules(package))
 
 
+def test_a_page_that_nobody_has_opened_has_loaded_nothing_that_only_merges_need():
+    loaded = loaded_by("app.page.application")
+    assert "viser" in loaded
+    assert not loaded & {
+        "numba",
+        "scipy.fft",
+        "scipy.ndimage",
+        "scipy.spatial",
+        "skimage.measure",
+        "distributed",
+    }
+    assert not loaded & PLOTTERS
+
+
 def test_only_the_table_of_methods_knows_the_methods():
     knowing = importers("algorithms.methods.registry")
     inside = {module for module in knowing if module.startswith("algorithms")}

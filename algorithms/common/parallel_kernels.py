@@ -4,21 +4,23 @@ Kernels release the GIL and never start threads of their own: numba's threading 
 deadlock when two Python threads (two browser tabs) enter them at once, a thread pool does not.
 Every item is worked on by one thread from beginning to end, so the answer does not depend on how
 many threads there are.
+
+numba is loaded when a kernel is first called: it takes 60 MB and half a second, and a process that merges
+nothing has no use for it.
 """
 
 from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
-from functools import cache
+from contextlib import contextmanager, suppress
+from functools import cache, update_wrapper
 from itertools import pairwise
 from pickle import UnpicklingError
+from threading import Lock
 from typing import Any, ParamSpec, TypeVar, cast
-
-from numba import njit
 
 log = logging.getLogger(__name__)
 
@@ -27,6 +29,22 @@ R = TypeVar("R")
 
 
 _UNREADABLE = (OSError, EOFError, UnpicklingError)
+_kept_only = False
+
+
+class NotKeptError(Exception):
+    """A kernel would have to be compiled."""
+
+
+@contextmanager
+def kept_only() -> Iterator[None]:
+    """For a process with one thread: a kernel whose compiled code was not kept raises NotKeptError."""
+    global _kept_only
+    _kept_only = True
+    try:
+        yield
+    finally:
+        _kept_only = False
 
 
 class _Kept:
@@ -41,12 +59,15 @@ class _Kept:
     def load_overload(self, signature: Any, context: Any) -> Any:
         """The compiled code of an earlier run, None where there is none."""
         try:
-            return self._store.load_overload(signature, context)
+            found = self._store.load_overload(signature, context)
         except _UNREADABLE as error:  # another user's, or torn by a power cut
             _say_once(f"compiled code of an earlier run cannot be used: {error}")
             with suppress(OSError):
                 self._store.flush()  # begun anew, it can be
-            return None
+            found = None
+        if found is None and _kept_only:
+            raise NotKeptError
+        return found
 
     def save_overload(self, signature: Any, compiled: Any) -> None:
         """Keep compiled code, if the disk lets us."""
@@ -61,18 +82,46 @@ def _say_once(what: str) -> None:  # there are dozens of loops
     log.warning(what)
 
 
-def _compiled(function: Callable[P, R], fastmath: set[str] | bool) -> Callable[P, R]:
-    try:
-        loop: Any = njit(nogil=True, cache=True, fastmath=fastmath)(function)
-        loop._cache = _Kept(loop._cache)
-    except RuntimeError:  # nowhere to keep the compiled code: a read-only installation without a home
-        loop = njit(nogil=True, fastmath=fastmath)(function)
-    return cast("Callable[P, R]", loop)
+_making = Lock()  # or two threads would compile the same loop, each for itself
+
+
+class _Kernel:
+    """A loop that numba is told of when it is first called, by Python or by another kernel."""
+
+    def __init__(self, function: Callable[..., Any], fastmath: set[str] | bool) -> None:
+        self._function, self._fastmath = function, fastmath
+        self._loop: Any = None
+        update_wrapper(self, function)
+
+    def __call__(self, *args: Any) -> Any:
+        return (self._loop or self._made())(*args)
+
+    @property
+    def _numba_type_(self) -> Any:  # numba asks what a kernel calls for it
+        return (self._loop or self._made())._numba_type_
+
+    def _made(self) -> Any:
+        with _making:
+            if self._loop is None:
+                self._loop = self._make()
+            return self._loop
+
+    def _make(self) -> Any:
+        from numba import njit
+
+        try:
+            loop: Any = njit(nogil=True, cache=True, fastmath=self._fastmath)(self._function)
+            loop._cache = _Kept(loop._cache)
+        except RuntimeError:  # nowhere to keep the compiled code: a read-only installation without a home
+            if _kept_only:
+                raise NotKeptError from None
+            loop = njit(nogil=True, fastmath=self._fastmath)(self._function)
+        return loop
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a loop in strict IEEE arithmetic; cached on disk, so that only the first use waits."""
-    return _compiled(function, fastmath=False)
+    return cast("Callable[P, R]", _Kernel(function, fastmath=False))
 
 
 def fast_kernel(function: Callable[P, R]) -> Callable[P, R]:
@@ -81,7 +130,8 @@ def fast_kernel(function: Callable[P, R]) -> Callable[P, R]:
     The order is fixed when it is compiled: one machine gives one answer. Without NaN in it: their
     absence is what lets min and max become one instruction.
     """
-    return _compiled(function, fastmath={"reassoc", "contract", "nsz", "arcp", "nnan"})
+    fastmath = {"reassoc", "contract", "nsz", "arcp", "nnan"}
+    return cast("Callable[P, R]", _Kernel(function, fastmath))
 
 
 @cache

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import cv2
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy  # its parts are loaded where they are first used
 
 from algorithms.common.pose import FloatArray
 from algorithms.simulator.buildings.floor_plan import AIR, WALL, Building, FloorPlan
@@ -29,7 +29,7 @@ def rearranged(building: Building, way: FloatArray, rng: np.random.Generator) ->
     way : (N, 2) where a robot drives, which stays clear; metres, world frame
     """
     plan = FloorPlan.of(building)
-    near = cKDTree(way)
+    near = scipy.spatial.cKDTree(way)
 
     def clear(x: float, y: float, reach: float) -> bool:
         return bool(near.query([x, y])[0] > reach + AROUND)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import atan2, cos, sin, sqrt
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy  # its parts are loaded where they are first used
 
 from algorithms.common.pose import FloatArray, Pose2, wrap_angle
 from algorithms.maps.grid_map import GridMap
@@ -118,7 +118,7 @@ def in_belief(true: Track, believed: Track, walls: FloatArray) -> FloatArray:
     walls   : (M, 2) metres, world frame
     returns : (M, 2) metres, the robot's frame
     """
-    _, nearest = cKDTree(true.xy).query(walls)
+    _, nearest = scipy.spatial.cKDTree(true.xy).query(walls)
     turn = believed.heading[nearest] - true.heading[nearest]
     c, s = cosine(turn), sine(turn)
     x, y = (walls - true.xy[nearest]).T
@@ -145,5 +145,5 @@ def measured_overlap(ref: GridMap, mov: GridMap, T_ref_mov: Pose2) -> float:
     few, many = T_ref_mov.apply(mov.points), ref.points
     if len(few) > len(many):
         few, many = many, few
-    distance, _ = cKDTree(many).query(few, distance_upper_bound=SAME_WALL)
+    distance, _ = scipy.spatial.cKDTree(many).query(few, distance_upper_bound=SAME_WALL)
     return float(np.isfinite(distance).mean())

@@ -7,7 +7,7 @@ from math import pi
 from typing import Annotated
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
+import scipy  # its parts are loaded where they are first used
 
 from algorithms.common.parallel_kernels import kernel, run_in_threads
 from algorithms.common.pose import FloatArray, rotation
@@ -144,7 +144,7 @@ def correlate_turns(ref: FloatArray, mov: FloatArray) -> FloatArray:
     HS1(θ) = HS2(θ − Δθ). Ours peaks at k = +Δθ.
     """
     size = len(ref)
-    correlation = irfft(rfft(ref) * np.conj(rfft(mov)), size)  # eq. (12)
+    correlation = scipy.fft.irfft(scipy.fft.rfft(ref) * np.conj(scipy.fft.rfft(mov)), size)  # eq. (12)
     best = float(correlation.max())
     return np.asarray(correlation / best if best > 0 else correlation, dtype=np.float64)
 
@@ -192,8 +192,10 @@ def match_shift(
     ref_sums, ref_at = project(ref, ref_levels, step)
     mov_sums, mov_at = project(mov, mov_levels, step)
     size = len(ref_sums) + len(mov_sums) - 1  # padded: eqs. (15), (16) are sums without wrap
-    fast = next_fast_len(size)
-    correlation = irfft(rfft(ref_sums, fast) * rfft(mov_sums[::-1], fast), fast)[:size]
+    fast = scipy.fft.next_fast_len(size)
+    correlation = scipy.fft.irfft(
+        scipy.fft.rfft(ref_sums, fast) * scipy.fft.rfft(mov_sums[::-1], fast), fast
+    )[:size]
     best = float(correlation.max())
     correlation = correlation / best if best > 0 else correlation
     shifts = ref_at[0] - mov_at[-1] + np.arange(size) * step

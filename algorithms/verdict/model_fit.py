@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy  # its parts are loaded where they are first used
 
 from algorithms.common.pose import FloatArray
 from algorithms.maps.grid_map import BoolArray
@@ -81,7 +81,9 @@ def fit(
         return float(-likelihood / n + (ridge * weights**2).sum()), -slope / n + 2 * ridge * weights
 
     signs = [(0.0, None) if QUANTITIES[name].rises else (None, 0.0) for name in names]
-    found = minimize(loss, np.zeros(size + 1), jac=True, bounds=[*signs, (None, None)], method="L-BFGS-B").x
+    found = scipy.optimize.minimize(
+        loss, np.zeros(size + 1), jac=True, bounds=[*signs, (None, None)], method="L-BFGS-B"
+    ).x
     weights = found[:size] / spread
     typical = np.median(table[right], axis=0) if len(right) else middle
     return VerdictModel(

@@ -10,10 +10,8 @@ import atexit
 import contextlib
 import itertools
 import logging
-import signal
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator
 from math import inf
-from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from threading import Lock
 from time import monotonic
@@ -22,19 +20,20 @@ from typing import Any
 from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import MapMergeError
 from algorithms.methods.steps import Step
+from app.jobs import forked_start
 from app.jobs.fair_semaphore import FairSemaphore
 from app.jobs.incremental_pickle import IncrementalPickle
-from app.jobs.process_executor import SPAWN
 from app.jobs.runner import RunCallbacks, Runner
 from app.jobs.worker_process import Failed, serve
 from app.model.merge_job import MergeJob
 
 log = logging.getLogger(__name__)
 
-MOST = 4  # each takes 200 MB before it has done anything, and has threads for all cores
+MOST = 4  # each has threads for all cores
 HANGS = 10.0  # seconds that a step goes on unwanted, or a word is not heard, until its process is ended
 HANGS_BESIDE = 60.0  # where other runs would end with it; and until a run has to have begun
 LOOK_S = 0.25  # how often it is looked
+START = forked_start.context()
 
 
 class WorkerDiedError(MapMergeError):
@@ -110,11 +109,15 @@ class _Worker:
         with self._starting:
             if self._closed:
                 raise WorkerDiedError
-            line, theirs = SPAWN.Pipe()
-            process = SPAWN.Process(target=serve, args=(theirs,), name="mapmeld-merge", daemon=True)
+            line, theirs = START.Pipe()
+            process = START.Process(target=serve, args=(theirs,), name="mapmeld-merge", daemon=True)
             try:
-                with _deaf():
+                with forked_start.without_interrupt():
+                    forked_start.start_parent()
                     process.start()
+            except (EOFError, ConnectionError) as error:  # the process that is copied has died
+                line.close()
+                raise WorkerDiedError from error
             except BaseException:
                 line.close()
                 raise
@@ -163,20 +166,6 @@ class _Worker:
             process = self._process
         if process is not None:
             process.kill()
-
-
-@contextlib.contextmanager
-def _deaf() -> Iterator[None]:
-    """A process that starts here does not hear Ctrl-C, not even before its first line: this one ends it."""
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
-        yield
-        return
-    resource_tracker.ensure_running()  # it would have this thread hear again
-    heard = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, heard)
 
 
 _numbers = itertools.count()

@@ -6,6 +6,8 @@ import errno
 import logging
 import socket
 import threading
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from math import radians
 from pathlib import Path
 
@@ -13,9 +15,12 @@ import viser
 
 from algorithms.common.errors import MapMergeError
 from algorithms.files.case_folder import Case
+from algorithms.methods.steps import Step
 from app.jobs import worker_pool as workers
+from app.jobs.forked_start import FORKS, start_parent
 from app.jobs.runner import RunCallbacks
-from app.model.merge_job import MergeJob
+from app.jobs.warm_up import small_merge
+from app.jobs.warm_up import warm_up as warm_up_there
 from app.page.page import Page
 from app.system.logging_setup import facts
 from app.system.memory import MemoryCleanup
@@ -28,7 +33,7 @@ log = logging.getLogger(__name__)
 
 
 MOST_TABS = 64  # about 8 MB each, and what its maps and results take
-WARM = 2  # processes for merges that are there from the start: a second tab need not wait for its own
+WARM = 1 if FORKS else 2  # processes for merges from the start: a second tab need not wait long for its own
 SPARE = 8  # connections more, so that a tab too many is told so
 
 
@@ -64,6 +69,7 @@ def make_server(
     keep = SessionStore()
     quota = CellQuota(make_room=keep.forget_all)
     housekeeping = MemoryCleanup()
+    visited = False
 
     @server.on_client_connect
     def _(client: viser.ClientHandle) -> None:
@@ -71,6 +77,10 @@ def make_server(
             client.gui.add_markdown(f"{MOST_TABS} tabs are open already. Close one, then reload this page.")
             return
         log.info("a tab came", extra=facts(tab=client.client_id, tabs=len(pages) + 1))
+        nonlocal visited
+        if not visited:
+            visited = True
+            _aside(warm_up_here)
         pages[client.client_id] = Page(client, initial, keep, server.uploads, lesson, quota)
 
     @server.on_client_disconnect
@@ -82,38 +92,40 @@ def make_server(
             page.close()
             housekeeping.soon()
 
-    threading.Thread(target=warm_up, name="mapmeld-warm-up", daemon=True).start()
+    start_parent()  # here, where no browser is being started that would be told what it is told
+    _aside(warm_up)
     return server
 
 
+def _aside(what: Callable[[], None]) -> None:
+    threading.Thread(target=what, name="mapmeld-warm-up", daemon=True).start()
+
+
 def warm_up() -> None:
-    """Merge a room of some cells: the kernels are compiled then, and the first Merge need not wait for it."""
-    import numpy as np
-
-    from algorithms.common.pose import Pose2
-    from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
-    from algorithms.observations.observation import Observation
-
-    cells = np.full((40, 60), FREE, dtype=np.int8)
-    cells[[0, -1], :], cells[:, [0, -1]] = OCCUPIED, OCCUPIED
-    room = GridMap(cells, 0.1)
-    seen = Observation(Pose2(2.0, 2.0), 3.0, 2.0, 1.0, 0.0)
+    """Have what merges ready for it, its kernels compiled: the first Merge need not wait."""
     benches = [workers.COMMON.bench() for _ in range(WARM)]
+    job = replace(small_merge(), steps=warm_up_there)
     try:
         for bench in benches:  # each has a process of its own, as long as the others are there
-            for _ in bench.steps(MergeJob(room, room, (seen,), None), RunCallbacks()):
-                pass
-        for _ in MergeJob(room, room, (seen,), None).run(
-            {}
-        ):  # here, too: for what a hand moves, and the lesson
+            _run_through(bench.steps(job, RunCallbacks()))
+    finally:
+        for bench in benches:
+            bench.close()
+
+
+def warm_up_here() -> None:
+    """The same in this process, for what a hand moves, and the lesson."""
+    _run_through(small_merge().run({}))
+
+
+def _run_through(steps: Iterator[Step]) -> None:
+    try:
+        for _ in steps:
             pass
     except MapMergeError:
         log.debug("warming up ended early", exc_info=True)
     except Exception:  # nobody asked for it: who merges is told then
         log.warning("warming up failed", exc_info=True)
-    finally:
-        for bench in benches:
-            bench.close()
 
 
 def _taken(port: int) -> str:

@@ -20,6 +20,7 @@ from statistics import median
 from time import monotonic, sleep
 
 from play import play
+from process_tree import mergers, sizes
 from repository import ROOT
 from wire import WireTab, until
 
@@ -43,22 +44,20 @@ class Served:
         said = next(line for line in self.process.stdout if line.startswith("mapmeld is at "))
         self.port = int(re.findall(r":(\d+)/", said)[0])
 
-    def status(self, name: str, pid: int = 0) -> float:
+    def status(self, name: str) -> float:
         """A number of /proc/PID/status."""
-        text = Path(f"/proc/{pid or self.process.pid}/status").read_text()
+        text = Path(f"/proc/{self.process.pid}/status").read_text()
         return float(re.findall(rf"^{name}:\s+(\d+)", text, flags=re.MULTILINE)[0])
 
     @property
     def workers(self) -> list[int]:
         """The processes in which merges run."""
-        tasks = Path(f"/proc/{self.process.pid}/task").iterdir()
-        children = [int(pid) for task in tasks for pid in (task / "children").read_text().split()]
-        return [pid for pid in children if "spawn_main" in Path(f"/proc/{pid}/cmdline").read_text()]
+        return mergers(self.process.pid)
 
     @property
     def megabytes(self) -> float:
         """Of all of them together."""
-        return sum(self.status("VmRSS", pid) for pid in (self.process.pid, *self.workers)) / 1024
+        return sum(sizes(self.process.pid).values())
 
     @property
     def open_files(self) -> int:

@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 import numpy as np
+import scipy  # its parts are loaded where they are first used
 from numpy.typing import NDArray
-from scipy.fft import irfft2, next_fast_len, rfft2
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, Pose2, wrap_angle
@@ -151,12 +151,12 @@ class _Shifts:
     def __init__(self, ref: DistanceImage, mov: DistanceImage, least: float) -> None:
         self._ref, self._mov = ref, mov
         side = Turn.of(mov.far.shape, 0.0).side
-        self._size = tuple(next_fast_len(length + side, real=True) for length in ref.far.shape)
+        self._size = tuple(scipy.fft.next_fast_len(length + side, real=True) for length in ref.far.shape)
         self._need = least * min(int(ref.known.sum()), int(mov.known.sum()))
         self._ref_sums = self._sums(ref.far, ref.known.astype(np.float32))
 
     def _sums(self, far: NDArray[Any], known: NDArray[Any]) -> tuple[NDArray[Any], ...]:
-        return tuple(rfft2(part, self._size) for part in (far * known, far**2 * known, known))
+        return tuple(scipy.fft.rfft2(part, self._size) for part in (far * known, far**2 * known, known))
 
     def best(self, angle: float) -> tuple[float, Pose2]:
         """One less the least error of this turn, and the transform; −inf where the overlap is too small."""
@@ -165,8 +165,10 @@ class _Shifts:
         far = turn(self._mov.far, 1.0)
         once, squared, counted = self._ref_sums
         mov_once, mov_squared, mov_counted = (part.conj() for part in self._sums(far, known))
-        both = irfft2(counted * mov_counted, self._size)
-        off = irfft2(squared * mov_counted + counted * mov_squared - 2 * once * mov_once, self._size)
+        both = scipy.fft.irfft2(counted * mov_counted, self._size)
+        off = scipy.fft.irfft2(
+            squared * mov_counted + counted * mov_squared - 2 * once * mov_once, self._size
+        )
         error = np.where(both >= self._need, off / np.maximum(both, 1), np.inf)
         at = np.unravel_index(int(error.argmin()), error.shape)
         row, col = (

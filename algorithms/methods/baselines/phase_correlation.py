@@ -14,7 +14,7 @@ from math import ceil, pi
 from typing import Annotated
 
 import numpy as np
-from scipy.fft import fft, fft2, fftshift, ifft, next_fast_len
+import scipy  # its parts are loaded where they are first used
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, wrap_angle
@@ -96,7 +96,7 @@ def _search(ref: GridMap, mov: GridMap, config: PhaseCorrelationConfig, seed: in
     cell = common_cell(ref, mov, config.picture.pixels)
     reach = max(config.picture.reach, 1.5 * cell)
     pair = picture(ref, cell, reach), picture(mov, cell, reach)
-    size = 2 * next_fast_len(max(ceil(np.hypot(*each.far.shape)) for each in pair) + 1)
+    size = 2 * scipy.fft.next_fast_len(max(ceil(np.hypot(*each.far.shape)) for each in pair) + 1)
     half = turn_correlation(*pair, size, config.phase.frequencies)
     angles = np.arange(DIRECTIONS, dtype=np.float64) * (2 * pi / DIRECTIONS) - pi
     told = TurnsDetail(angles, np.concatenate([half, half]))
@@ -126,15 +126,17 @@ def turn_correlation(ref: DistanceImage, mov: DistanceImage, size: int, frequenc
 
     polar = []
     for each in (ref, mov):
-        amplitudes = np.log1p(np.abs(fftshift(fft2(1 - each.far.astype(np.float64), (size, size)))))
+        amplitudes = np.log1p(
+            np.abs(scipy.fft.fftshift(scipy.fft.fft2(1 - each.far.astype(np.float64), (size, size))))
+        )
         radius = max(2, int(frequencies * size / 2))
         rays = warp_polar(
             amplitudes, (size // 2, size // 2), radius=radius, output_shape=(DIRECTIONS, radius), order=1
         )[: DIRECTIONS // 2, 1:]  # the mean brightness, in the middle, has no direction
         rays = rays - rays.mean(axis=0)  # a ring that is bright all around tells no turn
         polar.append(rays / np.maximum(rays.std(axis=0), 1e-9))
-    product = fft(polar[0], axis=0) * fft(polar[1], axis=0).conj()
-    return np.asarray(ifft(product, axis=0).real.sum(axis=1) / polar[0].size, dtype=np.float64)
+    product = scipy.fft.fft(polar[0], axis=0) * scipy.fft.fft(polar[1], axis=0).conj()
+    return np.asarray(scipy.fft.ifft(product, axis=0).real.sum(axis=1) / polar[0].size, dtype=np.float64)
 
 
 def _shift(ref: DistanceImage, mov: DistanceImage, turn: Turn, size: int) -> FloatArray:

@@ -1,3 +1,5 @@
+import importlib
+import sys
 import threading
 
 import pytest
@@ -52,3 +54,27 @@ def test_a_loop_whose_code_cannot_be_kept_on_disk_is_compiled_all_the_same(compi
     namespace = {}
     exec("def twice(x):\n    return x + x\n", namespace)  # without a file there is no place to keep it
     assert compiler(namespace["twice"])(21) == 42
+
+
+def test_a_loop_may_call_another_one_that_nobody_has_called_before():
+    namespace = {"kernel": kernels.kernel}
+    exec(
+        "@kernel\ndef twice(x):\n    return x + x\n@kernel\ndef four_times(x):\n    return twice(twice(x))\n",
+        namespace,
+    )
+    assert namespace["four_times"](21) == 84
+    assert namespace["twice"](21) == 42
+
+
+def test_a_loop_that_would_have_to_be_compiled_can_be_told_from_one_that_need_not(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "a_loop_of_a_test.py").write_text("def twice(x):\n    return x + x\n")
+    twice = importlib.import_module("a_loop_of_a_test").twice
+    monkeypatch.delitem(sys.modules, "a_loop_of_a_test")
+    with kernels.kept_only(), pytest.raises(kernels.NotKeptError):
+        kernels.kernel(twice)(21)
+    assert kernels.kernel(twice)(21) == 42
+    with kernels.kept_only():
+        assert kernels.kernel(twice)(21) == 42
+        with pytest.raises(kernels.NotKeptError):
+            kernels.kernel(twice)(21.0)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import degrees, hypot
 
 import numpy as np
-from skimage.measure import block_reduce
+import skimage  # its parts are loaded where they are first used
 
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.methods.steps import AugmentDetail, ProofDetail, WindowDetail
@@ -247,7 +247,7 @@ def proof(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     top = max(float(part.max()), 1e-12)
     sheet.text(0, 11, "map 1's levels; the highest within 1, 4, 8, 16 cells", 11, bold=True)
     for k, size in enumerate((1, 4, 8, 16)):
-        pooled = block_reduce(part, (size, size), np.max)
+        pooled = skimage.measure.block_reduce(part, (size, size), np.max)
         pixels = viridis(pooled / top)
         sheet.image(np.ascontiguousarray(pixels[::-1]), 96.0 * k, 18, 90, 90)
         sheet.text(96.0 * k + 45, 121, f"{size} cell{'s' if size > 1 else ''}", 10, "middle")

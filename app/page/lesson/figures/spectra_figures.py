@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import degrees
 
 import numpy as np
-from scipy.ndimage import maximum_filter
+import scipy  # its parts are loaded where they are first used
 
 from algorithms.common.pose import FloatArray, Pose2, rotation, wrap_angle
 from algorithms.methods.steps import AugmentDetail, HoughDetail, ShiftDetail, WindowDetail
@@ -34,7 +34,7 @@ def strongest(votes: FloatArray, step: float, count: int = LINES) -> list[tuple[
     size = 2 * round(APART[0] * directions / 180) + 1, 2 * round(APART[1] / step) + 1
     edge = size[0] // 2
     round_ = np.concatenate([votes[-edge:, ::-1], votes, votes[:edge, ::-1]])
-    left = np.where(maximum_filter(round_, size)[edge : edge + directions] == votes, votes, 0.0)
+    left = np.where(scipy.ndimage.maximum_filter(round_, size)[edge : edge + directions] == votes, votes, 0.0)
     rho = (np.arange(bins) - bins // 2) * step
     found: list[tuple[float, float]] = []
     for _ in range(count):
