@@ -7,7 +7,7 @@ from math import pi
 from typing import Annotated
 
 import numpy as np
-import scipy  # its parts are loaded where they are first used
+from numpy.fft import irfft, rfft  # not scipy's, which starts threads and takes 10 MB
 
 from algorithms.common.parallel_kernels import kernel, run_in_threads
 from algorithms.common.pose import FloatArray, rotation
@@ -144,7 +144,7 @@ def correlate_turns(ref: FloatArray, mov: FloatArray) -> FloatArray:
     HS1(θ) = HS2(θ − Δθ). Ours peaks at k = +Δθ.
     """
     size = len(ref)
-    correlation = scipy.fft.irfft(scipy.fft.rfft(ref) * np.conj(scipy.fft.rfft(mov)), size)  # eq. (12)
+    correlation = irfft(rfft(ref) * np.conj(rfft(mov)), size)  # eq. (12)
     best = float(correlation.max())
     return np.asarray(correlation / best if best > 0 else correlation, dtype=np.float64)
 
@@ -192,10 +192,8 @@ def match_shift(
     ref_sums, ref_at = project(ref, ref_levels, step)
     mov_sums, mov_at = project(mov, mov_levels, step)
     size = len(ref_sums) + len(mov_sums) - 1  # padded: eqs. (15), (16) are sums without wrap
-    fast = scipy.fft.next_fast_len(size)
-    correlation = scipy.fft.irfft(
-        scipy.fft.rfft(ref_sums, fast) * scipy.fft.rfft(mov_sums[::-1], fast), fast
-    )[:size]
+    fast = fast_length(size)
+    correlation = irfft(rfft(ref_sums, fast) * rfft(mov_sums[::-1], fast), fast)[:size]
     best = float(correlation.max())
     correlation = correlation / best if best > 0 else correlation
     shifts = ref_at[0] - mov_at[-1] + np.arange(size) * step
@@ -209,6 +207,19 @@ def match_shift(
             shift += step * parabolic_offset(*correlation[k - 1 : k + 2].tolist())
         shift = min(high, max(low, shift))
     return ShiftMatch(ref_sums, mov_sums, ref_at, mov_at, shifts, correlation, low, high, shift)
+
+
+def fast_length(least: int) -> int:
+    """The next length of which a Fourier transform is quick: without a prime factor above 11."""
+    size = least
+    while True:
+        rest = size
+        for prime in (2, 3, 5, 7, 11):
+            while rest % prime == 0:
+                rest //= prime
+        if rest == 1:
+            return size
+        size += 1
 
 
 def turned(augmented: AugmentedMap, turn: float, pivot: FloatArray) -> FloatArray:

@@ -1,3 +1,5 @@
+from itertools import product
+
 import numpy as np
 import pytest
 from drawn import drawn_map, lengths
@@ -11,6 +13,7 @@ from algorithms.spectra.candidates import CandidateConfig, circular_peaks, match
 from algorithms.spectra.hough_spectra import (
     SpectraConfig,
     correlate_turns,
+    fast_length,
     hough_spectrum,
     hough_transform,
     match_shift,
@@ -150,3 +153,9 @@ def test_correlation_of_shifts_does_not_wrap_around():
     left, right = np.array([0.0, 0.05]), np.array([9.0, 9.05])
     match = match_shift(left, right, np.ones(2), np.ones(2), 0.05, -20, 20)
     assert match.shift == pytest.approx(-9.0, abs=0.03)
+
+
+def test_a_quick_length_is_the_next_one_made_of_small_primes():
+    small = {2**a * 3**b * 5**c * 7**d * 11**e for a, b, c, d, e in product(range(13), *[range(8)] * 4)}
+    for least in range(1, 3000):
+        assert fast_length(least) == min(size for size in range(least, 2 * least + 1) if size in small)

@@ -23,7 +23,7 @@ copied = pytest.mark.skipif(not FORKS, reason="every process is started anew her
 def python(code: str, *words: object, cwd: Path = ROOT, **env: str) -> list[str]:
     """What a program says on stdout, line by line; it says nothing on stderr."""
     told = subprocess.run(
-        [sys.executable, "-W", "error::DeprecationWarning:multiprocessing", "-c", code, *map(str, words)],
+        [sys.executable, "-c", code, *map(str, words)],
         capture_output=True,
         text=True,
         cwd=cwd,
