@@ -134,7 +134,7 @@ def page(
         findings.best_index(rows, METHOD, "with all candidates of the turn", rivals),
         findings.slower(rows, METHOD, rivals),
     ]
-    return Template((ROOT / "tests" / "results.in.md").read_text("utf-8")).substitute(
+    return Template((ROOT / "tests" / "tools" / "results.in.md").read_text("utf-8")).substitute(
         command="make results",
         minutes=f"{minutes:.0f}",
         findings="\n".join(map(_row, found)),
