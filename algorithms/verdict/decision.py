@@ -268,7 +268,7 @@ def _clauses(names: Sequence[str], named: Weighed, rival: Weighed | None, pivot:
             )
         elif name == "misfit":
             clauses.append(
-                f"it puts robot 2 {max(named.deviations):.1f} standard deviations from where it was seen"
+                f"robot 2 would stand {max(named.deviations):.1f} standard deviations from where it was seen"
             )
         elif name == OTHERS and rival is not None:
             clauses.append(_rivalry(named, rival, pivot))

@@ -202,8 +202,8 @@ def candidate_rows(
             (
                 f"{rank + 1}{'  + π' if candidate.twin else ''}",
                 f"{degrees(T.theta):.1f}°",
-                f"{T.x:.2f}",
-                f"{T.y:.2f}",
+                f"{T.x:.1f}",
+                f"{T.y:.1f}",
                 measure.number(looked),
                 after,
             )

@@ -243,8 +243,7 @@ class ChartsPanel:
             entitle(self._climb, charts.CLIMB[0].format(measure.row))
         if found is not None and self._new("candidates", (found, refine)):
             rows = charts.candidate_rows(found.candidates, story.courses, measure)
-            sign = measure.unit or measure.name
-            head = ("rank", "Δθ", "Δx (m)", "Δy (m)", f"{sign}, look", f"{sign}, swarm")
+            head = ("rank", "Δθ", "Δx (m)", "Δy (m)", "look", "swarm")
             self._candidates.content = table(rows, head)
         if proof is not None and self._new("proof", proof):
             self._prove(story, proof.state)
