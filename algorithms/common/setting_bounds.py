@@ -31,15 +31,18 @@ def bounds_of(config_type: Any) -> Iterator[tuple[str, Bounds]]:
                 yield field.name, extra
 
 
-def check_bounds(config: Any) -> None:
-    """Raise SettingError where a field of ``config`` lies outside its Bounds; for ``__post_init__``."""
-    for name, bounds in bounds_of(type(config)):
-        value = getattr(config, name)
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise SettingError(f"{type(config).__name__}.{name} is {value!r}; it must be a number")
-        if not (math.isfinite(value) and bounds.low <= value <= bounds.high):
-            unit = f" {bounds.unit}" if bounds.unit else ""
-            raise SettingError(
-                f"{type(config).__name__}.{name} is {value:g}{unit}; "
-                f"it must lie in [{bounds.low:g}, {bounds.high:g}]{unit}"
-            )
+@dataclass(frozen=True)
+class CheckedConfig:
+    """Settings of a stage; raises SettingError where a number lies outside its Bounds."""
+
+    def __post_init__(self) -> None:
+        for name, bounds in bounds_of(type(self)):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, (int, float)):
+                raise SettingError(f"{type(self).__name__}.{name} is {value!r}; it must be a number")
+            if not (math.isfinite(value) and bounds.low <= value <= bounds.high):
+                unit = f" {bounds.unit}" if bounds.unit else ""
+                raise SettingError(
+                    f"{type(self).__name__}.{name} is {value:g}{unit}; "
+                    f"it must lie in [{bounds.low:g}, {bounds.high:g}]{unit}"
+                )

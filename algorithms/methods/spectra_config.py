@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.map_fusion import ConflictRule
 from algorithms.observations.search_window import WindowConfig
 from algorithms.optimisation.branch_and_bound import ProofConfig
@@ -20,7 +20,7 @@ from algorithms.verdict.decision import VerdictConfig
 
 
 @dataclass(frozen=True)
-class RefineConfig:
+class RefineConfig(CheckedConfig):
     """Which optimiser refines, and how many of the candidates."""
 
     optimiser: Literal["pso", "mco", "none"] = "pso"
@@ -31,9 +31,6 @@ class RefineConfig:
     """How many of the best candidates the optimiser works on."""
     objective: Literal["gamma", "agreement"] = "gamma"
     """Gamma: eq. (17), ink on ink. Agreement: walls that coincide, less walls in the other's free floor."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import BoolArray
 from algorithms.observations.observation import Encounter
 
@@ -19,7 +19,7 @@ LEAST_MARGIN = 1e-3  # metres; a robot on top of the other was seen with no late
 
 
 @dataclass(frozen=True)
-class WindowConfig:
+class WindowConfig(CheckedConfig):
     """The window for the shift, eqs. (6)–(10), or the coupled window."""
 
     kind: Literal["coupled", "encounter", "origin"] = "encounter"
@@ -33,9 +33,6 @@ class WindowConfig:
     one more standard deviation."""
     deviations: Annotated[float, Bounds(0, 10, 0.5, "σ", "k", "sighting deviations")] = 3.0
     """How many standard deviations of range and bearing the window reaches."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from typing import Annotated
 import numpy as np
 
 from algorithms.common.pose import FloatArray, wrap_angles
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import BoolArray
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.objective import Objective
@@ -27,7 +27,7 @@ MOST_RIVALS = 5
 
 
 @dataclass(frozen=True)
-class ProofConfig:
+class ProofConfig(CheckedConfig):
     """Settings of the certificate."""
 
     whole_circle: bool = False
@@ -38,9 +38,6 @@ class ProofConfig:
     """put the seen robot at places farther apart than this."""
     patience: Annotated[int, Bounds(1, 1000, 1, "10⁵ nodes", "", "patience")] = 30
     """The search stops unproven after so many nodes, with the gap that is left."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ from typing import Annotated
 import numpy as np
 
 from algorithms.common.pose import FloatArray
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import (
     FREE,
     FREE_UP_TO,
@@ -41,7 +41,7 @@ REACH = sqrt(-2 * log(LEAST_NEARNESS))  # in standard deviations, 2.45
 
 
 @dataclass(frozen=True)
-class AgreementConfig:
+class AgreementConfig(CheckedConfig):
     """Settings of the agreement."""
 
     blur: Annotated[float, Bounds(0.02, 1, 0.01, "m", "σ_d", "blur")] = 0.1
@@ -51,9 +51,6 @@ class AgreementConfig:
     evidence: Annotated[float, Bounds(0.05, 5, 0.05, "m", "ℓ", "evidence")] = 0.25
     """Metres of wall that say as much as one measurement: neighbouring cells err alike. It weighs the
     sightings against the walls, and makes a covariance of the peak's width."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from algorithms.common.pose import FloatArray, wrap_angles
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.optimisation.optimiser import SearchState, Value, keep_inside
 from algorithms.optimisation.search_box import SearchBox
 
@@ -19,7 +19,7 @@ SETTLED_ANGLE = 0.05 * pi / 180
 
 
 @dataclass(frozen=True)
-class SwarmConfig:
+class SwarmConfig(CheckedConfig):
     """Settings of the swarm, eq. (21); the Monte-Carlo search draws as many samples."""
 
     particles: Annotated[int, Bounds(10, 2000, 10, "", "N_p", "particles")] = 400
@@ -30,9 +30,6 @@ class SwarmConfig:
     """Friction on the whole step. High: the swarm roams; low: it settles early."""
     tau: Annotated[float, Bounds(0.1, 4.0, 0.05, "", "τ", "attraction")] = 2.05
     """Pull towards the swarm's best and each particle's own best."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 def settled_within(cell: float) -> FloatArray:

@@ -9,12 +9,12 @@ from typing import Annotated
 import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.observations.search_window import CoupledWindow, Window
 
 
 @dataclass(frozen=True)
-class BoxConfig:
+class BoxConfig(CheckedConfig):
     """Half-widths of the optimiser's box around a candidate, eqs. (18)–(20).
 
     The box never leaves the window, so wide margins cost nothing where the sighting is good; narrow
@@ -27,9 +27,6 @@ class BoxConfig:
     """Half-width of the optimiser's box in y. Wider finds more and takes longer."""
     sigma_theta: Annotated[float, Bounds(0.5, 45, 0.5, "°", "σ_θ", "margin in angle")] = 5.0
     """Half-width of the optimiser's box in the turn."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import FloatArray, rotation
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import GridMap
 
 # Levels are summed in 32-bit floats, so what lies below 2^-24 of the peak can't change a sum. Such
@@ -19,7 +19,7 @@ CUT_AT = sqrt(2 * 24 * log(2))  # in standard deviations, 5.77
 
 
 @dataclass(frozen=True)
-class AugmentConfig:
+class AugmentConfig(CheckedConfig):
     """Settings of the augmentation, eq. (4)."""
 
     intensity: Annotated[float, Bounds(1, 1000, 1, "", "I_aug", "intensity")] = 100.0
@@ -31,9 +31,6 @@ class AugmentConfig:
     """Long axis over short axis of Σ_aug, its area kept. 1 is the paper's round Gaussian."""
     tilt: Annotated[float, Bounds(-90, 90, 1, "°", "Σ_aug", "tilt")] = 0.0
     """Direction of the long axis in each map's own frame; no effect while the aspect is 1."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
     def covariance(self) -> FloatArray:
         """Σ_aug: (2, 2); m²."""

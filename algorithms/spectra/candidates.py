@@ -10,7 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2, rotation, wrap_angle
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.observations.search_window import CoupledWindow, Window
 from algorithms.spectra.augmented_map import AugmentedMap
 from algorithms.spectra.hough_spectra import (
@@ -26,16 +26,13 @@ from algorithms.spectra.hough_spectra import (
 
 
 @dataclass(frozen=True)
-class CandidateConfig:
+class CandidateConfig(CheckedConfig):
     """How many answers of the spectra are followed up."""
 
     peaks: Annotated[int, Bounds(1, 12, 1, "", "", "peaks")] = 4
     """Peaks of the correlation that are tried. The paper takes the highest alone."""
     twins: bool = True
     """Try every turn + π too: a Hough spectrum has period π and cannot tell them apart."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,19 +11,16 @@ from numpy.fft import irfft, rfft  # not scipy's, which starts threads and takes
 
 from algorithms.common.parallel_kernels import kernel, run_in_threads
 from algorithms.common.pose import FloatArray, rotation
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.spectra.augmented_map import AugmentedMap
 
 
 @dataclass(frozen=True)
-class SpectraConfig:
+class SpectraConfig(CheckedConfig):
     """Settings of the Hough spectrum, eq. (11)."""
 
     directions: Annotated[int, Bounds(90, 1440, 90, "", "n_θ", "directions")] = 360
     """Directions over half a turn; 360 is one every half degree."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from math import degrees, exp
 from typing import Annotated
 
 from algorithms.common.pose import FloatArray, Pose2, pose_error
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.map_fusion import Fusion
 from algorithms.verdict.probability_model import OTHERS, VerdictModel, log_odds_over, shipped_model
 from algorithms.verdict.ranking import Weighed, probability_of
@@ -35,7 +35,7 @@ class Outcome(str, Enum):
 
 
 @dataclass(frozen=True)
-class VerdictConfig:
+class VerdictConfig(CheckedConfig):
     """When a merge is accepted, and when it is called bent."""
 
     accept_from: Annotated[float, Bounds(0.5, 0.999, 0.001, "", "P", "accept from")] = (
@@ -51,9 +51,6 @@ class VerdictConfig:
     robot_size: Annotated[float, Bounds(0, 2, 0.05, "m", "", "robot size")] = 0.4
     """So near to where a robot stood there is no wall: what a map shows there is the robot, and becomes
     floor."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True)

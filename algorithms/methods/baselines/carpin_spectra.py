@@ -16,7 +16,7 @@ import numpy as np
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, Pose2
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import UNKNOWN, GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
 from algorithms.methods.baselines.base import BaselineConfig, Found, run_direct
@@ -31,15 +31,12 @@ from algorithms.spectra.hough_spectra import SpectraConfig
 
 
 @dataclass(frozen=True)
-class RankConfig:
+class RankConfig(CheckedConfig):
     """Which of the candidates wins."""
 
     overlap: Annotated[float, Bounds(0, 1, 0.01, "", "", "least overlap")] = 0.1
     """Share of the smaller map's known cells that both maps must know. Without it a candidate whose maps
     share a few cells of floor wins: they agree on all of it."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True, kw_only=True)

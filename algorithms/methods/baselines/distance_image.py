@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.common.pose import FloatArray, Pose2, rotation
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import UNKNOWN, BoolArray, GridMap
 from algorithms.maps.wall_distance import distance_to_walls
 
@@ -19,7 +19,7 @@ MARGIN = 64  # pixels around what is known, where its rim is to be described as 
 
 
 @dataclass(frozen=True)
-class PictureConfig:
+class PictureConfig(CheckedConfig):
     """How a map becomes a picture."""
 
     reach: Annotated[float, Bounds(0.1, 3, 0.05, "m", "", "shading")] = 0.4
@@ -28,9 +28,6 @@ class PictureConfig:
     pixels: Annotated[int, Bounds(200, 3000, 100, "", "", "longest side")] = 1500
     """Pixels on the longest side of a picture; a larger map is drawn coarser. A pixel is never finer than
     the coarser map's cell."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True, eq=False)

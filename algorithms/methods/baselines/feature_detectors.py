@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import FloatArray
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.methods.baselines.distance_image import DistanceImage, Turn
 
 Described = tuple[FloatArray, NDArray[Any]]
@@ -41,7 +41,7 @@ Most = Annotated[int, Bounds(50, 5000, 50, "", "", "features")]
 
 
 @dataclass(frozen=True)
-class SiftConfig:
+class SiftConfig(CheckedConfig):
     """Blobs at all scales, each with its gradients (Lowe 2004), compared by the root of them (RootSIFT)."""
 
     most: Most = 2000
@@ -49,12 +49,9 @@ class SiftConfig:
     contrast: Annotated[float, Bounds(0.001, 0.2, 0.001, "", "", "least contrast")] = 0.02
     """Weaker blobs are left out."""
 
-    def __post_init__(self) -> None:
-        check_bounds(self)
-
 
 @dataclass(frozen=True)
-class OrbConfig:
+class OrbConfig(CheckedConfig):
     """Fast corners at several scales, each with 256 comparisons of pixels, turned upright."""
 
     most: Most = 1500
@@ -62,12 +59,9 @@ class OrbConfig:
     contrast: Annotated[int, Bounds(1, 100, 1, "", "", "least contrast")] = 5
     """Grey levels by which a corner's circle must differ from its middle."""
 
-    def __post_init__(self) -> None:
-        check_bounds(self)
-
 
 @dataclass(frozen=True)
-class SurfConfig:
+class SurfConfig(CheckedConfig):
     """Blobs at all scales, each with its Haar wavelets (Bay et al. 2008)."""
 
     most: Most = 1000
@@ -75,12 +69,9 @@ class SurfConfig:
     radius: Annotated[float, Bounds(0.3, 5, 0.1, "m", "", "around a feature")] = 1.0
     """What lies so near says which way the feature points."""
 
-    def __post_init__(self) -> None:
-        check_bounds(self)
-
 
 @dataclass(frozen=True)
-class CornerConfig:
+class CornerConfig(CheckedConfig):
     """Corners, each with the gradients around it (a SIFT descriptor of one size)."""
 
     most: Most = 600
@@ -91,9 +82,6 @@ class CornerConfig:
     """Side of the window in which the gradients must point both ways."""
     radius: Annotated[float, Bounds(0.3, 5, 0.1, "m", "", "around a corner")] = 1.5
     """What lies so near to a corner describes it, and says which way it points."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True)

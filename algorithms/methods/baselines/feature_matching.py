@@ -14,7 +14,7 @@ import numpy as np
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, Pose2
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.baselines.base import BaselineConfig, Found, run_direct
 from algorithms.methods.baselines.distance_image import MARGIN, PictureConfig, common_cell, picture
@@ -29,7 +29,7 @@ LEAST_DEVIATION = 0.01  # metres; no match of features is better
 
 
 @dataclass(frozen=True)
-class MatchConfig:
+class MatchConfig(CheckedConfig):
     """Which features are taken for the same place, and which transform is believed."""
 
     ratio: Annotated[float, Bounds(0.5, 1, 0.01, "", "", "ratio")] = 0.9
@@ -40,9 +40,6 @@ class MatchConfig:
     """Pairs of matches that RANSAC tries at most."""
     least: Annotated[int, Bounds(2, 50, 1, "", "", "agreeing matches")] = 4
     """Refused where fewer matches agree: two always do, three by chance."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True, kw_only=True)

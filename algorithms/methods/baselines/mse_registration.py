@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, Pose2, wrap_angle
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.baselines.base import BaselineConfig, Found, run_direct
 from algorithms.methods.baselines.distance_image import (
@@ -40,7 +40,7 @@ TOLD_EVERY = 10  # turns
 
 
 @dataclass(frozen=True)
-class TurnConfig:
+class TurnConfig(CheckedConfig):
     """The search through all turns and shifts."""
 
     step: Annotated[float, Bounds(1, 10, 0.5, "°", "", "turn step")] = 3.0
@@ -52,9 +52,6 @@ class TurnConfig:
     strip of free floor fits best of all."""
     kept: Annotated[int, Bounds(1, 24, 1, "", "", "refined")] = 6
     """How many of the best turns are refined."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True, kw_only=True)

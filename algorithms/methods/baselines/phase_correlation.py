@@ -18,7 +18,7 @@ import scipy  # its parts are loaded where they are first used
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, wrap_angle
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.baselines.base import BaselineConfig, Found, run_direct
 from algorithms.methods.baselines.distance_image import (
@@ -42,7 +42,7 @@ UPSAMPLED = 4  # steps per pixel of the shift
 
 
 @dataclass(frozen=True)
-class PhaseConfig:
+class PhaseConfig(CheckedConfig):
     """The turn from the spectra's amplitudes, the shift from their phases."""
 
     frequencies: Annotated[float, Bounds(0.05, 1, 0.05, "", "", "frequencies")] = 0.5
@@ -52,9 +52,6 @@ class PhaseConfig:
     overlap: Annotated[float, Bounds(0.01, 1, 0.01, "", "", "least overlap")] = 0.1
     """Share of the smaller map's known area that both maps must know. Of the turns tried, the one whose maps
     then differ least wins."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True, kw_only=True)

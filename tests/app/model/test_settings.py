@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 import pytest
 
 from algorithms.common.errors import SettingError
-from algorithms.common.setting_bounds import Bounds, check_bounds
+from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.methods.registry import METHODS
 from algorithms.methods.spectra_config import PipelineConfig
 from app.model.settings import field_docs, in_cells, settings_of, value_at, with_value, word_for
@@ -22,7 +22,7 @@ class Rule(str, Enum):
 
 
 @dataclass(frozen=True)
-class Inner:
+class Inner(CheckedConfig):
     """A stage."""
 
     width: Annotated[float, Bounds(0.5, 2.0, 0.1, "m", "σ_w", "width")] = 1.0
@@ -31,9 +31,6 @@ class Inner:
     count: Annotated[int, Bounds(1, 9, 1)] = 3
     plain: bool = True
     """On or off."""
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True)
