@@ -71,6 +71,12 @@ class MergeInputs:
         """Whether there is all that a merge needs."""
         return self.ref is not None and self.mov is not None and bool(self.observations)
 
+    def case(self) -> Case | None:
+        """The same as a case; None where a merge lacks something."""
+        if self.ref is None or self.mov is None or not self.observations:
+            return None
+        return Case(self.name or "your maps", self.ref, self.mov, self.observations, "", self.truth)
+
     def same_pair(self, other: MergeInputs) -> bool:
         """Whether these are the very maps and sightings of others."""
         mine, theirs = (self.ref, self.mov, self.observations), (other.ref, other.mov, other.observations)

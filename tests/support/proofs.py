@@ -29,3 +29,12 @@ def proof_state(**changes: Any) -> ProofState:
         proven=True,
     )
     return replace(state, **changes)
+
+
+NOWHERE: dict[str, Any] = {  # what a proof without an optimum changes of it
+    "best": None,
+    "best_value": -inf,
+    "proven": False,
+    "rivals": np.zeros((0, 3)),
+    "rival_values": np.zeros(0),
+}

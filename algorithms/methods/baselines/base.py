@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import ConflictRule, Fusion, fuse
 from algorithms.methods.merge_result import finish_merge
 from algorithms.methods.stage_runner import StageCache, StageRunner
-from algorithms.methods.steps import AnswersDetail, ObservationDetail, Step, WeighedDetail
+from algorithms.methods.steps import AnswersDetail, Detail, ObservationDetail, Step, WeighedDetail
 from algorithms.observations.observation import Encounter, Observation, encounters_of, robots_of
 from algorithms.observations.search_window import WindowConfig, coupled_window
 from algorithms.optimisation.likelihood_field import AgreementConfig
@@ -23,6 +24,22 @@ Found = tuple[AnswersDetail, FloatArray]
 """Answers, best first, and the (3, 3) covariance of x, y, theta of the best; m and rad."""
 
 Search = Callable[[StageRunner], Generator[Step, None, Found]]
+
+
+def one_stage(
+    inputs: tuple[Any, ...], make: Callable[[], Iterable[Detail]], covariance: Callable[[], FloatArray]
+) -> Search:
+    """A search of a single stage, whose last detail is its AnswersDetail.
+
+    inputs, make : as ``StageRunner.stage`` has them
+    covariance   : (3, 3) of the best answer
+    """
+
+    def search(runner: StageRunner) -> Generator[Step, None, Found]:
+        found: AnswersDetail = yield from runner.stage("search", inputs, make)
+        return found, covariance()
+
+    return search
 
 
 @dataclass(frozen=True, kw_only=True)

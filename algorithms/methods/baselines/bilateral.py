@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from algorithms.maps.grid_map import GridMap
-from algorithms.methods.baselines.base import BaselineConfig, Found, run_direct
+from algorithms.methods.baselines.base import BaselineConfig, one_stage, run_direct
 from algorithms.methods.merge_result import Answer
-from algorithms.methods.stage_runner import StageCache, StageRunner
+from algorithms.methods.stage_runner import StageCache
 from algorithms.methods.steps import AnswersDetail, Step
 from algorithms.observations.observation import Observation, bilateral_covariance, bilateral_transform
 
@@ -32,13 +32,9 @@ def run(
     raises SettingError where the observation lacks the bearing back or the observed heading
     """
     observation = observations[0]
-
-    def search(runner: StageRunner) -> Generator[Step, None, Found]:
-        found: AnswersDetail = yield from runner.stage(
-            "search",
-            (observation, method),
-            lambda: [AnswersDetail((Answer(bilateral_transform(observation), 0.0, "closed form"),))],
-        )
-        return found, bilateral_covariance(observation)
-
+    search = one_stage(
+        (observation, method),
+        lambda: [AnswersDetail((Answer(bilateral_transform(observation), 0.0, "closed form"),))],
+        lambda: bilateral_covariance(observation),
+    )
     return run_direct(ref, mov, observations, config, seed, memo, method, search, valued=False)

@@ -8,7 +8,7 @@ frequency, with all of them 8 and 7, without whitening of the shift's spectrum 8
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from math import ceil, pi
 from typing import Annotated
@@ -20,7 +20,7 @@ from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, wrap_angle
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import GridMap
-from algorithms.methods.baselines.base import BaselineConfig, Found, run_direct
+from algorithms.methods.baselines.base import BaselineConfig, one_stage, run_direct
 from algorithms.methods.baselines.distance_image import (
     DistanceImage,
     PictureConfig,
@@ -32,7 +32,7 @@ from algorithms.methods.baselines.distance_image import (
 from algorithms.methods.baselines.mse_registration import check_walls, raster_covariance
 from algorithms.methods.baselines.overlap_error import UNLIKE, OverlapError
 from algorithms.methods.merge_result import Answer
-from algorithms.methods.stage_runner import StageCache, StageRunner
+from algorithms.methods.stage_runner import StageCache
 from algorithms.methods.steps import AnswersDetail, Detail, Step, TurnsDetail
 from algorithms.observations.observation import Observation
 from algorithms.spectra.candidates import circular_peaks
@@ -75,15 +75,11 @@ def run(
 
     raises : NoAnswerError where a map has no walls, or where the maps share too little at every turn tried
     """
-
-    def search(runner: StageRunner) -> Generator[Step, None, Found]:
-        found: AnswersDetail = yield from runner.stage(
-            "search",
-            (ref, mov, config.picture, config.phase, seed, method),
-            lambda: _search(ref, mov, config, seed),
-        )
-        return found, raster_covariance(ref, mov)
-
+    search = one_stage(
+        (ref, mov, config.picture, config.phase, seed, method),
+        lambda: _search(ref, mov, config, seed),
+        lambda: raster_covariance(ref, mov),
+    )
     return run_direct(ref, mov, observations, config, seed, memo, method, search)
 
 

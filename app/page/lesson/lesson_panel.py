@@ -12,8 +12,7 @@ from app.drawing.palette import QUIET
 from app.page.lesson.equations import equations_html
 from app.page.lesson.figures.figure_registry import FigureSlider, place_of, shown
 from app.page.lesson.lesson_texts import Exercise
-from app.page.panels.html_widgets import box
-from app.page.panels.sparing import put
+from app.page.panels.html_widgets import box, put
 
 BACK, NEXT, LEAVE = "◀ Back", "Next ▶", "Leave"
 ANSWER, HIDE, PUT_BACK = "Show the answer", "Hide the answer", "Put it back"

@@ -1,9 +1,10 @@
-"""Small tables for the panels. Every text in them is escaped."""
+"""Tables and boxes for the panels, every text in them escaped; and telling a widget only what is new."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from html import escape
+from typing import Any
 
 from app.model.status_text import typeset
 
@@ -43,3 +44,10 @@ def box(text: str, mood: str, note: str = "", faded: bool = False) -> str:
         f'border-radius:4px;background:{colour}1f;font-size:13px;font-weight:600;line-height:1.4{dim}">'
         f"{escape(text)}{small}</div>"
     )
+
+
+def put(handle: Any, **values: Any) -> None:
+    """Give a widget these values, but for those that it has: each is a message, and draws it again."""
+    for name, value in values.items():
+        if getattr(handle, name) != value:
+            setattr(handle, name, value)

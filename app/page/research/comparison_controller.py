@@ -11,7 +11,6 @@ from typing import Protocol
 import numpy as np
 import viser
 
-from algorithms.files.case_folder import Case
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from app.drawing.png import png_base64
 from app.drawing.svg.thumbnail import thumbnail
@@ -126,14 +125,14 @@ class ComparisonController:
     def _run(self) -> None:
         with self._turn, self._drawing:
             i, seed = self._host.inputs, self._host.seed
-            if i.ref is None or i.mov is None or not i.observations or not self._chosen:
+            case = i.case()
+            if case is None or not self._chosen:
                 return
             self._asked = [name for name in METHODS if name in self._chosen]
             self._waiting = list(self._asked)
             for name in self._asked:
                 self._found.pop(name, None)
                 self._pictures.pop(name, None)
-            case = Case(i.name or "your maps", i.ref, i.mov, i.observations, "", i.truth)
             configs = {name: self._host.settings_for(name) for name in self._asked}
 
             def work(stop: Event) -> Iterator[tuple[OtherResult, str]]:
@@ -165,13 +164,10 @@ class ComparisonController:
                 self._host.look(guest)
 
     def _save(self) -> None:
-        i = self._pair
-        scores = [
-            ComparedRun(i.name or "your maps", name, guest.trial) for name, guest in self._found.items()
-        ]
-        if i.ref is None or i.mov is None or not scores:
+        case = self._pair.case()
+        if case is None or not self._found:
             return
-        case = Case(i.name or "your maps", i.ref, i.mov, i.observations, "", i.truth)
+        scores = [ComparedRun(case.name, name, guest.trial) for name, guest in self._found.items()]
         configs = {name: guest.config for name, guest in self._found.items()}
         self._host.save("compared.zip", lambda: contest_archive(case, scores, configs, self._host.seed))
 

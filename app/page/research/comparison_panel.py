@@ -12,7 +12,7 @@ import viser
 from algorithms.methods.registry import METHODS, Family
 from app.drawing.palette import LIGHT, QUIET
 from app.model.status_text import typeset
-from app.page.panels.sparing import put
+from app.page.panels.html_widgets import put
 from app.page.research.run_summary import RunSummary
 
 OURS, PAPER, RIVALS, ALL, NONE = "Ours", "Paper's", "Rivals", "All", "None"

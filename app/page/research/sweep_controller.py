@@ -152,15 +152,14 @@ class SweepController:
 
     def _run(self) -> None:
         with self._turn, self._drawing:
-            i = self._host.inputs
-            if i.ref is None or i.mov is None or not i.observations:
+            case = self._host.inputs.case()
+            if case is None:
                 return
             try:
                 plan = self._planned()
             except SettingError as error:
                 self._panel.say(sentence(str(error)))
                 return
-            case = Case(i.name or "your maps", i.ref, i.mov, i.observations, "", i.truth)
             self._begin(case, plan)
             self._known = done_before(case, plan, self._journal)
             jobs = len(plan.places()) - self._known

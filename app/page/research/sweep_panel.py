@@ -15,7 +15,7 @@ from algorithms.common.setting_bounds import Bounds
 from app.drawing.palette import LIGHT, QUIET, css
 from app.model.settings import Setting
 from app.model.status_text import typeset
-from app.page.panels.sparing import put
+from app.page.panels.html_widgets import put
 from app.page.research.comparison_panel import says_html
 from app.page.research.sweep_curves import AGREEMENT, Numbers, measures
 from app.page.research.sweep_request import Wanted

@@ -7,7 +7,7 @@ from math import inf, radians
 
 import numpy as np
 import pytest
-from proofs import proof_state
+from proofs import NOWHERE, proof_state
 
 from algorithms.common.pose import Pose2
 from algorithms.methods.merge_result import MergeResult
@@ -73,15 +73,8 @@ def test_a_proof_that_was_given_up_says_what_may_still_be(told):
 
 
 def test_sightings_that_exclude_each_other_and_maps_that_fit_nowhere_are_told_apart(told):
-    nothing = {
-        "best": None,
-        "best_value": -inf,
-        "proven": False,
-        "rivals": np.zeros((0, 3)),
-        "rival_values": np.zeros(0),
-    }
-    assert "every sighting" in ended(told, False, **nothing, empty=True, ceiling=0.0)
-    assert "nothing anywhere is above" in ended(told, False, **nothing, ceiling=0.0)
+    assert "every sighting" in ended(told, False, **NOWHERE, empty=True, ceiling=0.0)
+    assert "nothing anywhere is above" in ended(told, False, **NOWHERE, ceiling=0.0)
 
 
 @pytest.mark.parametrize(

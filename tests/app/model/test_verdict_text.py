@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import inf
 
-import numpy as np
 import pytest
-from proofs import proof_state
+from proofs import NOWHERE, proof_state
 
 from algorithms.common.pose import Pose2
 from algorithms.methods.merge_result import MergeResult
@@ -17,15 +15,8 @@ from app.model import verdict_text as words
 
 
 def test_a_proof_without_an_optimum_says_whether_the_sightings_or_the_maps_are_to_blame():
-    nothing = {
-        "best": None,
-        "best_value": -inf,
-        "proven": False,
-        "rivals": np.zeros((0, 3)),
-        "rival_values": np.zeros(0),
-    }
-    assert words.optimum(proof_state(**nothing, ceiling=0.0)) == "nothing fits"
-    assert words.optimum(proof_state(**nothing, empty=True)).startswith("none")
+    assert words.optimum(proof_state(**NOWHERE, ceiling=0.0)) == "nothing fits"
+    assert words.optimum(proof_state(**NOWHERE, empty=True)).startswith("none")
 
 
 def test_an_unproven_optimum_says_why():
