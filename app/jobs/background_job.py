@@ -6,6 +6,7 @@ import logging
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from threading import BoundedSemaphore, Event, RLock, Thread
+from time import perf_counter
 from typing import Any, Protocol
 
 from algorithms.common.errors import MapMergeError
@@ -28,12 +29,6 @@ def beside_the_page(jobs: int) -> Executor:
 class Asking(Protocol):
     """Who is told of the work; one call at a time, with nobody else drawing."""
 
-    def waits(self) -> None:
-        """Other tabs' work goes first."""
-
-    def begins(self) -> None:
-        """It is its turn."""
-
     def told(self, part: Any) -> None:
         """The next of what the work yields."""
 
@@ -44,9 +39,16 @@ class Asking(Protocol):
 class BackgroundJob:
     """One piece of work at a time, in a thread of its own. Nothing is told once ``stop`` has returned."""
 
-    def __init__(self, asking: Asking, drawing: RLock, name: str) -> None:
-        self._asking, self._drawing, self._name = asking, drawing, name
+    def __init__(self, asking: Asking, drawing: RLock, name: str, say: Callable[[str, float], None]) -> None:
+        """say : shows a sentence, and the share of the work that is done"""
+        self._asking, self._drawing, self._name, self._say = asking, drawing, name, say
         self._stop: Event | None = None  # of the work at hand
+        self._began = 0.0
+
+    @property
+    def seconds(self) -> float:
+        """Since it has been its turn."""
+        return perf_counter() - self._began
 
     @property
     def busy(self) -> bool:
@@ -74,13 +76,13 @@ class BackgroundJob:
 
     def _run(self, work: Callable[[Event], Iterator[Any]], stop: Event) -> None:
         if not _turns.acquire(blocking=False):
-            self._tell(stop, self._asking.waits)
+            self._tell(stop, lambda: self._say("Waits: other tabs compare or sweep already.", 0.0))
             while not _turns.acquire(timeout=LOOK_S):
                 if stop.is_set():
                     return
         why = ""
         try:
-            self._tell(stop, self._asking.begins)
+            self._tell(stop, self._begin)
             with closing(work(stop)) as parts:  # type: ignore[type-var]
                 for part in parts:
                     if not self._tell(stop, lambda part=part: self._asking.told(part)):
@@ -93,6 +95,10 @@ class BackgroundJob:
         finally:
             _turns.release()
         self._tell(stop, lambda: self._over(why))
+
+    def _begin(self) -> None:
+        self._began = perf_counter()
+        self._say("Starting.", 0.0)
 
     def _over(self, why: str) -> None:
         self._stop = None

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from threading import Event, RLock
-from time import perf_counter
 from typing import Protocol
 
 import numpy as np
@@ -58,10 +57,9 @@ class ComparisonController:
         self._asked: list[str] = []  # of the run at hand, in their order
         self._waiting: list[str] = []  # of those, whose end is not known yet
         self._guest: OtherResult | None = None
-        self._began = 0.0
-        self._work = BackgroundJob(self, drawing, "comparison")
         wishes = CompareWishes(self._run, self._stop, self._group, self._save)
         self._panel = ComparePanel(gui, wishes)
+        self._work = BackgroundJob(self, drawing, "comparison", self._panel.say)
         channel.on("pick", self._pick, method=tuple(METHODS), yes=bool)
         channel.on("show", self._show, method=tuple(METHODS))
         self._draw()
@@ -142,7 +140,6 @@ class ComparisonController:
                     yield guest, self._painted(guest, i)  # here nobody waits for it
 
             self._work.start(work)
-            self._panel.say("Starting.", 0.0)
             self._draw()
 
     def _stop(self) -> None:
@@ -173,15 +170,6 @@ class ComparisonController:
 
     # --- what the work tells ----------------------------------------------------------------------
 
-    def waits(self) -> None:
-        """Other tabs' work goes first."""
-        self._panel.say("Waits: other tabs compare or sweep already.", 0.0)
-
-    def begins(self) -> None:
-        """It is its turn."""
-        self._began = perf_counter()
-        self._panel.say("Starting.", 0.0)
-
     def told(self, part: tuple[OtherResult, str]) -> None:
         """A method has ended."""
         guest, picture = part
@@ -193,7 +181,7 @@ class ComparisonController:
     def over(self, why: str) -> None:
         """All have ended, or no further one can."""
         self._waiting.clear()
-        self._panel.say(why or f"{self._count()} It took {perf_counter() - self._began:.1f} s.")
+        self._panel.say(why or f"{self._count()} It took {self._work.seconds:.1f} s.")
         self._draw()
 
     def _count(self) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from threading import RLock
-from time import perf_counter
 from typing import Any, Protocol
 
 import viser
@@ -69,9 +68,9 @@ class SweepController:
         self._numbers: dict[tuple[Any, Any], int] = {}  # of the places of the plan
         self._configs: list[Any] = []  # there
         self._journal = Checkpoint()  # what was swept before in this tab is not merged again
-        self._began, self._known = 0.0, 0
-        self._work = BackgroundJob(self, drawing, "sweep")
+        self._known = 0
         self._panel = SweepPanel(gui, SweepWishes(self._run, self._stop, self._chose, self._draw, self._save))
+        self._work = BackgroundJob(self, drawing, "sweep", self._panel.say)
         channel.on("point", self._load, n=int)
         channel.on("along", self._along, share=float)
         self.loaded(MergeInputs())
@@ -166,7 +165,6 @@ class SweepController:
             self._work.start(
                 lambda stop: sweep(case, plan, self._executor(max(1, jobs)), self._journal, stop)
             )
-            self._panel.say("Starting.", 0.0)
             self._draw()
 
     def _begin(self, case: Case, plan: SweepPlan) -> None:
@@ -211,20 +209,11 @@ class SweepController:
 
     # --- what the work tells ----------------------------------------------------------------------
 
-    def waits(self) -> None:
-        """Other tabs' work goes first."""
-        self._panel.say("Waits: other tabs compare or sweep already.", 0.0)
-
-    def begins(self) -> None:
-        """It is its turn."""
-        self._began = perf_counter()
-        self._panel.say("Starting.", 0.0)
-
     def told(self, part: SweepPoint) -> None:
         """A point is there."""
         self._points[self._numbers[part.x, part.y]] = part
         done, total = len(self._points), len(self._numbers)
-        fresh, seconds = done - self._known, perf_counter() - self._began
+        fresh, seconds = done - self._known, self._work.seconds
         left = ""
         if fresh > 0 and done < total:
             left = f" About {max(1, round(seconds / fresh * (total - done)))} s left."
@@ -234,7 +223,7 @@ class SweepController:
     def over(self, why: str) -> None:
         """All points are there, or no further one can be."""
         lost = next((point.failed for point in self._points.values() if point.failed), "")
-        said = f"{self._count()} It took {perf_counter() - self._began:.1f} s."
+        said = f"{self._count()} It took {self._work.seconds:.1f} s."
         self._panel.say(why or (f"{said} Could not be run: {sentence(lost)}" if lost else said))
         self._draw()
 

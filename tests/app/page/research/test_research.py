@@ -54,11 +54,8 @@ class Listener:
     def __init__(self):
         self.heard = []
 
-    def waits(self):
-        self.heard.append("waits")
-
-    def begins(self):
-        self.heard.append("begins")
+    def say(self, words, share):
+        self.heard.append(words.partition(":")[0])
 
     def told(self, part):
         self.heard.append(part)
@@ -70,7 +67,7 @@ class Listener:
 @pytest.fixture
 def work():
     listener = Listener()
-    found = BackgroundJob(listener, RLock(), "test")
+    found = BackgroundJob(listener, RLock(), "test", listener.say)
     yield found, listener.heard
     found.stop()
 
@@ -79,7 +76,7 @@ def test_work_is_told_part_by_part_and_then_that_it_is_over(work):
     found, heard = work
     found.start(lambda _: (n for n in (1, 2)))
     settled(lambda: not found.busy, "its end")
-    assert heard == ["begins", 1, 2, ("over", "")]
+    assert heard == ["Starting.", 1, 2, ("over", "")]
 
 
 def test_what_goes_wrong_is_told_as_the_reason(work):
@@ -112,7 +109,7 @@ def test_nothing_is_told_once_work_was_stopped_and_it_is_left_at_once(work):
     assert found.stop()
     seen = list(heard)
     assert left.wait(30)
-    assert heard == seen == ["begins", 1]
+    assert heard == seen == ["Starting.", 1]
     assert not found.stop()
 
 
@@ -122,12 +119,12 @@ def test_only_so_many_work_at_once_and_one_that_waits_can_be_stopped(work, monke
     monkeypatch.setattr(background, "_turns", turns)
     assert turns.acquire(blocking=False)
     found.start(lambda _: (n for n in (1,)))
-    settled(lambda: heard == ["waits"], "the word that it waits")
+    settled(lambda: heard == ["Waits"], "the word that it waits")
     found.stop()
     found.start(lambda _: (n for n in (2,)))
     turns.release()
     settled(lambda: not found.busy, "its end")
-    assert heard[-3:] == ["begins", 2, ("over", "")]
+    assert heard[-3:] == ["Starting.", 2, ("over", "")]
 
 
 def niceness(_, order):
