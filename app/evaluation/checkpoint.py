@@ -34,7 +34,7 @@ class Checkpoint:
             try:
                 told = json.loads(line)
                 self._known[told["key"]] = told["record"]
-            except (ValueError, KeyError, TypeError):
+            except (ValueError, KeyError, TypeError):  # torn by a stop: that point is worked out again
                 continue
 
     def get(self, key: str) -> Record | None:

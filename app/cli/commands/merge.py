@@ -186,7 +186,7 @@ def _leave(folder: Path, files: Mapping[str, bytes], stale: Sequence[str]) -> li
     for name in reversed(stale):  # what names another file goes before it
         try:
             (folder / name).unlink()
-        except FileNotFoundError:
+        except FileNotFoundError:  # as it should be
             continue
         except OSError as error:
             raise OutputError(

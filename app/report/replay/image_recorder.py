@@ -61,7 +61,7 @@ class PictureScene:
         self.shown: list[PictureHandle] = []
         self.ghost: FrameHandle | None = None
 
-    def add_frame(self, name: str, *, show_axes: bool, wxyz: tuple[float, ...] = (1, 0, 0, 0)) -> FrameHandle:
+    def add_frame(self, name: str, *, wxyz: tuple[float, ...] = (1, 0, 0, 0), **_: Any) -> FrameHandle:
         """A frame of the tree; those that move are told by the page or, for the ghost, read here."""
         frame = FrameHandle(wxyz)
         if name.endswith("/ghost"):
