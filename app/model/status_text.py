@@ -110,7 +110,7 @@ def sentence(story: RunState) -> str:
     if isinstance(detail, TriedDetail):
         return f"Refused. Why? {detail.index + 1} of {detail.total}: {detail.clause}?"
     if isinstance(detail, MergeResult):
-        return detail.verdict.reason
+        return typeset(detail.verdict.reason)
     return "Starting."
 
 

@@ -250,7 +250,7 @@ class Telling(Part):
         if result.method == BY_HAND:
             reason = verdict_text.of_hand(result, taken=True)
         brief = f"{found} {reason.split(':')[0]}."
-        self._stage.hud(state=brief if found and self._run.view == SWARM else reason)
+        self._stage.hud(state=words.typeset(brief if found and self._run.view == SWARM else reason))
 
     def _maps_preview(self, job: MergeJob) -> None:
         if self._run.view == MAP:

@@ -37,12 +37,16 @@ def table(rows: Iterable[tuple[str, ...]], head: tuple[str, ...] = (), faded: bo
 def box(text: str, mood: str, note: str = "", faded: bool = False) -> str:
     """HTML of a sentence in a coloured box; mood is accepted, bent, refused or plain."""
     colour = {"accepted": "#009E73", "bent": "#E69F00", "refused": "#D55E00"}.get(mood, "#6B7280")
-    small = f'<div style="font-weight:400;margin-top:4px;opacity:.85">{escape(note)}</div>' if note else ""
+    small = (
+        f'<div style="font-weight:400;margin-top:4px;opacity:.85">{escape(typeset(note))}</div>'
+        if note
+        else ""
+    )
     dim = ";opacity:.4" if faded else ""
     return (
         f'<div style="margin:4px 10px 8px;padding:8px 10px;border-left:4px solid {colour};'
         f'border-radius:4px;background:{colour}1f;font-size:13px;font-weight:600;line-height:1.4{dim}">'
-        f"{escape(text)}{small}</div>"
+        f"{escape(typeset(text))}{small}</div>"
     )
 
 
