@@ -21,7 +21,9 @@ from app.jobs.forked_start import FORKS, start_parent
 from app.jobs.runner import RunCallbacks
 from app.jobs.warm_up import small_merge
 from app.jobs.warm_up import warm_up as warm_up_there
+from app.model.merge_inputs import MergeInputs
 from app.page.page import Page
+from app.page.undo_history import SavedTab
 from app.system.logging_setup import facts
 from app.system.memory import MemoryCleanup
 from app.web.cell_quota import CellQuota
@@ -66,7 +68,8 @@ def make_server(
     camera.position, camera.look_at, camera.up = (0.0, 0.0, 600.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)
     camera.fov, camera.near, camera.far = radians(4), 10.0, 5000.0
     pages: dict[int, Page] = {}
-    keep = SessionStore()
+    first = MergeInputs.of(initial) if initial else MergeInputs()
+    keep: SessionStore[SavedTab] = SessionStore()
     quota = CellQuota(make_room=keep.forget_all)
     housekeeping = MemoryCleanup()
     visited = False
@@ -81,7 +84,7 @@ def make_server(
         if not visited:
             visited = True
             _aside(warm_up_here)
-        pages[client.client_id] = Page(client, initial, keep, server.uploads, lesson, quota)
+        pages[client.client_id] = Page(client, first, keep, server.uploads, quota, lesson)
 
     @server.on_client_disconnect
     def _(client: viser.ClientHandle) -> None:

@@ -1,85 +1,78 @@
-"""Undo and redo of one tab: what is written down, what is shown of it, and what asks to go back."""
+"""Undo and redo: puts the page back as it was."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-from threading import RLock
-
-import viser
-
-from app.model.run_state import RunState
-from app.page.page_snapshot import PageSnapshot, change, first_label
-from app.page.panels.history_panel import HistoryPanel
-from app.page.undo_history import UndoHistory, UndoStep
+from app.page.inputs_controller import InputsController
+from app.page.modes import ModeSwitch
+from app.page.page_display import PageDisplay
+from app.page.page_snapshot import PageSnapshot
+from app.page.page_state import PageState
+from app.page.panel_set import Panels
+from app.page.run_controller import RunController
+from app.page.undo_history import UndoHistory
 from app.web.browser_events import BrowserEvents
 
 
 class UndoController:
-    """Keeps the history and its folder.
-
-    turn    : held while a person's wish is carried out, so that wishes come one after the other
-    restore : puts a desk back on the page
-    """
+    """Of one tab."""
 
     def __init__(
-        self, gui: viser.GuiApi, channel: BrowserEvents, turn: RLock, restore: Callable[[PageSnapshot], None]
+        self,
+        state: PageState,
+        display: PageDisplay,
+        panels: Panels,
+        modes: ModeSwitch,
+        history: UndoHistory,
+        runs: RunController,
+        inputs: InputsController,
+        events: BrowserEvents,
     ) -> None:
-        self._turn, self._restore = turn, restore
-        self._panel = HistoryPanel(gui)
-        self.history: UndoHistory | None = None  # before anything was on the page
-        channel.on("step", self.step, by=int)
-        channel.on("go", self.go, to=int)
-
-    def resume(self, history: UndoHistory) -> None:
-        """Go on where an earlier tab was."""
-        with self._turn:
-            self.history = history
-            self._restore(history.desk)
-            self._panel.show(history)
-
-    def note(self, desk: PageSnapshot, label: str = "") -> bool:
-        """Write down the desk after a wish; whether there is anything new about it.
-
-        label : what was done; otherwise it is told by what has changed
-        """
-        if self.history is None:
-            self.history = UndoHistory(UndoStep(label or first_label(desk), desk))
-        else:
-            found, kind = change(self.history.desk, desk)
-            if not (found or label):
-                return False
-            self.history.record(label or found, desk, None if label else kind)
-        self._panel.show(self.history)
-        return True
-
-    def amend(self, outcome: RunState) -> None:
-        """What was asked for has come out."""
-        if self.history is not None:
-            self.history.amend(replace(self.history.desk, outcome=outcome))
-            self._panel.show(self.history)
-
-    def leave(self) -> None:
-        """What was asked for is not wanted any more: whoever comes back to it finds what it began with."""
-        desk = self.desk
-        if self.history is not None and desk is not None and desk.outcome is None and not desk.held:
-            self.history.amend(replace(desk, goal=None))
-
-    @property
-    def desk(self) -> PageSnapshot | None:
-        """The desk at hand."""
-        return None if self.history is None else self.history.desk
+        self._state, self._display, self._panels, self._modes = state, display, panels, modes
+        self.history, self._runs, self._inputs = history, runs, inputs
+        history.changed = lambda: panels.history.show(history)
+        events.on("step", self.step, by=int)
+        events.on("go", self.go, to=int)
 
     def step(self, by: int) -> None:
         """Undo (−1) or redo (1)."""
-        with self._turn:
-            if self.history is not None:
-                self.go(self.history.position + by)
+        with self._state.locks.action:
+            self.go(self.history.position + by)
 
     def go(self, to: int) -> None:
-        """Go to an entry by its number; nowhere where there is none."""
-        with self._turn:
-            desk = self.history.go(to) if self.history is not None else None
-            if self.history is not None and desk is not None:
-                self._restore(desk)
-                self._panel.show(self.history)
+        """Go to a step by its number; nowhere where there is none."""
+        with self._state.locks.action:
+            snapshot = self.history.go(to)
+            if snapshot is not None:
+                self.restore(snapshot)
+
+    def go_to(self, snapshot: PageSnapshot, label: str = "") -> None:
+        """Put a snapshot on the page as a new step."""
+        self.history.note(snapshot, label)
+        self.restore(snapshot)
+
+    def restore_current(self) -> None:
+        """Put the page back as it is recorded."""
+        if self.history.snapshot is not None:
+            self.restore(self.history.snapshot)
+
+    def restore(self, snapshot: PageSnapshot) -> None:
+        """Put the page back: as it was, or worked out again where the outcome has been let go of."""
+        state, s = self._state, snapshot
+        self._runs.thread.stop()
+        mode = self._modes.close()
+        self._runs.set_method(s.method, s.config, s.seed)
+        self._panels.files.restore(s.files)
+        with state.locks.drawing:
+            bare = s.goal is None or (s.goal == "candidates" and state.result is not None)
+            if s.inputs is not state.inputs or bare:
+                self._inputs.show(s.inputs)
+            if s.result is None:
+                self._display.views.comparison.clear()
+            state.update(goal=s.goal, files=s.files)
+            if s.outcome is not None and s.result is not None:
+                self._runs.show_answer(s.outcome, s.result, s.config, live=False)
+                self._display.messages.flush()
+            if not self._modes.resume(s, mode) and s.goal is not None and s.result is None:
+                job = state.job(goal=s.goal)
+                if job is not None:
+                    self._runs.thread.request(job)

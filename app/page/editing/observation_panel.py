@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import degrees, radians
 from typing import Any
 
@@ -43,18 +42,6 @@ FIELDS: dict[str, tuple[str, str, float, float, float]] = {
 ANGLES = {"turn1", "bearing", "sigma_bearing", "turn2"}
 
 
-@dataclass(frozen=True)
-class PlacingWishes:
-    """What a person can ask for here."""
-
-    toggle: Callable[[], None]
-    typed: Callable[[str, float], None]  # a field and its new value; metres, radians; in viser's loop
-    choose: Callable[[int], None]
-    add: Callable[[], None]
-    remove: Callable[[], None]
-    save: Callable[[], None]
-
-
 class ObservationPanel:
     """Shows where the robots were and what one saw of the other; its widgets only ask."""
 
@@ -86,26 +73,41 @@ class ObservationPanel:
                 hint="observation.yaml, to be loaded again.",
             )
 
-    def listen(self, wishes: PlacingWishes) -> None:
-        """Ask here for what a person wants."""
-        self._toggle.on_click(lambda _: wishes.toggle())
-        self._add.on_click(lambda _: wishes.add())
-        self._remove.on_click(lambda _: wishes.remove())
-        self._save.on_click(lambda _: wishes.save())
+    def connect(
+        self,
+        toggle: Callable[[], None],
+        typed: Callable[[str, float], None],
+        choose: Callable[[int], None],
+        add: Callable[[], None],
+        remove: Callable[[], None],
+        save: Callable[[], None],
+    ) -> None:
+        """What is done where a person begins or ends to place the robots, and meanwhile.
+
+        typed  : a field and its new value; metres, radians; called in viser's loop
+        choose : the number of an observation, from 0
+        """
+        for button, action in (
+            (self._toggle, toggle),
+            (self._add, add),
+            (self._remove, remove),
+            (self._save, save),
+        ):
+            button.on_click(lambda _, action=action: action())
 
         @self._which.on_update
         def _(event: viser.GuiEvent[Any]) -> None:
             if event.client_id is not None:
-                wishes.choose(int(self._which.value) - 1)
+                choose(int(self._which.value) - 1)
 
         for name, handle in self._fields.items():
 
-            async def typed(event: viser.GuiEvent[Any], name: str = name) -> None:  # before it is overwritten
+            async def read(event: viser.GuiEvent[Any], name: str = name) -> None:  # before it is overwritten
                 if event.client_id is not None:  # not set from here
                     value = float(event.target.value)
-                    wishes.typed(name, radians(value) if name in ANGLES else value)
+                    typed(name, radians(value) if name in ANGLES else value)
 
-            handle.on_update(typed)
+            handle.on_update(read)
 
     def show(self, inputs: MergeInputs) -> None:
         """Show the numbers of these inputs; nothing is being placed."""

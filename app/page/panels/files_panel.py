@@ -25,7 +25,6 @@ from app.system.cancellation import CancellableReader, Cancelled, Check, unwatch
 
 NONE = "(choose)"
 TAKEN = viser.UploadedFile("", b"")  # what a button holds that holds no file any more
-Report = Callable[[MapMergeError], None]
 
 
 # key -> label of the button, what the picker offers
@@ -111,28 +110,27 @@ def inputs_from(
 
 
 class FilesPanel:
-    """Chooses what is merged. ``load`` gets the inputs, ``report`` what is wrong with a file."""
+    """Chooses what is merged.
+
+    save   : sends a file to the person
+    action : held while an action of the person is carried out
+    task   : says what is being done, where it takes a while, and lets it be left
+    """
 
     def __init__(
         self,
         gui: viser.GuiApi,
-        load: Callable[[MergeInputs], None],
-        report: Report,
         chosen: str,
         save: Callable[[str, bytes], None],
-        turn: RLock | None = None,
-        task: CancellableTask | None = None,
+        action: RLock,
+        task: CancellableTask,
     ) -> None:
-        """save : sends a file to the person
-        task : says what is being done, where it takes a while, and lets it be left
-        """
-        self._load, self._report, self._task = load, report, task
         self._uploads: dict[str, Upload] = {}
         self._known: Known = {}
         self._placed = False
         # viser calls back from a thread of its own for each file: two that were dropped together must
         # not be read, and shown, across each other
-        self._turn = turn or RLock()
+        self._action, self._task = action, task
         samples = paths.samples()
         names = [chosen] if chosen and chosen not in samples else []
         with gui.add_folder("Maps", order=10.0):
@@ -152,10 +150,14 @@ class FilesPanel:
                     if key.startswith("image"):
                         number = int(key[-1])
                         use = partial(self._take, f"yaml{number}")
-                        self._forms[number] = ImageForm(gui, number, self._turn, use, save)
+                        self._forms[number] = ImageForm(gui, number, self._action, use, save)
                 self._forget_them = gui.add_button("Forget uploads", color=QUIET, visible=False)
                 self._forget_them.on_click(lambda _: self._forget())
         self._taken = chosen or NONE
+
+    def connect(self, load: Callable[[MergeInputs], None], report: Callable[[MapMergeError], None]) -> None:
+        """What is done with the inputs that were chosen, and where a file cannot be used."""
+        self._load, self._report = load, report
 
     @property
     def files(self) -> Files:
@@ -164,7 +166,7 @@ class FilesPanel:
 
     def restore(self, files: Files) -> None:
         """Show again where inputs came from, and load nothing."""
-        with self._turn:
+        with self._action:
             self._uploads = dict(files.uploads)
             self._offer_forms()
             self._tell()
@@ -179,7 +181,7 @@ class FilesPanel:
             self._tell()
 
     def _take_sample(self) -> None:
-        with self._turn:
+        with self._action:
             name = self._sample.value
             folder = paths.samples().get(name)
             if folder is None or name == self._taken:
@@ -207,7 +209,7 @@ class FilesPanel:
         self._take(key, Upload(_short(file.name) or key, file.content))
 
     def _take(self, key: str, upload: Upload) -> None:
-        with self._turn:
+        with self._action:
             before = dict(self._uploads)
             self._uploads[key] = upload
             text = self._uploads.get(key.replace("image", "yaml"))
@@ -229,7 +231,7 @@ class FilesPanel:
 
     def _read(self, upload: Upload) -> MergeInputs:
         """What the files make up now that this one has come; raises Cancelled where Stop was pressed."""
-        if self._task is None or not _large(upload):
+        if not _large(upload):
             self._offer_forms()
             return inputs_from(self._uploads, self._known)
         with self._task(f"Reading {upload.name}, {len(upload.content) / 1e6:.3g} MB.") as check:
@@ -242,7 +244,7 @@ class FilesPanel:
             form.show(self._uploads.get(f"image{number}"), self._uploads.get(f"yaml{number}"), check)
 
     def _forget(self) -> None:
-        with self._turn:
+        with self._action:
             self._uploads.clear()
             self._offer_forms()
             self._show(MergeInputs())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from threading import Lock
 
 import viser
@@ -13,52 +12,32 @@ from app.drawing.palette import LIGHT, QUIET
 from app.model.playback import PACES
 from app.model.view_modes import HEIGHTS, LESSON, MAP, MUSEUM, SWARM
 
-
-@dataclass(frozen=True)
-class Wishes:
-    """What a person can ask for here."""
-
-    merge: Callable[[], None]
-    stop: Callable[[], None]
-    speed: Callable[[], None]
-    view: Callable[[], None]
-    method: Callable[[str], None]
-    changed: Callable[[], None]
-    fit: Callable[[], None]
-    dark: Callable[[bool], None]
-    learn: Callable[[str], None]
+NAMES = {method.title: name for name, method in METHODS.items()}
 
 
 class RunPanel:
     """Widgets; they know nothing of a run."""
 
-    def __init__(self, gui: viser.GuiApi, wishes: Wishes) -> None:
+    def __init__(self, gui: viser.GuiApi) -> None:
         self.merge = gui.add_button("Merge", color=LIGHT.ref, icon=viser.Icon.ARROWS_JOIN, order=1)
-        self.merge.on_click(lambda _: wishes.merge())
         self._at_work: set[str] = set()  # who can be stopped
         self._counting = Lock()  # they begin and end in threads of their own
         self.stop = gui.add_button(
             "Stop", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, disabled=True, order=2
         )
-        self.stop.on_click(lambda _: wishes.stop())
         hint = "How long each step stays. Instant: as fast as it is computed."
         self._speed = gui.add_button_group("Speed", tuple(PACES), order=3, hint=hint)
         self._speed.value = "Normal"
-        self._speed.on_click(lambda _: wishes.speed())
         self._view = gui.add_button_group("View", (MAP, HEIGHTS, SWARM), order=4)
-        self._view.on_click(lambda _: wishes.view())
         hint = (
             "Lesson: the method step by step on these maps. Museum: where it goes wrong, and what cures it."
         )
         self._learn = gui.add_button_group("Learn", (LESSON, MUSEUM), order=4.7, hint=hint)
-        self._learn.on_click(lambda _: wishes.learn(self._learn.value))
         self._open: list[str] = []  # which of them are
         with gui.add_folder("Run", order=50):
-            titles = {method.title: name for name, method in METHODS.items()}
             self._method = gui.add_dropdown(
-                "Method", tuple(titles), hint="The way to merge; each has its own defaults."
+                "Method", tuple(NAMES), hint="The way to merge; each has its own defaults."
             )
-            self._method.on_update(lambda _: wishes.method(titles[self._method.value]))
             self._seed = gui.add_number(
                 "Seed",
                 0,
@@ -67,12 +46,36 @@ class RunPanel:
                 step=1,
                 hint="Random seed: the same seed gives the same answer.",
             )
-            # where it is set from here, nobody has wished for anything
-            self._seed.on_update(lambda event: wishes.changed() if event.client_id is not None else None)
             self._follow = gui.add_checkbox("Camera follows", True, hint="The camera goes with the run.")
-            gui.add_button("Show everything", color=QUIET).on_click(lambda _: wishes.fit())
+            self._fit = gui.add_button("Show everything", color=QUIET)
             self._dark = gui.add_checkbox("Dark", False, hint="Light writing on a dark page.")
-            self._dark.on_update(lambda _: wishes.dark(self._dark.value))
+
+    def connect_run(
+        self,
+        merge: Callable[[], None],
+        stop: Callable[[], None],
+        speed: Callable[[], None],
+        method: Callable[[str], None],
+        seed: Callable[[], None],
+    ) -> None:
+        """What is done where a person wants a merge, or another speed, method or seed of it."""
+        self.merge.on_click(lambda _: merge())
+        self.stop.on_click(lambda _: stop())
+        self._speed.on_click(lambda _: speed())
+        self._method.on_update(lambda _: method(NAMES[self._method.value]))
+        self._seed.on_update(lambda event: seed() if event.client_id is not None else None)
+
+    def connect_view(
+        self, view: Callable[[str], None], fit: Callable[[], None], dark: Callable[[bool], None]
+    ) -> None:
+        """What is done where a person wants to see it otherwise."""
+        self._view.on_click(lambda event: view(self._view.value) if event.client_id is not None else None)
+        self._fit.on_click(lambda _: fit())
+        self._dark.on_update(lambda _: dark(self._dark.value))
+
+    def connect_learn(self, lesson: Callable[[], None], museum: Callable[[], None]) -> None:
+        """What is done where a person opens or closes the lesson or the museum."""
+        self._learn.on_click(lambda _: lesson() if self._learn.value == LESSON else museum())
 
     @property
     def view(self) -> str:

@@ -63,32 +63,31 @@ def _in_metres(setting: Setting) -> bool:
 
 
 class SettingsPanel:
-    """Owns the config. ``changed`` is called after every change by the person, in the same turn: nobody else
-    gets one before everything that goes by the config has heard of it.
+    """Shows a config, and makes another one as its sliders are moved.
+
+    action : held while a change by the person is carried out, ``changed`` included: nobody else gets it
+             before everything that goes by the config knows of it
     """
 
-    def __init__(
-        self,
-        gui: viser.GuiApi,
-        changed: Callable[[], None],
-        report: Callable[[MapMergeError], None],
-        turn: RLock | None = None,
-    ) -> None:
-        self._gui, self._changed, self._report = gui, changed, report
+    def __init__(self, gui: viser.GuiApi, action: RLock) -> None:
+        self._gui, self._action = gui, action
         self._handles: dict[Path, Any] = {}
         self._settings: dict[Path, Setting] = {}
         self._folders: dict[str, Any] = {}
         self._notes: dict[str, Any] = {}
         self._cells: tuple[float, ...] = ()
-        self._turn = turn or RLock()  # widgets call back from many threads
         self._writer = 0  # a value that is written calls back at once, half-way through the others
         self.method = DEFAULT_METHOD
         self.config: Any = METHODS[self.method].defaults
         self._build()
 
+    def connect(self, changed: Callable[[], None], report: Callable[[MapMergeError], None]) -> None:
+        """What is done where a person has changed a setting, or set what cannot be."""
+        self._changed, self._report = changed, report
+
     def choose(self, method: str) -> None:
         """Take another method, at its defaults."""
-        with self._turn:
+        with self._action:
             if method == self.method:
                 return
             self._take(method, METHODS[method].defaults)
@@ -96,7 +95,7 @@ class SettingsPanel:
 
     def restore(self, method: str, config: Any) -> None:
         """Show this method with these settings."""
-        with self._turn:
+        with self._action:
             if method != self.method:
                 self._take(method, METHODS[method].defaults)
             self.config = config
@@ -197,7 +196,7 @@ class SettingsPanel:
     def _read(self) -> None:
         if self._writer == get_ident():
             return
-        with self._turn:
+        with self._action:
             try:
                 config = self.read()
             except SettingError as error:
@@ -212,7 +211,7 @@ class SettingsPanel:
             self._changed()
 
     def _reset(self, mine: tuple[Path, ...]) -> None:
-        with self._turn:
+        with self._action:
             config = self.config
             if not self._settings.keys() >= set(mine):  # of a method that has given way meanwhile
                 return

@@ -32,19 +32,6 @@ State = Literal["idle", "waits", "runs", "done"]
 
 
 @dataclass(frozen=True)
-class CompareWishes:
-    """What a person can ask for here; what is pressed in a card comes by the channel.
-
-    group : all methods of a group, and no others
-    """
-
-    run: Callable[[], None]
-    stop: Callable[[], None]
-    group: Callable[[str], None]
-    save: Callable[[], None]
-
-
-@dataclass(frozen=True)
 class Card:
     """All that a card shows.
 
@@ -66,16 +53,13 @@ class Card:
 class ComparePanel:
     """Widgets; they know nothing of a run."""
 
-    def __init__(self, gui: viser.GuiApi, wishes: CompareWishes) -> None:
+    def __init__(self, gui: viser.GuiApi) -> None:
         gui.add_html(f'<p style="{SMALL}">{INTRO}</p>')
-        groups = gui.add_button_group("", (OURS, PAPER, RIVALS, ALL, NONE), hint=HINT)
-        groups.on_click(lambda _: wishes.group(groups.value))
+        self._groups = gui.add_button_group("", (OURS, PAPER, RIVALS, ALL, NONE), hint=HINT)
         self._run = gui.add_button("Compare methods", color=LIGHT.ref, icon=viser.Icon.SCALE, disabled=True)
-        self._run.on_click(lambda _: wishes.run())
         self._stop = gui.add_button(
             "Stop comparing", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, visible=False
         )
-        self._stop.on_click(lambda _: wishes.stop())
         self._says = gui.add_html(says_html(""))
         self._cards: dict[str, viser.GuiHtmlHandle] = {}
         for family, (title, _) in FAMILIES.items():
@@ -90,7 +74,21 @@ class ComparePanel:
             visible=False,
             hint="A zip: a table of the methods, every transform, the merged maps side by side.",
         )
-        self._save.on_click(lambda _: wishes.save())
+
+    def connect(
+        self,
+        run: Callable[[], None],
+        stop: Callable[[], None],
+        group: Callable[[str], None],
+        save: Callable[[], None],
+    ) -> None:
+        """What is done where a person compares; what is pressed in a card comes by the browser's events.
+
+        group : ticks all methods of a group, and no others
+        """
+        for button, action in ((self._run, run), (self._stop, stop), (self._save, save)):
+            button.on_click(lambda _, action=action: action())
+        self._groups.on_click(lambda _: group(self._groups.value))
 
     def possible(self, count: int, ready: bool, busy: bool, harvest: bool) -> None:
         """How many methods are chosen, whether there is a pair, whether they run, whether any has ended."""

@@ -242,7 +242,7 @@ def test_a_closed_session_ends_its_thread(start, ear):
     session.close()
     session._worker.join(PATIENCE)
     assert not session._worker.is_alive()
-    assert session.bench.closed
+    assert session.runner.closed
 
 
 def test_known_steps_are_played_again_only_when_asked_for():

@@ -9,13 +9,13 @@ import pytest
 import viser
 from hypothesis import given
 from hypothesis import strategies as st
+from panels import files_panel
 
 from algorithms.common.pose import Pose2
 from algorithms.files.map_file import MapMeta, image_map_from_bytes, meta_to_bytes, parse_meta
 from algorithms.files.thresholds import MODES, Shading
 from algorithms.maps.grid_map import COARSEST, FINEST, FREE, MOST_TURN, OCCUPIED, UNKNOWN
 from app.model.merge_inputs import Files
-from app.page.panels.files_panel import FilesPanel
 from app.page.panels.image_form import doubt_about, shares
 
 # 3 x 2 pixels: white, grey, black above; black, white, white below
@@ -36,7 +36,7 @@ class Desk:
 
     def __init__(self, gui: viser.GuiApi) -> None:
         self.loaded, self.reports, self.saved = [], [], {}
-        self.panel = FilesPanel(gui, self.loaded.append, self.reports.append, "", self.saved.__setitem__)
+        self.panel = files_panel(gui, self.loaded.append, self.reports.append, self.saved.__setitem__)
 
     def upload(self, key: str, name: str, content: bytes) -> None:
         self.panel._take_upload(key, viser.UploadedFile(name, content))
