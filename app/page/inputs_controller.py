@@ -59,8 +59,7 @@ class InputsController:
             return False
         self._runs.thread.stop()  # a run of others may have been asked for while this waited for its turn
         try:
-            grids = [grid for grid in (inputs.ref, inputs.mov) if grid is not None]
-            self._quota.claim(self, sum(grid.cells.size for grid in grids))
+            self._quota.claim(self, sum(grid.cells.size for grid in inputs.grids))
             layout = lay_out(inputs.ref, inputs.mov, inputs.at)
         except MapMergeError as error:
             self._notices.report(error)

@@ -65,20 +65,19 @@ class PageDisplay:
     def show_inputs(self, layout: SceneLayout) -> None:
         """Both maps side by side, as they were loaded."""
         state, panels, inputs = self._state, self._panels, self._state.inputs
-        grids = [grid for grid in (inputs.ref, inputs.mov) if grid is not None]
         panels.transform.offer(inputs.complete)
         panels.observation.show(inputs)
         panels.charts.clear()
         self.views.heights.hide()
         self.views.comparison.clear()
-        if any(grid.cells.size >= LARGE for grid in grids):
+        if any(grid.cells.size >= LARGE for grid in inputs.grids):
             self.messages.hud(state="Drawing the maps.", mood="running", progress=0.6)
             self.messages.flush()
         self.views.map.load(inputs, layout, state.palette)
         self.show_view()
         self.views.map.apart()
         self.clear_read_out()
-        panels.settings.resolutions(*(grid.resolution for grid in grids))
+        panels.settings.resolutions(*(grid.resolution for grid in inputs.grids))
         panels.run.merge.disabled = not inputs.complete
         panels.export.offer(None)
         panels.what_if.offer(None)
@@ -90,7 +89,7 @@ class PageDisplay:
             mood="refused" if doubt else "idle",
             progress=None,
             frames=layout.frames(),
-            measure=bool(grids),
+            measure=bool(inputs.grids),
             legend=legend(state.palette, MAP, state.run),
         )
 

@@ -60,9 +60,7 @@ class PageSnapshot:
 
     def arrays(self) -> Iterator[Any]:
         """Everything large that it holds."""
-        for grid in (self.inputs.ref, self.inputs.mov):
-            if grid is not None:
-                yield grid.cells
+        yield from (grid.cells for grid in self.inputs.grids)
         for upload in self.files.uploads.values():
             yield upload.content
         if self.result is not None:
@@ -86,7 +84,7 @@ def change(before: PageSnapshot, after: PageSnapshot) -> tuple[str, Hashable]:
     """What a person did between two snapshots, and what more of the same is called; "" for nothing."""
     old, new = before.inputs, after.inputs
     if old is not new:
-        if old.ref is new.ref and old.mov is new.mov:
+        if old.grids == new.grids:
             count = len(new.observations)
             said = "observation by hand" if count == 1 else f"{count} observations by hand"
             return (said if count else "no observation"), "observation"

@@ -17,7 +17,7 @@ from algorithms.files.map_file import map_from_bytes, parse_meta
 from algorithms.files.observation_file import observations_from_bytes
 from algorithms.maps.grid_map import GridMap
 from app.drawing.palette import QUIET
-from app.model.merge_inputs import Files, MergeInputs, Upload
+from app.model.merge_inputs import Files, MapSlot, MergeInputs, Upload
 from app.page.cancellable_task import CancellableTask
 from app.page.panels.image_form import ImageForm
 from app.system import data_paths as paths
@@ -37,6 +37,10 @@ SLOTS = {
 }
 
 MAPS = (1, 2)
+NO_YAML = (
+    "Map {}'s image has no YAML file yet: load it, or fill in the form below the image and press “Use this "
+    "map”."
+)
 LARGE = 1_000_000  # bytes; to read less takes no time to speak of
 
 
@@ -70,39 +74,29 @@ def inputs_from(
     """
     known = {} if known is None else known
     now: Known = {}
-    imageless: dict[int, str] = {}
-    unnamed: list[str] = []
 
-    def grid(number: int):  # type: ignore[no-untyped-def]
+    def read(number: int) -> MapSlot:
         text, image = uploads.get(f"yaml{number}"), uploads.get(f"image{number}")
-        named = _short(parse_meta(text.name, text.content).image) if text is not None else ""
-        if text is not None and image is None:  # what is wrong with it is told at once
-            imageless[number] = named
-        if text is None or image is None:
-            return None
-        if named != image.name and not text.by_form:
-            unnamed.append(
-                f"{text.name} names the image {named}; loaded is {image.name}. Do they belong together?"
-            )
-        found = known.get((text, image))
-        if found is None:
-            found = map_from_bytes(
-                text.name, text.content, image.name, CancellableReader(image.content, check)
-            )
-        now[text, image] = found
-        return found
+        if text is None:
+            return MapSlot(missing=NO_YAML.format(number) if image is not None else "")
+        named = _short(parse_meta(text.name, text.content).image)  # what is wrong with it is told at once
+        if image is None:
+            return MapSlot(missing=f"Map {number}'s YAML file is here. Load its image, too: {named}.")
+        grid = known.get((text, image))
+        if grid is None:
+            content = CancellableReader(image.content, check)
+            grid = map_from_bytes(text.name, text.content, image.name, content)
+        now[text, image] = grid
+        if named == image.name or text.by_form:
+            return MapSlot(grid)
+        doubt = f"{text.name} names the image {named}; loaded is {image.name}. Do they belong together?"
+        return MapSlot(grid, doubt=doubt)
 
     seen = uploads.get("observation")
-    bare = tuple(n for n in MAPS if f"image{n}" in uploads and f"yaml{n}" not in uploads)
-    ref, mov = grid(1), grid(2)
     inputs = MergeInputs(
-        ref=ref,
-        mov=mov,
+        maps=tuple(read(number) for number in MAPS),
         observations=observations_from_bytes(seen.name, seen.content) if seen else (),
         name="your files" if uploads else "",
-        bare=bare,
-        imageless=imageless,
-        unnamed=tuple(unnamed),
     )
     known.clear()  # of what is not there any more
     known.update(now)

@@ -30,7 +30,7 @@ from app.web.session_store import SessionStore
 ROOM = GridMap(np.full((40, 40), FREE, dtype=np.int8), 0.1)
 SEEN = Observation(Pose2(), 0.1, 0.1, 0.1, 0.0)
 START = PageSnapshot(
-    MergeInputs(ROOM, ROOM, (SEEN,), "rooms"),
+    MergeInputs.pair(ROOM, ROOM, (SEEN,), "rooms"),
     Files("rooms"),
     DEFAULT_METHOD,
     METHODS[DEFAULT_METHOD].defaults,
@@ -143,7 +143,7 @@ def test_what_comes_out_belongs_to_the_entry_it_was_asked_at(outcome):
 def test_every_wish_has_a_name():
     config = with_value(START.config, ("augment", "spread"), 4.5)
     two = with_value(config, ("box", "sigma_x"), 2.0)
-    other = MergeInputs(ROOM, ROOM, (SEEN, SEEN), "rooms")
+    other = MergeInputs.pair(ROOM, ROOM, (SEEN, SEEN), "rooms")
     grid = GridMap(ROOM.cells, 0.2)
     assert change(START, START)[0] == ""
     assert change(START, replace(START, config=config)) == (
@@ -154,7 +154,7 @@ def test_every_wish_has_a_name():
     assert change(START, seeded(3))[0] == "seed 0 → 3"
     assert change(START, replace(START, method="spectra-swarm"))[0].startswith("method: ")
     assert change(START, replace(START, inputs=other))[0] == "2 observations by hand"
-    assert change(START, replace(START, inputs=MergeInputs(grid, ROOM, (), "b")))[0] == "load b"
+    assert change(START, replace(START, inputs=MergeInputs.pair(grid, ROOM, (), "b")))[0] == "load b"
     assert change(START, replace(START, inputs=MergeInputs()))[0] == "forget the files"
     assert change(START, replace(START, hand=Pose2(1, 2, 3)))[0] == "map 2 by hand"
 

@@ -172,7 +172,7 @@ def test_another_image_is_asked_about_anew(desk):
     desk.form(1)._taken()
     desk.upload("image1", "b.pgm", IMAGE)
     assert desk.inputs.ref is None
-    assert desk.inputs.bare == (1,)
+    assert "Map 1's image has no YAML file yet" in desk.inputs.missing()
     assert "b.pgm" in desk.form(1)._about.content
 
 
