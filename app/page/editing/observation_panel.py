@@ -171,8 +171,8 @@ def observations_html(inputs: MergeInputs) -> str:
     """HTML of a table per sighting, each under what is odd about it."""
     parts = []
     total = len(inputs.observations)
-    told = zip(inputs.observations, inputs.encounters, inputs.doubts(), strict=True)
-    for number, (o, at, doubt) in enumerate(told, 1):
+    rows = zip(inputs.observations, inputs.encounters, inputs.doubts(), strict=True)
+    for number, (o, at, doubt) in enumerate(rows, 1):
         head = (f"Observation {number} of {total}", "") if total > 1 else ()
         parts.append((box(doubt, "refused") if doubt else "") + table(sighting_rows(o, at), head))
     return "".join(parts) or box("No observation yet.", "plain")

@@ -60,7 +60,7 @@ class LessonController:
         self._study = LessonRun(MergeInputs(), None)
         self._done = False  # whether the run has come to its end
         self._tried: tuple[int, Any] | None = None  # which thing to try, and the settings before it
-        self._told: set[int] = set()  # whose answers are shown
+        self._answered: set[int] = set()  # whose answers are shown
         self._slid = 0  # how often a slider was moved: older values need not be drawn any more
         self._mode = modes.add(
             Mode(self._end, leave=self.leave, changed=self._settings_changed, reopen=self.enter)
@@ -137,7 +137,7 @@ class LessonController:
             if not self.open or not 0 <= index < len(self._files):
                 return
             self._put_back()
-            self._index, self._display.places, self._told = index, (), set()
+            self._index, self._display.places, self._answered = index, (), set()
             try:
                 self._text = read_step(self._files[index], PICTURES, NUMBERS)
             except MapMergeError as error:
@@ -166,14 +166,14 @@ class LessonController:
             text = self._text
             if not self.open or text is None or number >= len(text.trials):
                 return
-            trial, shown = text.trials[number], number in self._told
+            trial, shown = text.trials[number], number in self._answered
             if trial.button:
                 self._put_back()
-                self._told.clear()
+                self._answered.clear()
             if shown:
-                self._told.discard(number)
+                self._answered.discard(number)
             else:
-                self._told.add(number)
+                self._answered.add(number)
                 if trial.button:
                     config = self._state.config
                     self._tried = number, config
@@ -260,6 +260,6 @@ class LessonController:
             if text is None or not self.open:
                 return
             if not moved:
-                self._display.words(self._index, text, study, self._told)
+                self._display.words(self._index, text, study, self._answered)
             says = f"Lesson, step {self._index + 1} of {len(self._files)}: {text.title}"
             self._display.picture(text, study, says, fresh, self._done)

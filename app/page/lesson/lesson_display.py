@@ -41,14 +41,14 @@ class LessonDisplay:
             self._display.show_map()
         self._display.show_buttons()
 
-    def words(self, index: int, text: StepText, study: LessonRun, told: Collection[int]) -> None:
+    def words(self, index: int, text: StepText, study: LessonRun, answered: Collection[int]) -> None:
         """Show what a step says.
 
-        told : numbers of the things to try whose answers are shown
+        answered : numbers of the things to try whose answers are shown
         """
         numbers = numbers_of(study) if study.possible else {}
         self._panel.text(index, text.title, filled(text.body, numbers), text.equations, OWN)
-        answers = [filled(trial.answer, numbers) if k in told else "" for k, trial in enumerate(text.trials)]
+        answers = [filled(trial.answer, numbers) if k in answered else "" for k, trial in enumerate(text.trials)]
         self._panel.trials(text.trials, answers)
 
     def picture(self, text: StepText, study: LessonRun, says: str, fresh: bool, done: bool) -> None:

@@ -169,8 +169,8 @@ class MuseumController:
 def rows(exhibit: Exhibit, config: Any) -> list[tuple[str, ...]]:
     """What is loaded and set for an exhibit, as a person reads it."""
     sample = exhibit.case + (", badly measured" if exhibit.rough else "")
-    told = [("sample", sample), ("method", METHODS[exhibit.method].title)]
-    return told + _settings(exhibit.settings, config)
+    shown = [("sample", sample), ("method", METHODS[exhibit.method].title)]
+    return shown + _settings(exhibit.settings, config)
 
 
 def changes(exhibit: Exhibit, failing: Any, cured: Any) -> list[tuple[str, ...]]:
@@ -178,9 +178,9 @@ def changes(exhibit: Exhibit, failing: Any, cured: Any) -> list[tuple[str, ...]]
     titles = [METHODS[method].title for method in (exhibit.method, exhibit.cure_method)]
     touched = tuple(dict((*exhibit.settings, *exhibit.cure_settings)).items())
     before, after = dict(_settings(touched, failing)), _settings(touched, cured)
-    told = [("method", _change(*titles))]
-    told += [(label, _change(before.get(label, words), words)) for label, words in after]
-    return [rows(exhibit, failing)[0], *told]
+    shown = [("method", _change(*titles))]
+    shown +=  [(label, _change(before.get(label, words), words)) for label, words in after]
+    return [rows(exhibit, failing)[0], *shown]
 
 
 def _change(old: str, new: str) -> str:

@@ -79,7 +79,7 @@ def inputs_from(
         text, image = uploads.get(f"yaml{number}"), uploads.get(f"image{number}")
         if text is None:
             return MapSlot(missing=NO_YAML.format(number) if image is not None else "")
-        named = _short(parse_meta(text.name, text.content).image)  # what is wrong with it is told at once
+        named = _short(parse_meta(text.name, text.content).image)  # what is wrong with it is reported at once
         if image is None:
             return MapSlot(missing=f"Map {number}'s YAML file is here. Load its image, too: {named}.")
         grid = known.get((text, image))

@@ -186,7 +186,7 @@ class ImageForm:
         try:
             return Upload(f"{PurePath(self._image.name).stem}.yaml", meta_to_bytes(self.meta), by_form=True)
         except SettingError:
-            return None  # it is told below the picture
+            return None  # it is said below the picture
 
     # --- drawing ------------------------------------------------------------------------------------
 
@@ -215,13 +215,13 @@ class ImageForm:
             self._says.content = box(str(error), "refused")
             self._go.disabled = self._file.disabled = True
             return
-        cells, told = self._grey.read(meta.shading)
+        cells, remarks = self._grey.read(meta.shading)
         picture = render.sheet(cells, self._colour, LIGHT, PREVIEW)
         self._picture.content = f'<img alt="what each pixel means" src="{data_uri(picture.pixels)}" {_FRAME}>'
         used = self._used == meta_to_bytes(meta)
         note = "In use." if used else "Not in use yet." if self._used is None else "Changed: not in use yet."
         share = shares(cells)
-        doubt = doubt_about(share, meta.shading) or " ".join(f"{say[:1].upper()}{say[1:]}." for say in told)
+        doubt = doubt_about(share, meta.shading) or " ".join(f"{say[:1].upper()}{say[1:]}." for say in remarks)
         counted = _counted(share, cells.shape, meta.resolution, self._colour)
         self._says.content = counted + _small(note) + (box(doubt, "refused") if doubt else "")
         self._file.disabled = False

@@ -177,7 +177,7 @@ class SettingsPanel:
         return int(value) if setting.whole else round(float(value), 6)
 
     def read(self) -> Any:
-        """The config as the panel stands: every widget is asked, none is trusted to have told."""
+        """The config as the panel stands: every widget is asked, since a message of one may be lost."""
         config = self.config
         for path in self._handles:
             value = self._wanted(path)

@@ -130,19 +130,19 @@ def card_html(name: str, card: Card) -> str:
 
 
 def _body(name: str, card: Card) -> str:
-    told = card.outcome
+    summary = card.outcome
     if card.state in ("waits", "runs"):
         word = "Merging …" if card.state == "runs" else "Waits for its turn."
         return f'<div class="mm-card"><i class="mm-thumb"></i><span><small>{word}</small></span></div>'
-    if told is None:
+    if summary is None:
         return ""
-    numbers = " · ".join(part for part in (told.numbers, card.note, card.old) if part)
+    numbers = " · ".join(part for part in (summary.numbers, card.note, card.old) if part)
     words = (
-        f'<span><b data-mood="{told.mood}">{escape(typeset(told.says))}</b>'
-        f"<small>{escape(typeset(told.verdict))}</small>"
+        f'<span><b data-mood="{summary.mood}">{escape(typeset(summary.says))}</b>'
+        f"<small>{escape(typeset(summary.verdict))}</small>"
         f"<em>{escape(typeset(numbers))}</em></span>"
     )
-    old, verdict = " data-old" if card.old else "", escape(told.verdict)
+    old, verdict = " data-old" if card.old else "", escape(summary.verdict)
     if not card.picture:
         return f'<div class="mm-card"{old} title="{verdict}"><i class="mm-thumb">–</i>{words}</div>'
     back = "Press again to go back to your own." if card.shown else "Press to lay it over map 1."

@@ -267,5 +267,5 @@ class SweepController:
 
     def _numbers_of(self, point: SweepPoint, counted: str) -> list[str]:
         listed = curves.AGREEMENT, counted, curves.TIME
-        told = [(measure, curves.reading(point, measure)) for measure in listed]
-        return ["–" if found is None else curves.text_of(found.middle, measure) for measure, found in told]
+        values = [(measure, curves.reading(point, measure)) for measure in listed]
+        return ["–" if found is None else curves.text_of(found.middle, measure) for measure, found in values]
