@@ -23,7 +23,7 @@ from app.jobs.warm_up import small_merge
 from app.jobs.warm_up import warm_up as warm_up_there
 from app.model.merge_inputs import MergeInputs
 from app.page.page import Page
-from app.page.undo_history import SavedTab
+from app.page.undo.undo_history import SavedTab
 from app.system.logging_setup import facts
 from app.system.memory import MemoryCleanup
 from app.web.cell_quota import CellQuota

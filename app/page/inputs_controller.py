@@ -7,33 +7,19 @@ from app.drawing.scene_layout import lay_out
 from app.model.merge_inputs import MergeInputs
 from app.model.run_state import RunState
 from app.model.view_modes import MAP
-from app.page.modes import ModeSwitch
-from app.page.notices import Notices
-from app.page.page_display import PageDisplay
-from app.page.page_state import PageState
-from app.page.panel_set import Panels
 from app.page.run_controller import RunController
-from app.page.undo_history import UndoHistory
+from app.page.tab import Tab
 from app.web.cell_quota import CellQuota
 
 
 class InputsController:
     """Of one tab; ``quota`` is shared by all tabs."""
 
-    def __init__(
-        self,
-        state: PageState,
-        display: PageDisplay,
-        panels: Panels,
-        modes: ModeSwitch,
-        history: UndoHistory,
-        runs: RunController,
-        notices: Notices,
-        quota: CellQuota,
-    ) -> None:
-        self._state, self._display, self._panels, self._modes = state, display, panels, modes
-        self._history, self._runs, self._notices, self._quota = history, runs, notices, quota
-        panels.files.connect(self.load, notices.report)
+    def __init__(self, tab: Tab, runs: RunController, quota: CellQuota) -> None:
+        self._state, self._display, self._panels = tab.state, tab.display, tab.panels
+        self._modes, self._history, self._notices = tab.modes, tab.history, tab.notices
+        self._runs, self._quota = runs, quota
+        tab.panels.files.connect(self.load, tab.notices.report)
 
     def close(self) -> None:
         """The tab is gone."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.page.page_snapshot import PageSnapshot
+from app.page.undo.page_snapshot import PageSnapshot
 
 
 def nothing() -> None:

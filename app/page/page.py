@@ -25,8 +25,9 @@ from app.page.research.comparison_controller import ComparisonController
 from app.page.research.other_result_controller import OtherResultController
 from app.page.research.sweep_controller import SweepController
 from app.page.run_controller import RunController
-from app.page.undo_controller import UndoController
-from app.page.undo_history import SavedTab, UndoHistory
+from app.page.tab import Tab
+from app.page.undo.undo_controller import UndoController
+from app.page.undo.undo_history import SavedTab, UndoHistory
 from app.page.view_controller import ViewController
 from app.page.zoom_controller import ZoomController
 from app.web.browser_events import BrowserEvents
@@ -56,31 +57,25 @@ class Page:
     ) -> None:
         self._client, self._first, self._store, self._uploads = client, first, store, uploads
         self._key = ""  # of what it leaves in the store
-        self._state = state = PageState()
-        self._modes, self._history = modes, history = ModeSwitch(), UndoHistory()
-        messages = TabMessages(client)
-        self._events = events = BrowserEvents(client.gui, messages)
-        self._panels = panels = Panels(
-            client, state, messages, first.name, turned=lambda: self._display.show_buttons()
-        )
+        state, history, messages = PageState(), UndoHistory(), TabMessages(client)
+        events, notices = BrowserEvents(client.gui, messages), Notices(client, messages, state.locks)
+        panels = Panels(client, state, messages, first.name, turned=lambda: display.show_buttons())
         views = Views(client, messages)
-        self._display = display = PageDisplay(client, state, views, panels, messages)
+        display = PageDisplay(client, state, views, panels, messages)
         display.show_theme()
-        notices = Notices(client, messages, state.locks)
+        self._tab = tab = Tab(state, display, panels, ModeSwitch(), history, notices, events)
         stop_upload = partial(uploads.stop, client.client_id)
-        common = state, display, panels
-        runs = RunController(*common, modes, history, notices, COMMON.bench(), stop_upload)
-        self._inputs = inputs = InputsController(*common, modes, history, runs, notices, quota)
-        self._undo = undo = UndoController(*common, modes, history, runs, inputs, events)
-        self._view = ViewController(client, *common, modes, events)
+        runs = RunController(tab, COMMON.bench(), stop_upload)
+        self._inputs = inputs = InputsController(tab, runs, quota)
+        self._undo = undo = UndoController(tab, runs, inputs)
+        ViewController(tab, client)
         zoom = ZoomController(events, messages, views.map.ground, state.locks)
-        drag = MapDragController(*common, modes, undo, runs, notices, events)
-        PlacementController(*common, modes, undo, runs, inputs, events)
-        folder = lesson or lesson_folder()
-        teaching = LessonController(*common, modes, undo, runs, notices, folder)
-        museum = MuseumController(*common, modes, undo, inputs, runs, notices)
+        drag = MapDragController(tab, undo, runs)
+        PlacementController(tab, undo, runs, inputs)
+        teaching = LessonController(tab, undo, runs, lesson or lesson_folder())
+        museum = MuseumController(tab, undo, runs, inputs)
         panels.run.connect_learn(teaching.toggle, museum.toggle)
-        others = OtherResultController(*common, modes, undo, runs, notices, events)
+        others = OtherResultController(tab, undo, runs)
         deliver = DownloadTask(client, panels.task)
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
         self._sweep = SweepController(state, panels.sweep, messages, events, runs, deliver)
@@ -94,18 +89,18 @@ class Page:
 
     def _greet(self, key: str, again: bool) -> None:
         """The browser shows the page: what the tab left behind comes back; otherwise it begins."""
-        state, panels = self._state, self._panels
+        state, panels, history = self._tab.state, self._tab.panels, self._tab.history
         with state.locks.action:
             if state.closed or self._key:  # a page says so once
                 return
             self._key, saved = self._store.enter(key, again, self._leave)
-            self._display.messages.remember(self._key)
+            self._tab.display.messages.remember(self._key)
             if saved is None:
                 self._inputs.load(self._first)
                 return
             panels.run.dark, panels.run.speed = saved.dark, saved.speed
-            self._display.show_buttons()
-            self._history.take_over(saved.steps, saved.position)
+            self._tab.display.show_buttons()
+            history.take_over(saved.steps, saved.position)
             self._undo.restore_current()
             with state.locks.drawing:
                 self._comparison.resume(saved.comparison)
@@ -114,19 +109,20 @@ class Page:
     def close(self) -> None:
         """The tab is gone; what it leaves behind is kept for a while."""
         self._uploads.farewell(self._client.client_id)
-        self._panels.task.stop()
-        with self._state.locks.action:
-            self._state.closed = True
+        self._tab.panels.task.stop()
+        with self._tab.state.locks.action:
+            self._tab.state.closed = True
             if self._key:
                 self._store.leave(self._key)
             self._end()
 
     def _leave(self) -> SavedTab | None:
         self._end()
-        if not self._history.steps:
+        history, run = self._tab.history, self._tab.panels.run
+        if not history.steps:
             return None
-        run, found, swept = self._panels.run, self._comparison.found, self._sweep.swept
-        return SavedTab(self._history.steps, self._history.position, run.dark, run.speed, found, swept)
+        found, swept = self._comparison.found, self._sweep.swept
+        return SavedTab(history.steps, history.position, run.dark, run.speed, found, swept)
 
     def _end(self) -> None:
         for part in self._parts:

@@ -16,8 +16,8 @@ from app.model.merge_inputs import Files, MergeInputs
 from app.model.merge_job import Goal, MergeJob
 from app.model.run_state import RunState
 from app.model.view_modes import MAP
-from app.page.page_snapshot import PageSnapshot
 from app.page.research.other_result import OtherResult
+from app.page.undo.page_snapshot import PageSnapshot
 
 Topic = Literal["setup", "result", "other", "palette"]
 """What can be subscribed to: inputs or settings; the result; what is looked at in its place; the colours."""

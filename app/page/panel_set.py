@@ -18,12 +18,12 @@ from app.page.page_state import PageState
 from app.page.panels.charts_panel import ChartsPanel
 from app.page.panels.export_panel import ExportPanel
 from app.page.panels.files_panel import FilesPanel
-from app.page.panels.history_panel import HistoryPanel
 from app.page.panels.run_panel import RunPanel
 from app.page.panels.settings_panel import SettingsPanel
 from app.page.panels.what_if_panel import WhatIfPanel
 from app.page.research.comparison_panel import ComparePanel
 from app.page.research.sweep_panel import SweepPanel
+from app.page.undo.history_panel import HistoryPanel
 from app.web.download import DOWNLOADS
 
 

@@ -21,13 +21,8 @@ from app.model.merge_inputs import MergeInputs
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
 from app.model.view_modes import MAP
-from app.page.modes import ModeSwitch
-from app.page.notices import Notices
-from app.page.page_display import PageDisplay
-from app.page.page_state import PageState
-from app.page.panel_set import Panels
 from app.page.panels.result_panel import result_html
-from app.page.undo_history import UndoHistory
+from app.page.tab import Tab
 from app.report.export import ResultFiles
 from app.report.replay.make_replay import replay_of
 from app.web.callback_errors import words
@@ -39,27 +34,18 @@ class RunController:
     stop_upload : leaves the file that is on its way
     """
 
-    def __init__(
-        self,
-        state: PageState,
-        display: PageDisplay,
-        panels: Panels,
-        modes: ModeSwitch,
-        history: UndoHistory,
-        notices: Notices,
-        runner: Runner,
-        stop_upload: Callable[[], None],
-    ) -> None:
-        self._state, self._display, self._panels, self._modes = state, display, panels, modes
-        self._history, self._notices, self._stop_upload = history, notices, stop_upload
-        self._messages, self._comparison = display.messages, display.views.comparison
+    def __init__(self, tab: Tab, runner: Runner, stop_upload: Callable[[], None]) -> None:
+        self._state, self._display, self._panels = tab.state, tab.display, tab.panels
+        self._modes, self._history, self._notices = tab.modes, tab.history, tab.notices
+        self._messages, self._comparison = tab.display.messages, tab.display.views.comparison
+        self._stop_upload = stop_upload
         self._weighed: tuple[tuple[MergeResult, MergeInputs, Any], tuple[Contradictions, str]] | None = None
         self._searched: Callable[[RunState | None], None] | None = None
-        self.thread = JobThread(self, runner, state.locks.drawing)
-        panels.run.connect_run(
-            self.merge, self.stop, self._set_speed, panels.settings.choose, self.settings_changed
+        self.thread = JobThread(self, runner, tab.state.locks.drawing)
+        tab.panels.run.connect_run(
+            self.merge, self.stop, self._set_speed, tab.panels.settings.choose, self.settings_changed
         )
-        panels.settings.connect(self.settings_changed, notices.report)
+        tab.panels.settings.connect(self.settings_changed, tab.notices.report)
 
     # --- what a person asks for -------------------------------------------------------------------
 

@@ -11,11 +11,7 @@ from app.drawing.palette import DARK, LIGHT
 from app.drawing.scene.map_comparison import MODES
 from app.drawing.scene.map_layers import Mode
 from app.model.view_modes import MAP
-from app.page.modes import ModeSwitch
-from app.page.page_display import PageDisplay
-from app.page.page_state import PageState
-from app.page.panel_set import Panels
-from app.web.browser_events import BrowserEvents
+from app.page.tab import Tab
 
 FAR = 1e6  # metres from the scene's origin; no map reaches there
 
@@ -23,20 +19,12 @@ FAR = 1e6  # metres from the scene's origin; no map reaches there
 class ViewController:
     """Of one tab."""
 
-    def __init__(
-        self,
-        client: viser.ClientHandle,
-        state: PageState,
-        display: PageDisplay,
-        panels: Panels,
-        modes: ModeSwitch,
-        events: BrowserEvents,
-    ) -> None:
-        self._state, self._display, self._modes = state, display, modes
-        self._messages, self._views = display.messages, display.views
-        panels.run.connect_view(self.choose, self.fit, self.darken)
-        events.on("compare", self.compare, mode=MODES)
-        events.on("resized", self._resized)
+    def __init__(self, tab: Tab, client: viser.ClientHandle) -> None:
+        self._state, self._display, self._modes = tab.state, tab.display, tab.modes
+        self._messages, self._views = tab.display.messages, tab.display.views
+        tab.panels.run.connect_view(self.choose, self.fit, self.darken)
+        tab.events.on("compare", self.compare, mode=MODES)
+        tab.events.on("resized", self._resized)
         client.scene.on_click()(self._read_out)
 
     def choose(self, view: str) -> None:

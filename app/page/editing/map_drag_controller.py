@@ -13,16 +13,12 @@ from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.steps import ObservationDetail, Step
 from app.model.run_state import RunState
 from app.page.editing.live_verdict import LiveVerdict
-from app.page.modes import Mode, ModeSwitch
-from app.page.notices import Notices
-from app.page.page_display import PageDisplay
-from app.page.page_snapshot import PageSnapshot
-from app.page.page_state import PageState
-from app.page.panel_set import Panels
+from app.page.modes import Mode
 from app.page.panels.html_widgets import box
 from app.page.run_controller import RunController
-from app.page.undo_controller import UndoController
-from app.web.browser_events import BrowserEvents
+from app.page.tab import Tab
+from app.page.undo.page_snapshot import PageSnapshot
+from app.page.undo.undo_controller import UndoController
 
 GLIDE = 180.0  # milliseconds in which map 2 goes where a number puts it
 
@@ -30,34 +26,24 @@ GLIDE = 180.0  # milliseconds in which map 2 goes where a number puts it
 class MapDragController:
     """Of one tab."""
 
-    def __init__(
-        self,
-        state: PageState,
-        display: PageDisplay,
-        panels: Panels,
-        modes: ModeSwitch,
-        undo: UndoController,
-        runs: RunController,
-        notices: Notices,
-        events: BrowserEvents,
-    ) -> None:
-        self._state, self._display, self._modes = state, display, modes
-        self._undo, self._runs, self._notices = undo, runs, notices
-        self._messages, self._maps = display.messages, display.views.map
-        self._panels, self._panel = panels, panels.transform
-        self._locks = state.locks
+    def __init__(self, tab: Tab, undo: UndoController, runs: RunController) -> None:
+        self._state, self._display, self._modes = tab.state, tab.display, tab.modes
+        self._panels, self._notices = tab.panels, tab.notices
+        self._panel, self._locks = tab.panels.transform, tab.state.locks
+        self._messages, self._maps = tab.display.messages, tab.display.views.map
+        self._undo, self._runs = undo, runs
         self._manual: ManualMerge | None = None
         self._at = Pose2()  # where map 2's anchor lies; scene
-        self._verdict = LiveVerdict(state, display, self._panel)
-        self._mode = modes.add(
+        self._verdict = LiveVerdict(tab.state, tab.display, self._panel)
+        self._mode = tab.modes.add(
             Mode(self._end, redraw=self._redraw, changed=self._settings_changed, resume=self._resume)
         )
-        typed = partial(events.then, self._type)  # in order with what the page tells of the hand
+        typed = partial(tab.events.then, self._type)  # in order with what the page tells of the hand
         self._panel.connect(self._toggle, typed, self._refine, self._snap, self._take)
         where = {"x": float, "y": float, "theta": float}
-        events.on("carry", lambda **at: self._carry(Pose2(**at)), latest=True, **where)
-        events.on("put", lambda knew, **at: self._put(Pose2(**at), knew), knew=int, **where)
-        events.on("nudge", self._nudge, knew=int, **where)
+        tab.events.on("carry", lambda **at: self._carry(Pose2(**at)), latest=True, **where)
+        tab.events.on("put", lambda knew, **at: self._put(Pose2(**at), knew), knew=int, **where)
+        tab.events.on("nudge", self._nudge, knew=int, **where)
 
     def close(self) -> None:
         """The tab is gone."""

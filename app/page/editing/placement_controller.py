@@ -20,14 +20,12 @@ from app.model.observation_draft import ObservationDraft, Part
 from app.model.run_state import RunState
 from app.model.view_modes import MAP
 from app.page.inputs_controller import InputsController
-from app.page.modes import Mode, ModeSwitch
-from app.page.page_display import PageDisplay
-from app.page.page_snapshot import PageSnapshot
-from app.page.page_state import PageState
-from app.page.panel_set import Panels
+from app.page.modes import Mode
 from app.page.run_controller import RunController
-from app.page.undo_controller import UndoController
-from app.web.browser_events import BrowserEvents, Numbers
+from app.page.tab import Tab
+from app.page.undo.page_snapshot import PageSnapshot
+from app.page.undo.undo_controller import UndoController
+from app.web.browser_events import Numbers
 
 PARTS: tuple[Part, ...] = ("observer", "seen", "observed")
 
@@ -35,31 +33,21 @@ PARTS: tuple[Part, ...] = ("observer", "seen", "observed")
 class PlacementController:
     """Of one tab."""
 
-    def __init__(
-        self,
-        state: PageState,
-        display: PageDisplay,
-        panels: Panels,
-        modes: ModeSwitch,
-        undo: UndoController,
-        runs: RunController,
-        inputs: InputsController,
-        events: BrowserEvents,
-    ) -> None:
-        self._state, self._display, self._modes = state, display, modes
+    def __init__(self, tab: Tab, undo: UndoController, runs: RunController, inputs: InputsController) -> None:
+        self._state, self._display, self._modes = tab.state, tab.display, tab.modes
+        self._messages, self._maps = tab.display.messages, tab.display.views.map
+        self._panels, self._panel, self._locks = tab.panels, tab.panels.observation, tab.state.locks
         self._undo, self._runs, self._inputs = undo, runs, inputs
-        self._messages, self._maps = display.messages, display.views.map
-        self._panels, self._panel, self._locks = panels, panels.observation, state.locks
         self._drafts: list[ObservationDraft] = [ObservationDraft()]
         self._chosen = 0
         self._layout = lay_out(None, None, None)
-        self._mode = modes.add(Mode(self._end, leave=self._leave, redraw=self._show, resume=self._resume))
-        typed = partial(events.then, self._type)  # in order with what the page tells of the signs
+        self._mode = tab.modes.add(Mode(self._end, leave=self._leave, redraw=self._show, resume=self._resume))
+        typed = partial(tab.events.then, self._type)  # in order with what the page tells of the signs
         self._panel.connect(self._toggle, typed, self._choose, self._add, self._remove, self._save)
         sign = {"id": PARTS, "at": Numbers(2, 2), "heading": Numbers(0, 1)}
-        events.on("drag", lambda **to: self._move(**to, rests=False), latest=True, **sign)
-        events.on("drop", lambda **to: self._move(**to, rests=True), **sign)
-        events.on("cancel", self._cancel)
+        tab.events.on("drag", lambda **to: self._move(**to, rests=False), latest=True, **sign)
+        tab.events.on("drop", lambda **to: self._move(**to, rests=True), **sign)
+        tab.events.on("cancel", self._cancel)
 
     @property
     def active(self) -> bool:

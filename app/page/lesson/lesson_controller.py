@@ -20,13 +20,10 @@ from app.page.lesson.lesson_display import LessonDisplay
 from app.page.lesson.lesson_run import LessonRun, keep
 from app.page.lesson.lesson_texts import StepText, files, read_step, with_settings
 from app.page.lesson.placeholders import NUMBERS
-from app.page.modes import Mode, ModeSwitch
-from app.page.notices import Notices
-from app.page.page_display import PageDisplay
-from app.page.page_state import PageState
-from app.page.panel_set import Panels
+from app.page.modes import Mode
 from app.page.run_controller import RunController
-from app.page.undo_controller import UndoController
+from app.page.tab import Tab
+from app.page.undo.undo_controller import UndoController
 
 
 class LessonController:
@@ -35,24 +32,14 @@ class LessonController:
     folder : of its texts
     """
 
-    def __init__(
-        self,
-        state: PageState,
-        display: PageDisplay,
-        panels: Panels,
-        modes: ModeSwitch,
-        undo: UndoController,
-        runs: RunController,
-        notices: Notices,
-        folder: Path,
-    ) -> None:
-        self._state, self._panels, self._panel = state, panels, panels.lesson
-        self._modes, self._undo, self._runs, self._notices = modes, undo, runs, notices
-        self._folder, self._locks = folder, state.locks
-        self._display = LessonDisplay(state, display, self._panel)
+    def __init__(self, tab: Tab, undo: UndoController, runs: RunController, folder: Path) -> None:
+        self._state, self._panels, self._panel = tab.state, tab.panels, tab.panels.lesson
+        self._modes, self._notices, self._locks = tab.modes, tab.notices, tab.state.locks
+        self._undo, self._runs, self._folder = undo, runs, folder
+        self._display = LessonDisplay(tab.state, tab.display, self._panel)
         runner = TappedRunner(runs.thread.runner, self._record)
-        self._thread = JobThread(self, runner, state.locks.drawing)
-        self._own: tuple[str, Any] = (state.method, state.config)
+        self._thread = JobThread(self, runner, tab.state.locks.drawing)
+        self._own: tuple[str, Any] = (tab.state.method, tab.state.config)
         self._files: list[Path] = []
         self._index = 0
         self._text: StepText | None = None
@@ -62,11 +49,11 @@ class LessonController:
         self._tried: tuple[int, Any] | None = None  # which thing to try, and the settings before it
         self._answered: set[int] = set()  # whose answers are shown
         self._slid = 0  # how often a slider was moved: older values need not be drawn any more
-        self._mode = modes.add(
+        self._mode = tab.modes.add(
             Mode(self._end, leave=self.leave, changed=self._settings_changed, reopen=self.enter)
         )
         self._panel.connect(self.go, self.move, self.leave, self._slide, self._try)
-        state.subscribe("palette", lambda: self._show(fresh=True))
+        tab.state.subscribe("palette", lambda: self._show(fresh=True))
 
     def close(self) -> None:
         """The tab is gone."""

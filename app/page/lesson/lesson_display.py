@@ -48,7 +48,9 @@ class LessonDisplay:
         """
         numbers = numbers_of(study) if study.possible else {}
         self._panel.text(index, text.title, filled(text.body, numbers), text.equations, OWN)
-        answers = [filled(trial.answer, numbers) if k in answered else "" for k, trial in enumerate(text.trials)]
+        answers = [
+            filled(trial.answer, numbers) if k in answered else "" for k, trial in enumerate(text.trials)
+        ]
         self._panel.trials(text.trials, answers)
 
     def picture(self, text: StepText, study: LessonRun, says: str, fresh: bool, done: bool) -> None:

@@ -22,33 +22,19 @@ from app.page.lesson.lesson_texts import (
     read_exhibit,
     with_settings,
 )
-from app.page.modes import ModeSwitch
-from app.page.notices import Notices
-from app.page.page_display import PageDisplay
-from app.page.page_snapshot import PageSnapshot
-from app.page.page_state import PageState
-from app.page.panel_set import Panels
 from app.page.run_controller import RunController
-from app.page.undo_controller import UndoController
+from app.page.tab import Tab
+from app.page.undo.page_snapshot import PageSnapshot
+from app.page.undo.undo_controller import UndoController
 
 
 class MuseumController:
     """Knows the exhibit at hand, and what there was before the visit."""
 
-    def __init__(
-        self,
-        state: PageState,
-        display: PageDisplay,
-        panels: Panels,
-        modes: ModeSwitch,
-        undo: UndoController,
-        inputs: InputsController,
-        runs: RunController,
-        notices: Notices,
-    ) -> None:
-        self._state, self._display, self._panels, self._panel = state, display, panels, panels.museum
-        self._modes, self._undo, self._inputs = modes, undo, inputs
-        self._runs, self._notices = runs, notices
+    def __init__(self, tab: Tab, undo: UndoController, runs: RunController, inputs: InputsController) -> None:
+        self._state, self._display, self._panels = tab.state, tab.display, tab.panels
+        self._modes, self._notices, self._panel = tab.modes, tab.notices, tab.panels.museum
+        self._undo, self._runs, self._inputs = undo, runs, inputs
         self.open = False
         self._before: PageSnapshot | None = None
         self._files: list[Path] = []
@@ -57,7 +43,7 @@ class MuseumController:
         self._pair = MergeInputs()
         again = lambda: self.pick(self._index)  # noqa: E731
         self._panel.connect(self.pick, self.cure, again, self.leave)
-        state.subscribe("result", self._result_shown)
+        tab.state.subscribe("result", self._result_shown)
 
     def toggle(self) -> None:
         """Open it, or leave it."""
@@ -179,7 +165,7 @@ def changes(exhibit: Exhibit, failing: Any, cured: Any) -> list[tuple[str, ...]]
     touched = tuple(dict((*exhibit.settings, *exhibit.cure_settings)).items())
     before, after = dict(_settings(touched, failing)), _settings(touched, cured)
     shown = [("method", _change(*titles))]
-    shown +=  [(label, _change(before.get(label, words), words)) for label, words in after]
+    shown += [(label, _change(before.get(label, words), words)) for label, words in after]
     return [rows(exhibit, failing)[0], *shown]
 
 

@@ -221,7 +221,9 @@ class ImageForm:
         used = self._used == meta_to_bytes(meta)
         note = "In use." if used else "Not in use yet." if self._used is None else "Changed: not in use yet."
         share = shares(cells)
-        doubt = doubt_about(share, meta.shading) or " ".join(f"{say[:1].upper()}{say[1:]}." for say in remarks)
+        doubt = doubt_about(share, meta.shading) or " ".join(
+            f"{say[:1].upper()}{say[1:]}." for say in remarks
+        )
         counted = _counted(share, cells.shape, meta.resolution, self._colour)
         self._says.content = counted + _small(note) + (box(doubt, "refused") if doubt else "")
         self._file.disabled = False

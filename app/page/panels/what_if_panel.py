@@ -92,7 +92,9 @@ def supposed(result: MergeResult, rules: VerdictConfig, changed: Mapping[str, fl
         deviations[deviations.index(max(deviations))] = changed[DEVIATION]
     quantities = quantities_of(Fit(evidence, misfit_of(deviations, WINDOW_EDGE)))
     score = shipped_model().score(quantities)
-    other = replace(named, evidence=evidence, deviations=tuple(deviations), quantities=quantities, score=score)
+    other = replace(
+        named, evidence=evidence, deviations=tuple(deviations), quantities=quantities, score=score
+    )
     if OTHER in changed:
         others = _with_best(others, named, changed[OTHER] / 100)
     return judge(result.fusion, other, others, result.encounter.x_mov, rules)

@@ -8,38 +8,24 @@ from algorithms.common.errors import MapMergeError
 from algorithms.maps.map_fusion import Fusion
 from algorithms.verdict.contradictions import Contradictions, find_conflicts
 from app.model.run_state import RunState
-from app.page.modes import Mode, ModeSwitch
-from app.page.notices import Notices
-from app.page.page_display import PageDisplay
-from app.page.page_snapshot import PageSnapshot
-from app.page.page_state import PageState
-from app.page.panel_set import Panels
+from app.page.modes import Mode
 from app.page.research.other_result import NOT_YOURS, OtherResult
 from app.page.research.run_summary import verdict_mood
 from app.page.run_controller import RunController
-from app.page.undo_controller import UndoController
+from app.page.tab import Tab
+from app.page.undo.page_snapshot import PageSnapshot
+from app.page.undo.undo_controller import UndoController
 from app.system.cancellation import Cancelled
-from app.web.browser_events import BrowserEvents
 
 
 class OtherResultController:
     """Of one tab; ``state.other`` is what is looked at."""
 
-    def __init__(
-        self,
-        state: PageState,
-        display: PageDisplay,
-        panels: Panels,
-        modes: ModeSwitch,
-        undo: UndoController,
-        runs: RunController,
-        notices: Notices,
-        events: BrowserEvents,
-    ) -> None:
-        self._state, self._display, self._panels, self._modes = state, display, panels, modes
-        self._undo, self._runs, self._notices = undo, runs, notices
-        self._mode = modes.add(Mode(self._end, resume=self._resume))
-        events.on("back", self.back)
+    def __init__(self, tab: Tab, undo: UndoController, runs: RunController) -> None:
+        self._state, self._display, self._panels = tab.state, tab.display, tab.panels
+        self._modes, self._notices, self._undo, self._runs = tab.modes, tab.notices, undo, runs
+        self._mode = tab.modes.add(Mode(self._end, resume=self._resume))
+        tab.events.on("back", self.back)
 
     def look(self, other: OtherResult) -> None:
         """Show what a method has found; undo goes back."""

@@ -8,7 +8,7 @@ from time import monotonic
 from typing import Any
 
 from app.model.run_state import RunState
-from app.page.page_snapshot import PageSnapshot, change, first_label, weight
+from app.page.undo.page_snapshot import PageSnapshot, change, first_label, weight
 
 MOST = 80  # entries; the oldest are forgotten
 MOST_BYTES = 300_000_000  # that all of them hold on to, what they share counted once

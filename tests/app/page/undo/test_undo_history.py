@@ -22,9 +22,9 @@ from algorithms.observations.observation import Observation
 from app.model.merge_inputs import Files, MergeInputs, Upload
 from app.model.run_state import RunState
 from app.model.settings import with_value
-from app.page.page_snapshot import PageSnapshot, change
-from app.page.panels.history_panel import history_html, steps_html
-from app.page.undo_history import MOST, PAUSE, SavedTab, UndoHistory
+from app.page.undo.history_panel import history_html, steps_html
+from app.page.undo.page_snapshot import PageSnapshot, change
+from app.page.undo.undo_history import MOST, PAUSE, SavedTab, UndoHistory
 from app.web.session_store import SessionStore
 
 ROOM = GridMap(np.full((40, 40), FREE, dtype=np.int8), 0.1)

@@ -8,7 +8,7 @@ import viser
 
 from algorithms.verdict.decision import Outcome
 from app.page.panels.html_widgets import put
-from app.page.undo_history import UndoHistory, UndoStep
+from app.page.undo.undo_history import UndoHistory, UndoStep
 
 DOTS = {Outcome.MERGED: "#009E73", Outcome.BENT: "#E69F00", Outcome.REFUSED: "#D55E00"}
 

@@ -3,35 +3,20 @@
 from __future__ import annotations
 
 from app.page.inputs_controller import InputsController
-from app.page.modes import ModeSwitch
-from app.page.page_display import PageDisplay
-from app.page.page_snapshot import PageSnapshot
-from app.page.page_state import PageState
-from app.page.panel_set import Panels
 from app.page.run_controller import RunController
-from app.page.undo_history import UndoHistory
-from app.web.browser_events import BrowserEvents
+from app.page.tab import Tab
+from app.page.undo.page_snapshot import PageSnapshot
 
 
 class UndoController:
     """Of one tab."""
 
-    def __init__(
-        self,
-        state: PageState,
-        display: PageDisplay,
-        panels: Panels,
-        modes: ModeSwitch,
-        history: UndoHistory,
-        runs: RunController,
-        inputs: InputsController,
-        events: BrowserEvents,
-    ) -> None:
-        self._state, self._display, self._panels, self._modes = state, display, panels, modes
-        self.history, self._runs, self._inputs = history, runs, inputs
-        history.changed = lambda: panels.history.show(history)
-        events.on("step", self.step, by=int)
-        events.on("go", self.go, to=int)
+    def __init__(self, tab: Tab, runs: RunController, inputs: InputsController) -> None:
+        self._state, self._display, self._panels = tab.state, tab.display, tab.panels
+        self._modes, self.history, self._runs, self._inputs = tab.modes, tab.history, runs, inputs
+        tab.history.changed = lambda: tab.panels.history.show(tab.history)
+        tab.events.on("step", self.step, by=int)
+        tab.events.on("go", self.go, to=int)
 
     def step(self, by: int) -> None:
         """Undo (−1) or redo (1)."""
