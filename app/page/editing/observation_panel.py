@@ -18,7 +18,7 @@ from app.drawing.palette import LIGHT, QUIET
 from app.model import status_text as words
 from app.model.merge_inputs import MergeInputs
 from app.model.observation_draft import ObservationDraft
-from app.page.panels.html_widgets import box, table
+from app.page.panels.html_widgets import box, put, table
 from app.report.result_rows import sighting_rows
 
 # field -> label, hint, least, most, step; angles in degrees
@@ -132,18 +132,15 @@ class ObservationPanel:
         self._step.content = (box(trouble, "refused") if trouble else "") + step
         self._step.visible = True
         options = tuple(str(number) for number in range(1, len(drafts) + 1))
-        if self._which.options != options:
-            self._which.options = options
-        if self._which.value != str(chosen + 1):
-            self._which.value = str(chosen + 1)
+        put(self._which, options=options)
+        put(self._which, value=str(chosen + 1))
         self._which.visible = several
         for name, value in fields_of(draft).items():
             handle = self._fields[name]
             if value is not None:
                 shown = degrees(value) if name in ANGLES else value
                 handle.value = round(shown, 3)
-            if handle.visible != (value is not None):
-                handle.visible = value is not None
+            put(handle, visible=value is not None)
         whole = draft.missing is None
         self._add.visible, self._remove.visible = whole, several or draft.observer is not None
         self._save.visible = all(one.missing is None for one in drafts)

@@ -77,21 +77,18 @@ class LessonPanel:
 
     def visible(self, yes: bool) -> None:
         """Open or close the dock."""
-        if self._panel.visible != yes:
-            self._panel.visible = yes
+        put(self._panel, visible=yes)
         if yes:
             self._panel.set_width(WIDTH)
 
     def contents(self, titles: Sequence[str]) -> None:
         """The titles of all steps, in their order."""
         self._titles = tuple(f"{k}. {title}" for k, title in enumerate(titles, 1))
-        if tuple(self._step.options) != self._titles:
-            self._step.options = self._titles
+        put(self._step, options=self._titles)
 
     def text(self, index: int, title: str, body: str, equations: Sequence[str], foot: str = "") -> None:
         """Show the words of a step."""
-        if self._step.value != self._titles[index]:
-            self._step.value = self._titles[index]
+        put(self._step, value=self._titles[index])
         dots = "".join(f"<i{' data-on' if k <= index else ''}></i>" for k in range(len(self._titles)))
         step, last = index + 1, len(self._titles)
         where = f"step {step} of {last}"
@@ -127,10 +124,8 @@ class LessonPanel:
                 dial = dials[k]
                 slider.min, slider.max = shown(dial, 0), shown(dial, dial.count - 1)
                 slider.step, slider.label = dial.step, dial.label
-                if slider.value != shown(dial, places[k]):
-                    slider.value = shown(dial, places[k])
-            if slider.visible != there:
-                slider.visible = there
+                put(slider, value=shown(dial, places[k]))
+            put(slider, visible=there)
 
     @property
     def places(self) -> tuple[int, ...]:

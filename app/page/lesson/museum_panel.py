@@ -8,7 +8,7 @@ from typing import Any
 import viser
 
 from app.drawing.palette import LIGHT, QUIET
-from app.page.panels.html_widgets import box, table
+from app.page.panels.html_widgets import box, put, table
 
 Row = tuple[str, ...]
 
@@ -47,19 +47,16 @@ class MuseumPanel:
 
     def visible(self, yes: bool) -> None:
         """Open or close the folder."""
-        if self._folder.visible != yes:
-            self._folder.visible = yes
+        put(self._folder, visible=yes)
 
     def contents(self, titles: Sequence[str]) -> None:
         """The titles of all exhibits, in their order."""
         self._titles = tuple(f"{k}. {title}" for k, title in enumerate(titles, 1))
-        if tuple(self._exhibit.options) != self._titles:
-            self._exhibit.options = self._titles
+        put(self._exhibit, options=self._titles)
 
     def exhibit(self, index: int, body: str) -> None:
         """Show an exhibit before its merge."""
-        if self._exhibit.value != self._titles[index]:
-            self._exhibit.value = self._titles[index]
+        put(self._exhibit, value=self._titles[index])
         self._body.content = body
         self._settings.content = ""
         self._told.content = ""
@@ -88,5 +85,4 @@ class MuseumPanel:
         if cure and self._cure.label != f"Cure: {cure}":
             self._cure.label = f"Cure: {cure}"
         for button, there in ((self._cure, bool(cure)), (self._again, again)):
-            if button.visible != there:
-                button.visible = there
+            put(button, visible=there)

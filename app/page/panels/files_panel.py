@@ -19,6 +19,7 @@ from algorithms.maps.grid_map import GridMap
 from app.drawing.palette import QUIET
 from app.model.merge_inputs import Files, MapSlot, MergeInputs, Upload
 from app.page.cancellable_task import CancellableTask
+from app.page.panels.html_widgets import put
 from app.page.panels.image_form import ImageForm
 from app.system import data_paths as paths
 from app.system.cancellation import CancellableReader, Cancelled, Check, unwatched
@@ -165,8 +166,7 @@ class FilesPanel:
             self._offer_forms()
             self._tell()
             self._taken = files.sample or NONE
-            if self._sample.value != self._taken:
-                self._sample.value = self._taken
+            put(self._sample, value=self._taken)
 
     def placed(self, yes: bool) -> None:
         """Whether there is an observation, wherever it came from."""
@@ -247,15 +247,13 @@ class FilesPanel:
         """What was on the page gives way to the uploads: nobody merges other maps than they think."""
         self._tell()
         self._taken = NONE
-        if self._sample.value != NONE:
-            self._sample.value = NONE
+        put(self._sample, value=NONE)
         self._load(inputs)
 
     def _tell(self, bad: str = "") -> None:
         """Show which files are there; bad: the one that cannot be used."""
         self._status.content = self._table(bad)
-        if self._forget_them.visible != bool(self._uploads):
-            self._forget_them.visible = bool(self._uploads)
+        put(self._forget_them, visible=bool(self._uploads))
 
     def _table(self, bad: str = "") -> str:
         rows = []

@@ -25,7 +25,7 @@ from app.drawing import grid_pixels as render
 from app.drawing.palette import LIGHT, QUIET, Rgb, css
 from app.drawing.png import data_uri
 from app.model.merge_inputs import Upload
-from app.page.panels.html_widgets import box
+from app.page.panels.html_widgets import box, put
 from app.system.cancellation import CancellableReader, Check, unwatched
 
 RESOLUTION = 0.05  # metres per cell: what most robots' maps have
@@ -196,8 +196,7 @@ class ImageForm:
         values = (meta.resolution, o.x, o.y, round(degrees(o.theta), 6), shading.mode)
         wanted = (*values, shading.occupied_thresh, shading.free_thresh, shading.negate)
         for widget, value in zip(self._widgets(), wanted, strict=True):
-            if widget.value != value:
-                widget.value = value
+            put(widget, value=value)
 
     def _draw(self) -> None:
         assert self._image is not None

@@ -11,6 +11,7 @@ from algorithms.methods.registry import METHODS
 from app.drawing.palette import LIGHT, QUIET
 from app.model.playback import PACES
 from app.model.view_modes import HEIGHTS, LESSON, MAP, MUSEUM, SWARM
+from app.page.panels.html_widgets import put
 
 NAMES = {method.title: name for name, method in METHODS.items()}
 
@@ -84,8 +85,7 @@ class RunPanel:
 
     @view.setter
     def view(self, view: str) -> None:
-        if self._view.value != view:
-            self._view.value = view
+        put(self._view, value=view)
 
     @property
     def pace(self) -> float:
@@ -99,8 +99,8 @@ class RunPanel:
 
     @speed.setter
     def speed(self, name: str) -> None:
-        if name in PACES and self._speed.value != name:
-            self._speed.value = name
+        if name in PACES:
+            put(self._speed, value=name)
 
     @property
     def seed(self) -> int:
@@ -114,23 +114,18 @@ class RunPanel:
 
     @dark.setter
     def dark(self, dark: bool) -> None:
-        if self._dark.value != dark:
-            self._dark.value = dark
+        put(self._dark, value=dark)
 
     def restore(self, method: str, seed: int) -> None:
         """Show this method and this seed."""
-        title = METHODS[method].title
-        if self._method.value != title:
-            self._method.value = title
-        if self._seed.value != seed:
-            self._seed.value = seed
+        put(self._method, value=METHODS[method].title)
+        put(self._seed, value=seed)
 
     def stoppable(self, who: str, yes: bool) -> None:
         """Whether a run, or the reading or sending of a file, can be stopped now."""
         with self._counting:
             (self._at_work.add if yes else self._at_work.discard)(who)
-            if self.stop.disabled == bool(self._at_work):
-                self.stop.disabled = not self._at_work
+            put(self.stop, disabled=not self._at_work)
 
     @property
     def follow(self) -> bool:

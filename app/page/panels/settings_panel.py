@@ -12,6 +12,7 @@ from algorithms.common.errors import MapMergeError, SettingError
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from app.drawing.palette import QUIET
 from app.model.settings import Path, Setting, in_cells, settings_of, value_at, with_value, word_for
+from app.page.panels.html_widgets import put
 
 # Group of the config -> folder; what is not named goes to "Search".
 FOLDERS = {
@@ -229,8 +230,7 @@ class SettingsPanel:
             for path, handle in self._handles.items():
                 value, setting = value_at(config, path), self._settings[path]
                 shown = word_for(setting, value) if setting.choices is not None else value
-                if handle.value != shown:
-                    handle.value = shown
+                put(handle, value=shown)
         finally:
             self._writer = 0
         self._show_cells()
@@ -240,13 +240,11 @@ class SettingsPanel:
         """Show the settings that do something, and the folders that hold one."""
         for path, handle in self._handles.items():
             shown = not idle(self.config, path)
-            if handle.visible != shown:
-                handle.visible = shown
+            put(handle, visible=shown)
         for title, folder in self._folders.items():
             mine = [path for path in self._handles if FOLDERS.get(path[0], "Search") == title]
             shown = not all(idle(self.config, path) for path in mine)
-            if folder.visible != shown:
-                folder.visible = shown
+            put(folder, visible=shown)
 
     def _show_cells(self) -> None:
         """Lengths in cells below the sliders of a folder; the maps may differ in resolution."""

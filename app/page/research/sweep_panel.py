@@ -46,10 +46,8 @@ class AxisFields:
     def offer(self, labels: Sequence[str], chosen: str) -> None:
         """The settings there are to choose from."""
         options = (*self._none, *labels)
-        if tuple(self.setting.options) != options:
-            self.setting.options = options
-        if self.setting.value != chosen:
-            self.setting.value = chosen
+        put(self.setting, options=options)
+        put(self.setting, value=chosen)
 
     def suggest(self, setting: Setting | None, low: float, high: float, by_factor: bool) -> None:
         """Show the fields that this setting has, with these values; None: no setting."""
@@ -64,8 +62,7 @@ class AxisFields:
             (self._count, bounds is not None),
             (self._factor, bounds is not None and bounds.high > 0),
         ):
-            if handle.visible != there:
-                handle.visible = there
+            put(handle, visible=there)
 
     @property
     def untouched(self) -> bool:
