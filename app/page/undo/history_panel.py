@@ -57,7 +57,7 @@ def history_html(history: UndoHistory) -> str:
         style = "font-weight:600;background:#0072B21f" if here else "opacity:.5" if undone else ""
         current = ' aria-current="true"' if here else ""
         rows.append(
-            f'<button type="button" class="mm-step" data-go="{number}"{current} style="{style}">'
+            f'<button type="button" class="mm-entry" data-go="{number}"{current} style="{style}">'
             f"{_dot(step)}<span>{escape(step.label)}</span></button>"
         )
     return f'<div class="mm-history">{"".join(rows)}</div>'
