@@ -59,7 +59,7 @@ class ComparisonController:
         state.subscribe("setup", self._setup_changed)
         state.subscribe("other", self._draw)
         state.subscribe("palette", self._recolour)
-        self._draw()
+        self._setup_changed()
 
     def close(self) -> None:
         """The tab is gone."""
