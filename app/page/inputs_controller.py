@@ -22,7 +22,6 @@ class InputsController:
         tab.panels.files.connect(self.load, tab.notices.report)
 
     def close(self) -> None:
-        """The tab is gone."""
         self._quota.release(self)
 
     def load(self, inputs: MergeInputs) -> None:

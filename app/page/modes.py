@@ -40,7 +40,6 @@ class ModeSwitch:
         self.current: Mode | None = None
 
     def add(self, mode: Mode) -> Mode:
-        """Make a mode known."""
         self._modes.append(mode)
         return mode
 

@@ -265,7 +265,6 @@ class PageDisplay:
     # --- colours ----------------------------------------------------------------------------------
 
     def show_theme(self) -> None:
-        """Light or dark."""
         palette = self._state.palette
         self._client.gui.configure_theme(
             show_logo=False,
@@ -277,7 +276,6 @@ class PageDisplay:
         self.messages.theme(palette)
 
     def recolour(self) -> None:
-        """Everything in the colours of the palette."""
         state = self._state
         self.show_theme()
         self.views.map.recolour(state.palette, state.run)

@@ -50,7 +50,6 @@ class RunController:
     # --- what a person asks for -------------------------------------------------------------------
 
     def merge(self) -> None:
-        """Merge what is loaded as it is set."""
         state, panels = self._state, self._panels
         with state.locks.action, state.locks.drawing:
             self._modes.leave()
@@ -134,7 +133,6 @@ class RunController:
     # --- what the run tells -----------------------------------------------------------------------
 
     def begun(self, job: MergeJob) -> None:
-        """A run starts."""
         self._panels.run.stoppable("run", True)
         if job.goal == "cause":
             return
@@ -171,7 +169,6 @@ class RunController:
         self._messages.flush()
 
     def ended(self, job: MergeJob, run: RunState) -> None:
-        """The run came to its goal."""
         self._panels.run.stoppable("run", False)
         if job.goal == "cause":
             self._explain(run.get(CauseDetail))
@@ -192,7 +189,6 @@ class RunController:
             self.thread.request(replace(job, goal="cause", steps=cause, pace=0.0))
 
     def stopped(self, job: MergeJob, run: RunState) -> None:
-        """Someone pressed Stop."""
         self._panels.run.stoppable("run", False)
         if job.goal == "cause":
             self._display.show_result_text(self._state.result)
@@ -206,7 +202,6 @@ class RunController:
         self._messages.flush()
 
     def failed(self, job: MergeJob, run: RunState, error: Exception) -> None:
-        """The run could not go on."""
         self._panels.run.stoppable("run", False)
         if job.goal == "cause":  # the verdict stands without it
             self._display.show_result_text(self._state.result)

@@ -28,13 +28,11 @@ class ViewController:
         client.scene.on_click()(self._read_out)
 
     def choose(self, view: str) -> None:
-        """Show another view."""
         with self._state.locks.drawing:
             self._state.update(view=view)
             self._show()
 
     def darken(self, dark: bool) -> None:
-        """Dark colours, or light ones."""
         with self._state.locks.drawing:
             self._state.palette = DARK if dark else LIGHT
             self._display.recolour()
@@ -46,7 +44,6 @@ class ViewController:
         self._display.show_view(mode.redraw if mode is not None else None)
 
     def fit(self) -> None:
-        """Show everything that is there."""
         with self._state.locks.drawing:
             state, maps = self._state, self._views.map
             if state.view != MAP:

@@ -25,7 +25,6 @@ class ZoomController:
         events.on("look", self._look, latest=True, **seen)
 
     def close(self) -> None:
-        """The tab is gone."""
         self._work.close()
 
     def _look(self, box: list[float], mov: list[float], density: float) -> None:

@@ -32,7 +32,6 @@ class LiveVerdict:
         self._work = LatestRequest(self._weigh, "mapmeld-hand")
 
     def close(self) -> None:
-        """End the thread."""
         self._work.close()
 
     def weigh_on(self, manual: ManualMerge) -> None:
@@ -46,7 +45,6 @@ class LiveVerdict:
         self._work.ask((at, rests))
 
     def drop(self) -> None:
-        """Map 2 is no longer in the hand."""
         self._work.drop()
 
     def _weigh(self, wanted: tuple[Pose2, bool]) -> None:

@@ -46,7 +46,6 @@ class MapDragController:
         tab.events.on("nudge", self._nudge, knew=int, **where)
 
     def close(self) -> None:
-        """The tab is gone."""
         self._verdict.close()
 
     @property
@@ -174,7 +173,6 @@ class MapDragController:
         return None if knew == self._messages.placed else GLIDE
 
     def _move(self, at: Pose2) -> None:
-        """Map 2 lies there."""
         self._at = at
         self._state.update(hand=self._maps.layout.transform(at))
         self._maps.carried(at)
@@ -236,7 +234,6 @@ class MapDragController:
             self._undo.go_to(snapshot, "snap to the proven optimum")
 
     def _take(self) -> None:
-        """This is to be the answer."""
         with self._locks.action:
             manual, T, state = self._manual, self._state.hand, self._state
             if manual is None or T is None:

@@ -51,7 +51,6 @@ class PlacementController:
 
     @property
     def active(self) -> bool:
-        """Whether robots are being placed."""
         return self._modes.current is self._mode
 
     # --- what the mode does -----------------------------------------------------------------------

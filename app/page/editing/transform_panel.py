@@ -94,12 +94,10 @@ class TransformPanel:
         self._refine.visible, self._snap.visible = yes and refine, yes and prove
 
     def show(self, T: Pose2) -> None:
-        """Show a transform in the fields."""
         for handle, value in ((self._x, T.x), (self._y, T.y), (self._turn, degrees(T.theta))):
             handle.value = round(value, 3)
 
     def tell(self, html: str) -> None:
-        """Show what the walls say."""
         self._says.content = html
 
     async def _read(self, event: viser.GuiEvent[Any]) -> None:  # in the loop: nothing overwrites it before

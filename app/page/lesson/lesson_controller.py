@@ -56,18 +56,15 @@ class LessonController:
         tab.state.subscribe("palette", lambda: self._show(fresh=True))
 
     def close(self) -> None:
-        """The tab is gone."""
         self._thread.close()
 
     @property
     def open(self) -> bool:
-        """Whether the lesson is on."""
         return self._modes.current is self._mode
 
     # --- what a person asks for -------------------------------------------------------------------
 
     def toggle(self) -> None:
-        """Open it, or leave it."""
         (self.leave if self.open else self.enter)()
 
     def enter(self) -> None:
@@ -188,7 +185,6 @@ class LessonController:
             self._thread.request(job)
 
     def _record(self, run: Iterator[Step]) -> Iterator[Step]:
-        """Keep the steps of a run."""
         self._steps = steps = []
         for step in run:
             keep(steps, step)
@@ -214,7 +210,6 @@ class LessonController:
         """Other tabs' runs are at work; the picture says that it is being worked out."""
 
     def ended(self, job: MergeJob, story: RunState) -> None:
-        """The run came to its end."""
         had = bool(self._study.steps)
         self._study = LessonRun(self._study.inputs, job.config, job.seed, tuple(self._steps))
         self._done = True
@@ -224,7 +219,6 @@ class LessonController:
         """The run is no longer wanted."""
 
     def failed(self, job: MergeJob, story: RunState, error: Exception) -> None:
-        """The run could not go on."""
         self._done = True
         self._panel.picture(f"These maps cannot be merged: {error}")
 

@@ -32,7 +32,6 @@ class LessonDisplay:
         self.places: tuple[int, ...] = ()
 
     def dock(self, open_: bool) -> None:
-        """Open the dock of the lesson, or close it."""
         self._panel.visible(open_)
         self._display.views.comparison.clear()
         self._display.clear_read_out()

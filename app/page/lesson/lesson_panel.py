@@ -76,13 +76,11 @@ class LessonPanel:
             button.on_click(lambda _, k=k: try_(k))
 
     def visible(self, yes: bool) -> None:
-        """Open or close the dock."""
         put(self._panel, visible=yes)
         if yes:
             self._panel.set_width(WIDTH)
 
     def contents(self, titles: Sequence[str]) -> None:
-        """The titles of all steps, in their order."""
         self._titles = tuple(f"{k}. {title}" for k, title in enumerate(titles, 1))
         put(self._step, options=self._titles)
 

@@ -46,7 +46,6 @@ class MuseumController:
         tab.state.subscribe("result", self._result_shown)
 
     def toggle(self) -> None:
-        """Open it, or leave it."""
         (self.leave if self.open else self.enter)()
 
     def enter(self) -> None:
@@ -82,7 +81,6 @@ class MuseumController:
         self._display.show_buttons()
 
     def pick(self, index: int) -> None:
-        """Go to an exhibit."""
         with self._state.locks.action:
             if not self.open or not 0 <= index < len(self._files):
                 return

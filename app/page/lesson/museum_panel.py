@@ -46,11 +46,9 @@ class MuseumPanel:
             button.on_click(lambda _, action=action: action())
 
     def visible(self, yes: bool) -> None:
-        """Open or close the folder."""
         put(self._folder, visible=yes)
 
     def contents(self, titles: Sequence[str]) -> None:
-        """The titles of all exhibits, in their order."""
         self._titles = tuple(f"{k}. {title}" for k, title in enumerate(titles, 1))
         put(self._exhibit, options=self._titles)
 

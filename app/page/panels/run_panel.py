@@ -80,7 +80,6 @@ class RunPanel:
 
     @property
     def view(self) -> str:
-        """Map, Heights or Swarm space."""
         return self._view.value
 
     @view.setter
@@ -94,7 +93,6 @@ class RunPanel:
 
     @property
     def speed(self) -> str:
-        """Name of the pace."""
         return str(self._speed.value)
 
     @speed.setter
@@ -104,12 +102,10 @@ class RunPanel:
 
     @property
     def seed(self) -> int:
-        """Random seed of a run; the same seed gives the same answer."""
         return int(self._seed.value)
 
     @property
     def dark(self) -> bool:
-        """Whether the page is dark."""
         return self._dark.value
 
     @dark.setter
@@ -117,7 +113,6 @@ class RunPanel:
         put(self._dark, value=dark)
 
     def restore(self, method: str, seed: int) -> None:
-        """Show this method and this seed."""
         put(self._method, value=METHODS[method].title)
         put(self._seed, value=seed)
 
@@ -129,7 +124,6 @@ class RunPanel:
 
     @property
     def follow(self) -> bool:
-        """Whether the camera goes along."""
         return self._follow.value
 
     def open(self, what: str, yes: bool) -> None:
@@ -138,5 +132,4 @@ class RunPanel:
 
     @property
     def pressed(self) -> list[str]:
-        """The chosen button of each group."""
         return [self._speed.value, self._view.value, *self._open]

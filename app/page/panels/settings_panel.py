@@ -87,7 +87,6 @@ class SettingsPanel:
         self._changed, self._report = changed, report
 
     def choose(self, method: str) -> None:
-        """Take another method, at its defaults."""
         with self._action:
             if method == self.method:
                 return
@@ -95,7 +94,6 @@ class SettingsPanel:
             self._changed()
 
     def restore(self, method: str, config: Any) -> None:
-        """Show this method with these settings."""
         with self._action:
             if method != self.method:
                 self._take(method, METHODS[method].defaults)

@@ -62,7 +62,6 @@ class ComparisonController:
         self._setup_changed()
 
     def close(self) -> None:
-        """The tab is gone."""
         self._work.stop()
 
     # --- what the page tells ----------------------------------------------------------------------
@@ -159,7 +158,6 @@ class ComparisonController:
     # --- what the work tells ----------------------------------------------------------------------
 
     def told(self, part: tuple[OtherResult, str]) -> None:
-        """A method has ended."""
         other, picture = part
         self._found[other.method], self._pictures[other.method] = other, picture
         self._waiting.remove(other.method)
@@ -167,7 +165,6 @@ class ComparisonController:
         self._draw()
 
     def over(self, why: str) -> None:
-        """All have ended, or no further one can."""
         self._waiting.clear()
         self._panel.say(why or f"{self._count()} It took {self._work.seconds:.1f} s.")
         self._draw()

@@ -98,7 +98,6 @@ class ComparePanel:
         put(self._save, visible=harvest and not busy)
 
     def say(self, words: str, share: float | None = None) -> None:
-        """How far the run is."""
         self._says.content = says_html(words, share)
 
     def show(self, cards: Mapping[str, Card]) -> None:

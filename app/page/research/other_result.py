@@ -35,7 +35,6 @@ class OtherResult:
 
     @property
     def title(self) -> str:
-        """What the method is called."""
         return METHODS[self.method].title
 
     @property

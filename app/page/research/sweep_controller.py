@@ -71,7 +71,6 @@ class SweepController:
         self._setup_changed()
 
     def close(self) -> None:
-        """The tab is gone."""
         self._work.stop()
 
     # --- what the page tells ----------------------------------------------------------------------
@@ -199,7 +198,6 @@ class SweepController:
     # --- what the work tells ----------------------------------------------------------------------
 
     def told(self, part: SweepPoint) -> None:
-        """A point is there."""
         self._points[self._numbers[part.x, part.y]] = part
         done, total = len(self._points), len(self._numbers)
         fresh, seconds = done - self._known, self._work.seconds
@@ -210,7 +208,6 @@ class SweepController:
         self._draw()
 
     def over(self, why: str) -> None:
-        """All points are there, or no further one can be."""
         lost = next((point.failed for point in self._points.values() if point.failed), "")
         said = f"{self._count()} It took {self._work.seconds:.1f} s."
         self._panel.say(why or (f"{said} Could not be run: {sentence(lost)}" if lost else said))

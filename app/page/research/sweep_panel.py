@@ -163,12 +163,10 @@ class SweepPanel:
 
     @property
     def seeds(self) -> int:
-        """Merges per point."""
         return int(self._seeds.value)
 
     @property
     def measure(self) -> str:
-        """What is drawn."""
         return self._measures.value
 
     # --- writing ----------------------------------------------------------------------------------
@@ -192,7 +190,6 @@ class SweepPanel:
         self._says.content = says_html(words, share)
 
     def clear(self) -> None:
-        """There is no sweep."""
         self._heat.content = self._points.content = ""
         self._measures.visible = self._curve.visible = False
 
@@ -227,7 +224,6 @@ class SweepPanel:
         put(self._curve, visible=True)
 
     def heat(self, svg: str) -> None:
-        """Show a field of colours."""
         put(self._heat, content=f'<div class="mm-heat">{svg}</div>')
         put(self._curve, visible=False)
 

@@ -22,7 +22,6 @@ class HistoryPanel:
             self._list = gui.add_html("")
 
     def show(self, history: UndoHistory) -> None:
-        """Show it as it is now."""
         steps, at = history.steps, history.position
         undo = steps[at].label if at > 0 else ""
         redo = steps[at + 1].label if at + 1 < len(steps) else ""
