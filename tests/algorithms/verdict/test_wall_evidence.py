@@ -137,6 +137,15 @@ def test_what_runs_across_a_corridor_is_what_keeps_it_from_sliding():
     assert slid.across < 2.0
 
 
+@pytest.mark.parametrize("turn", [0.5, -1.2, 2.9])
+def test_how_a_maps_raster_is_turned_in_its_frame_does_not_change_what_runs_across(turn):
+    stopped = hall([(1, 7, 15, 7.1), (1, 9, 15, 9.1), (8, 7, 8.1, 9)])
+    turned = replace(stopped, origin=Pose2(theta=turn))
+    crossed = weighed(stopped, stopped, Pose2()).across
+    assert weighed(stopped, turned, Pose2(theta=-turn)).across == pytest.approx(crossed, rel=0.02)
+    assert weighed(turned, stopped, Pose2(theta=turn)).across == pytest.approx(crossed, rel=0.02)
+
+
 def test_a_speck_is_no_wall():
     cells = hall([(1, 1, 15, 1.1)]).cells.copy()
     cells[100::20, 50::20] = OCCUPIED  # far apart, a cell each
@@ -166,6 +175,8 @@ def test_a_wall_that_is_a_little_off_is_bent_and_one_far_off_is_wrong():
     assert little.contradiction < 0.02
     assert far.contradiction > 0.9
     assert mended(far) < 0.05
+    assert 0.5 * SLIP < little.slip < 0.8 * SLIP  # it stops as soon as the walls are near enough
+    assert weighed(straight, straight, Pose2()).slip == 0
 
 
 def test_where_bent_maps_lie_beside_each_other_is_told_with_how_far():
