@@ -165,6 +165,12 @@ def test_what_lies_around_a_robot_says_nothing():
     assert weighed(seen, clean, Pose2(), robots).rigid_contradicting == 0
     far = replace(robots, in_mov=here + 3.0)
     assert weighed(seen, clean, Pose2(), far).rigid_contradicting > 2
+    # whatever the frames of the maps: the ring stands in map 1, and in map 2
+    turned, T_turned = replace(clean, origin=Pose2(20.0, -9.0, 1.0)), Pose2(20.0, -9.0, 1.0)
+    in_mov = replace(robots, in_mov=T_turned.apply(here))
+    assert weighed(seen, turned, T_turned.inverse(), in_mov).rigid_contradicting == 0
+    in_ref = Robots(T_turned.apply(here), np.zeros((0, 2)), 0.4)
+    assert weighed(turned, seen, T_turned, in_ref).rigid_contradicting == 0
 
 
 def test_a_wall_that_is_a_little_off_is_bent_and_one_far_off_is_wrong():
@@ -187,6 +193,10 @@ def test_where_bent_maps_lie_beside_each_other_is_told_with_how_far():
     assert 8 < worst.x < 15
     assert abs(worst.y - 8) < PATCH / 2
     assert weighed(straight, straight, Pose2()).apart == ()
+    twice = hall([(1, 8, 5, 8.1), (5, 8.3, 10, 8.4), (10, 8.5, 15, 8.6)])
+    slips = [place.metres for place in weighed(straight, twice, Pose2()).apart]
+    assert len(set(slips)) > 1
+    assert slips == sorted(slips, reverse=True)
 
 
 def test_a_bent_map_of_the_same_flat_is_told_from_another_building():
