@@ -53,7 +53,6 @@ EXERCISED_BY = {
         "algorithms.optimisation.search_box",
     },
     "algorithms/optimisation/test_branch_and_bound.py": {
-        "algorithms.optimisation.open_blocks",
         "algorithms.optimisation.transform_lattice",
     },
     "algorithms/optimisation/test_optimiser.py": {
@@ -128,7 +127,6 @@ EXERCISED_BY = {
     },
     "app/evaluation/test_dataset_evaluation.py": {
         "app.cli.commands.evaluate",
-        "app.evaluation.reliability_figure",
     },
     "app/evaluation/test_figures.py": {
         "app.evaluation.comparison_figure",
