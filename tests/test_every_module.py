@@ -131,6 +131,7 @@ EXERCISED_BY = {
     "app/evaluation/test_figures.py": {
         "app.evaluation.comparison_figure",
         "app.evaluation.figure_style",
+        "app.evaluation.reliability_figure",
         "app.evaluation.sweep_figure",
     },
     "app/evaluation/test_parameter_sweep.py": {

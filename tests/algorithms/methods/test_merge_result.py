@@ -21,7 +21,12 @@ def finished(result):
     named = result.weighed[0]
 
     def finish(beside=None, **given) -> MergeResult:
-        usual = {"value": 12.5, "answers": (Answer(named.T_ref_mov, 12.5, "still"),), "method": "m", "seed": 3}
+        usual = {
+            "value": 12.5,
+            "answers": (Answer(named.T_ref_mov, 12.5, "still"),),
+            "method": "m",
+            "seed": 3,
+        }
         return finish_merge(
             named, beside, result.fusion, result.encounters, COVARIANCE, VerdictConfig(), **usual | given
         )

@@ -85,7 +85,9 @@ def box_around(pivot: FloatArray, place: FloatArray, turn: float, half=(1.0, 1.0
 
 @settings(max_examples=30)
 @given(bells(), PLACES, PLACES, TURNS)
-def test_the_width_of_a_bell_is_the_bells_own_wherever_the_frames_have_their_origins(bell, pivot, place, turn):
+def test_the_width_of_a_bell_is_the_bells_own_wherever_the_frames_have_their_origins(
+    bell, pivot, place, turn
+):
     box = box_around(pivot, place, turn)
     top = box.transform(np.append(place, turn))
     found = peak_covariance(Bell(box, np.append(place, turn), bell), top, box, 4.0)

@@ -1,4 +1,4 @@
-"""The blocks that a proof has not opened: the best go first, none is lost, and ties are told apart for good."""
+"""The blocks that a proof has not opened: the best go first, none is lost, and ties have an order."""
 
 from __future__ import annotations
 

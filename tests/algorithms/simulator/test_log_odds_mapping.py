@@ -50,7 +50,8 @@ def test_a_round_wall_is_drawn_where_the_beams_ended_and_free_up_to_it():
 
 
 @pytest.mark.parametrize(
-    ("heading", "x", "y"), [(0, 1.0, 0.0), (QUARTER, 0.0, 1.0), (2 * QUARTER, -1.0, 0.0), (-QUARTER, 0.0, -1.0)]
+    ("heading", "x", "y"),
+    [(0, 1.0, 0.0), (QUARTER, 0.0, 1.0), (2 * QUARTER, -1.0, 0.0), (-QUARTER, 0.0, -1.0)],
 )
 def test_a_beam_goes_where_the_robot_looks_counter_clockwise(heading, x, y):
     grid = one_beam(1.0, heading=heading)

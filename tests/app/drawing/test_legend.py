@@ -119,7 +119,9 @@ def test_matches_are_told_apart_from_those_that_agree_once_any_does():
     at = np.zeros((3, 2))
 
     def told(inliers):
-        return words(legend(LIGHT, "Map", story_of([Step("match", MatchesDetail(at, at, at, at, inliers), 0)])))
+        return words(
+            legend(LIGHT, "Map", story_of([Step("match", MatchesDetail(at, at, at, at, inliers), 0)]))
+        )
 
     assert "match" in told(np.zeros(3, dtype=bool))
     assert {"matches that agree", "other matches"} <= set(told(np.array([True, False, False])))

@@ -15,9 +15,12 @@ import yaml
 from algorithms.common.pose import Pose2
 from algorithms.files.map_file import read_map
 from algorithms.files.observation_file import observations_from_bytes
-from algorithms.methods.merge_result import MergeResult
+from algorithms.maps.map_fusion import fuse
+from algorithms.methods.merge_result import MergeResult, finish_merge
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
-from algorithms.verdict.decision import Outcome
+from algorithms.verdict.decision import Outcome, VerdictConfig
+from algorithms.verdict.probability_model import Fit, quantities_of, shipped_model
+from algorithms.verdict.wall_evidence import Evidence
 from app.model.merge_inputs import MergeInputs
 from app.page.panels.html_widgets import box
 from app.report.export import ACTED_UPON, ALONE, ResultFiles
@@ -144,10 +147,34 @@ def test_a_proof_that_met_nothing_and_settings_that_are_not_known_still_make_a_p
     assert read(page).tags.count("svg") == 4
 
 
-def test_maps_that_do_not_touch_make_a_page(result, inputs):
-    far = replace(result, T_ref_mov=Pose2(500.0, 0.0, 1.0))
-    fused = replace(result.fusion, mov_cells=np.full_like(result.fusion.mov_cells, -1))
-    read(page_of(replace(far, fusion=fused), inputs))
+def test_maps_that_do_not_touch_make_a_page_that_says_that_nothing_is_shared(result, inputs):
+    far, nothing = Pose2(30.0, 0.0) @ result.T_ref_mov, Evidence(0.0, 0.0, 0.0, 0.0)
+    quantities = quantities_of(Fit(nothing, 50.0))
+    named = replace(
+        result.weighed[0],
+        T_ref_mov=far,
+        evidence=nothing,
+        quantities=quantities,
+        score=shipped_model().score(quantities),
+    )
+    ended = finish_merge(
+        named,
+        None,
+        fuse(inputs.ref, inputs.mov, far),
+        result.encounters,
+        result.covariance,
+        VerdictConfig(),
+        value=None,
+        answers=result.answers,
+        method=result.method,
+        seed=0,
+    )
+    page = page_of(ended, inputs)
+    read(page)
+    assert page.index("<strong>REFUSED</strong>") < page.lower().index("no wall was seen by both robots")
+    assert "no wall was seen by both robots" not in page_of(result, inputs).lower()
+    rows = dict(re.findall(r"<t[hd][^>]*>([^<]*)</t[hd]><td[^>]*>([^<]*)</td>", page))
+    assert rows["wall in view of both"] == "0.0 m"
 
 
 def test_the_page_is_the_same_for_the_same_result(result, inputs):

@@ -1,4 +1,4 @@
-"""What every baseline shares: the sighting before its search, and after it the same verdict as any method's."""
+"""What every baseline shares: the sighting before its search, and after it the verdict of any method."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The walls as heights: as high as their level says, around where the robots met, gone when they are hidden."""
+"""The walls as heights: as high as their level says, around the meeting place, gone when they are hidden."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The folder "By hand": what a person types arrives in metres and radians, what is shown is not taken for it."""
+"""The folder "By hand": what is typed arrives in metres and radians; what is shown is not taken for it."""
 
 from __future__ import annotations
 

@@ -71,7 +71,11 @@ def test_of_choices_one_of_them_is_taken_and_nothing_else(value, options):
 
 KINDS = {
     "a switch": (True, [False, True], [0, 1, "true", None, [True]]),
-    "a number": (1.5, [2, -3.5, MAX_NUMBER, -MAX_NUMBER], [True, "2", None, [2], 2 * MAX_NUMBER, -2 * MAX_NUMBER]),
+    "a number": (
+        1.5,
+        [2, -3.5, MAX_NUMBER, -MAX_NUMBER],
+        [True, "2", None, [2], 2 * MAX_NUMBER, -2 * MAX_NUMBER],
+    ),
     "a text": ("a", ["", "x" * MAX_TEXT], [1, None, ["a"], "x" * (MAX_TEXT + 1)]),
     "two numbers": ((1.0, 2.0), [[3, 4.5], (0.0, 0.0)], [[1], [1, 2, 3], [1, "2"], [1, True], 1, "12", None]),
     "nothing that a person enters": (None, [], [None, 1, "a"]),
@@ -87,7 +91,9 @@ def test_a_control_takes_values_of_its_own_kind_alone(kind):
         assert not acceptable(value, now, FREE), value
 
 
-@given(st.one_of(st.none(), st.booleans(), st.floats(), st.text(max_size=5), st.lists(st.floats(), max_size=3)))
+@given(
+    st.one_of(st.none(), st.booleans(), st.floats(), st.text(max_size=5), st.lists(st.floats(), max_size=3))
+)
 def test_what_is_no_number_is_taken_for_none_of_a_slider(value):
     taken = acceptable(value, 0.5, SimpleNamespace(min=0.0, max=1.0))
     assert taken is (isinstance(value, float) and 0 <= value <= 1)
@@ -151,7 +157,7 @@ def test_only_the_value_of_a_control_that_is_there_is_taken_and_the_rest_is_coun
 
 @given(st.lists(st.tuples(st.floats(0, 5), st.integers(1, 50)), max_size=60))
 def test_whatever_is_sent_the_rate_holds_in_the_long_run(sent):
-    """Whoever waits as long as is said never gets more through than what is let through at once and the rate."""
+    """Whoever waits as long as is said gets no more through than a burst and the rate."""
     clock, passed = Clock(), 0
     limit, began = RateLimit(clock), clock.now
     for pause, weight in sent:
