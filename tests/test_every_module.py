@@ -228,9 +228,10 @@ THE_PAGE = ("app/web/test_load.py", "browser/test_page.py")
 MOST_OF_THE_PAGE = 46
 
 
-def imports_of(path: Path) -> set[str]:
+@cache
+def imports_of(path: Path) -> frozenset[str]:
     """Names of modules that a source may import, names within modules and names in quotes among them."""
-    found = set()
+    found: set[str] = set()
     for node in ast.walk(ast.parse(path.read_text("utf-8"))):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
@@ -240,7 +241,7 @@ def imports_of(path: Path) -> set[str]:
             found.add(node.value)
     if path == modules()["app.cli.main"]:  # a command is loaded by the word that a person types
         found |= {module for module in modules() if module.startswith("app.cli.commands.")}
-    return found
+    return frozenset(found)
 
 
 @cache
