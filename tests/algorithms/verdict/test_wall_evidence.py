@@ -56,6 +56,7 @@ def test_what_the_walls_say_does_not_depend_on_the_frames(frame_1, frame_2):
     assert found.floor == pytest.approx(usual.floor, rel=0.05)
 
 
+@settings(max_examples=40)
 @given(st.floats(-1, 1), st.floats(-1, 1), st.floats(-0.5, 0.5))
 def test_swapping_the_maps_changes_nothing(x, y, turn):
     beside = T @ Pose2(x, y, turn)
@@ -64,6 +65,7 @@ def test_swapping_the_maps_changes_nothing(x, y, turn):
         assert getattr(there, name) == pytest.approx(getattr(back, name), rel=1e-3, abs=0.2), name
 
 
+@settings(max_examples=40)
 @given(st.floats(-2, 2), st.floats(-2, 2), st.floats(-1, 1))
 def test_letting_patches_slip_never_speaks_against_a_transform(x, y, turn):
     found = weighed(REF, MOV, T @ Pose2(x, y, turn))
@@ -118,6 +120,7 @@ def test_a_wall_that_was_seen_from_opposite_sides_neither_agrees_nor_contradicts
     assert back.contradicting == 0
 
 
+@settings(max_examples=40)
 @given(st.floats(-np.pi, np.pi))
 def test_a_turned_wall_is_still_seen_from_the_side_it_was_seen_from(turn):
     ref, mov = one_sided(True), one_sided(True)
