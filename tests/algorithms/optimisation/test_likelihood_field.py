@@ -12,8 +12,8 @@ from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.maps.wall_distance import distance_to_walls, surface
 from algorithms.observations.observation import Encounter, encounter
 from algorithms.observations.search_window import WindowConfig, coupled_window
-from algorithms.optimisation.likelihood_field import AgreementConfig, make_agreement
-from algorithms.optimisation.objective import Lookup
+from algorithms.optimisation.likelihood_field import AgreementConfig, clear, make_agreement
+from algorithms.optimisation.objective import PAD, Lookup
 from algorithms.spectra.augmented_map import AugmentConfig
 
 REF, MOV, SEEN, T = flat_pair()
@@ -319,3 +319,16 @@ def test_of_an_uneven_spread_the_longer_axis_says_how_far_walls_are_looked_up():
     wall = hall([tuple(box)], side=16.0)
     at = Encounter(np.array([8.0, 8.0]), np.array([8.0, 8.0]), np.eye(2) * 0.01)
     assert value(wall, wall, lift=lift, encounters=[at]) > 0.25
+
+
+@given(st.floats(1.0, 3.0), st.floats(1.0, 3.0), st.floats(0.2, 0.6))
+def test_what_says_nothing_around_a_robot_is_a_disc_with_the_robot_in_its_middle(x, y, radius):
+    grid = hall(side=4.0)
+    table = np.ones((80 + 2 * PAD, 80 + 2 * PAD), dtype=np.float32)
+    clear(table, grid, np.zeros(2), np.array([[x, y]]), radius)
+    rows, cols = np.indices(grid.cells.shape)
+    away = np.hypot(*(grid.centres(rows.ravel(), cols.ravel()) - (x, y)).T).reshape(rows.shape)
+    inside = table[PAD:-PAD, PAD:-PAD] == 0
+    assert (away[inside] < radius + 1e-9).all()
+    assert (away[~inside] > radius - 1e-9).all()
+    assert table.size - table.sum() == inside.sum()
