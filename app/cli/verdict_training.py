@@ -35,8 +35,8 @@ from algorithms.verdict.probability_model import MODEL_FILE, VerdictModel
 from app.cli.executor_flags import executor_for
 from app.cli.progress_bar import bar
 from app.evaluation.crossed_pairs import Crossing, building_of, crossed_case, crossings
-from app.evaluation.csv_tables import aligned, markdown
 from app.evaluation.reliability_figure import reliability_figure
+from app.evaluation.table_files import aligned, markdown
 from app.jobs.executor import Executor, LostTask, Task
 from app.system import data_paths
 

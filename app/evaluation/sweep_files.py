@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
 
 from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS
-from app.evaluation.csv_tables import JUDGED, PLACED, csv_bytes, judged_cells, placed_cells, share_text
 from app.evaluation.parameter_sweep import SweepPlan, SweepPoint, in_order
+from app.evaluation.table_files import (
+    JUDGED,
+    PLACED,
+    csv_bytes,
+    json_bytes,
+    judged_cells,
+    placed_cells,
+    share_text,
+)
 from app.report.result_files import plain
 from app.system.hardware import machine
 
@@ -32,13 +39,23 @@ def sweep_files(case: Case, plan: SweepPlan, points: Sequence[SweepPoint]) -> di
     from app.evaluation.sweep_figure import sweep_figure
 
     name, told = name_of(plan), in_order(plan, points)
+    about = {
+        "case": case.name,
+        "observation": case.observation_file,
+        "index_over": "true overlap" if case.truth is not None else "overlap of the estimate",
+        "method": plan.method,
+        "swept": {axis.name: axis.values for axis in (plan.x, plan.y) if axis is not None},
+        "seeds": plan.seeds,
+        "settings": plan.config,
+        "machine": machine(),
+    }
     title = f"{case.name}: {METHODS[plan.method].title}"
     figures = sweep_figure(plan, told, title, case.ref.resolution)
     return {
         f"{name}.csv": points_csv(plan, told),
         f"{name}.runs.csv": runs_csv(plan, told),
         f"{name}.times.csv": times_csv(plan, told),
-        f"{name}.json": _about(case, plan),
+        f"{name}.json": json_bytes(about),
         **{f"{name}{suffix}": data for suffix, data in figures.items()},
     }
 
@@ -79,20 +96,6 @@ def times_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
         if not point.failed
     ]
     return csv_bytes((*_names(plan), *header), rows)
-
-
-def _about(case: Case, plan: SweepPlan) -> bytes:
-    about = {
-        "case": case.name,
-        "observation": case.observation_file,
-        "index_over": "true overlap" if case.truth is not None else "overlap of the estimate",
-        "method": plan.method,
-        "swept": {axis.name: axis.values for axis in (plan.x, plan.y) if axis is not None},
-        "seeds": plan.seeds,
-        "settings": plan.config,
-        "machine": machine(),
-    }
-    return (json.dumps(plain(about), indent=1, ensure_ascii=False) + "\n").encode()
 
 
 def _names(plan: SweepPlan) -> tuple[str, ...]:

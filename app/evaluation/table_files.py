@@ -1,15 +1,21 @@
-"""Numbers as CSV files hold them: the same digits wherever they were computed."""
+"""Tables and numbers as files and people have them: the same digits wherever they were computed."""
 
 from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+import json
+from collections.abc import Iterable, Mapping, Sequence
 from math import degrees
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from app.evaluation.method_run import MethodRun
+from app.evaluation.method_run import MethodRun
+from app.report.result_files import plain
+
+
+def json_bytes(value: Any) -> bytes:
+    """A JSON file; settings and arrays in it are written as JSON can hold them."""
+    return (json.dumps(plain(value), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
 def csv_bytes(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
@@ -59,6 +65,31 @@ def placed_cells(trial: MethodRun) -> tuple[str, ...]:
     x, y, theta = trial.T_ref_mov or (None, None, None)
     off = metres_text(trial.distance), angle_text(trial.angle)
     return (*off, metres_text(x), metres_text(y), angle_text(theta))
+
+
+def apart_text(distance: float | None, angle: float | None) -> str:
+    """How far a wrong transform is from the true one; metres, radians."""
+    if distance is None or angle is None:
+        return "the maps share no place"
+    return f"{distance:.2f} m and {degrees(angle):.1f}° off"
+
+
+def text_rows(
+    columns: Mapping[str, str], rows: Iterable[Mapping[str, Any]], titles: Mapping[str, str] | None = None
+) -> list[list[str]]:
+    """Header and rows as a person reads them.
+
+    columns : how the values of a column are written, by its name
+    titles  : of columns that are not called by their names
+    """
+    header = [(titles or {}).get(name, name.replace("_", " ")) for name in columns]
+    return [
+        header,
+        *(
+            ["–" if row[name] is None else form.format(row[name]) for name, form in columns.items()]
+            for row in rows
+        ),
+    ]
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
