@@ -38,7 +38,8 @@ def executor_for(jobs: int | None = None, scheduler: str | None = None) -> Execu
         from app.jobs.dask_executor import DaskExecutor
 
         return DaskExecutor(scheduler)
-    from app.jobs.process_executor import ProcessExecutor, cores
+    from algorithms.common import parallel_kernels as kernels
+    from app.jobs.process_executor import ProcessExecutor
 
-    jobs = cores() if jobs is None else jobs
+    jobs = kernels.cores() if jobs is None else jobs
     return SerialExecutor() if jobs == 1 else ProcessExecutor(jobs)

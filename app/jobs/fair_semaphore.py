@@ -11,14 +11,15 @@ from contextlib import AbstractContextManager, contextmanager
 from threading import Condition
 from time import monotonic
 
-PATIENCE = 1.0  # seconds of waiting that need no words
+PATIENCE = 1.0  # seconds, unless told otherwise
 
 
 class FairSemaphore:
     """So many at a time, first come, first served."""
 
-    def __init__(self, places: int) -> None:
-        self._free = places
+    def __init__(self, places: int, patience: float | None = None) -> None:
+        """patience : seconds of waiting that need no words"""
+        self._free, self._patience = places, patience
         self._queue: deque[object] = deque()
         self._wake = Condition()
 
@@ -30,6 +31,7 @@ class FairSemaphore:
         tell   : is told how many are before, where it takes a while
         """
         me, since, told = object(), monotonic(), False
+        patience = PATIENCE if self._patience is None else self._patience
         with self._wake:
             self._queue.append(me)
         try:
@@ -44,7 +46,7 @@ class FairSemaphore:
                     before = self._queue.index(me)
                 if not wanted():
                     break
-                if not told and monotonic() - since > PATIENCE:
+                if not told and monotonic() - since > patience:
                     told = True
                     tell(before)
         except BaseException:

@@ -43,29 +43,19 @@ class _Stopped:
     untouched: list[Numbered]
 
 
-def cores() -> int:
-    """How many cores this process may use."""
-    return kernels.cores()
-
-
 class ProcessExecutor(Executor):
     """Processes of this machine, which share its cores evenly."""
 
     def __init__(self, jobs: int, gentle: bool = False) -> None:
         """gentle : they take only what time others leave them."""
-        self._jobs, self._gentle = jobs, gentle
-
-    @property
-    def jobs(self) -> int:
-        """How many processes."""
-        return self._jobs
+        self.jobs, self._gentle = jobs, gentle
 
     def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
         """As in Executor."""
         left = iter(enumerate(tasks))
         with _folder() as folder:
             while True:
-                stopped = yield from self._some(work, left, self._jobs, folder, stop)
+                stopped = yield from self._some(work, left, self.jobs, folder, stop)
                 if stopped is None:
                     return
                 left = chain(stopped.untouched, left)
@@ -83,7 +73,7 @@ class ProcessExecutor(Executor):
         listening, line = SPAWN.Pipe(duplex=False)
         running: dict[Future[Any], Numbered] = {}
         pool = ProcessPoolExecutor(
-            jobs, mp_context=SPAWN, initializer=_begin, initargs=(listening, self._jobs, self._gentle)
+            jobs, mp_context=SPAWN, initializer=_begin, initargs=(listening, self.jobs, self._gentle)
         )
         try:
             while stop is None or not stop.is_set():
@@ -160,7 +150,7 @@ def _begin(line: Connection, jobs: int, gentle: bool) -> None:
     if gentle and hasattr(os, "nice"):  # not on Windows
         os.nice(10)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the first process hears it and ends the others
-    threads = max(1, cores() // jobs)
+    threads = max(1, kernels.cores() // jobs)
     kernels.use_threads(threads)
     cv2.setNumThreads(threads)
     Thread(target=_end_with, args=(line,), daemon=True).start()

@@ -57,12 +57,12 @@ class MessageFilter:
         And ``send`` gives up a browser that takes nothing any more: what waits for it fills the memory.
         """
         hear = connection.recv
-        bucket = RateLimit(self._clock)
+        limit = RateLimit(RATE, BURST, self._clock)
 
         async def recv(*how: Any, **more: Any) -> Any:
             while True:
                 raw = await hear(*how, **more)
-                wait = bucket.take(1 + len(raw) // WEIGHT)
+                wait = limit.take(1 + len(raw) // WEIGHT)
                 if wait > 0:  # nothing is lost: whoever sends too fast waits for us
                     self.dropped["slowed"] += 1
                     await asyncio.sleep(wait)
@@ -101,17 +101,24 @@ class MessageFilter:
 
 
 class RateLimit:
-    """Counts messages against a rate."""
+    """So many of something a second, and more at once after a while of silence.
 
-    def __init__(self, clock: Callable[[], float]) -> None:
-        self._clock, self._left, self._at = clock, BURST, clock()
+    rate, burst : a second, and at once
+    """
 
-    def take(self, weight: int) -> float:
-        """One more, that counts as so many; the seconds it has to wait."""
+    def __init__(self, rate: float, burst: float, clock: Callable[[], float] = monotonic) -> None:
+        self._rate, self._burst, self._clock = rate, burst, clock
+        self._left, self._at = burst, clock()
+
+    def take(self, weight: float, earned: float = 0.0) -> float:
+        """Take one that counts as so many; seconds that it comes too early.
+
+        earned : how many more than by the time that has passed
+        """
         now = self._clock()
-        self._left = min(BURST, self._left + (now - self._at) * RATE) - weight
+        self._left = min(self._burst, self._left + (now - self._at) * self._rate + earned) - weight
         self._at = now
-        return max(0.0, -self._left / RATE)
+        return max(0.0, -self._left / self._rate)
 
 
 def usable(gui: Any, handle: Any) -> bool:
