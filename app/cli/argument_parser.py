@@ -19,7 +19,6 @@ class Parser(argparse.ArgumentParser):
         self.what_became_of: Callable[[str], str] = lambda flag: ""  # says it of an option that is gone
 
     def format_help(self) -> str:
-        """Description, usage, arguments."""
         text = super().format_help()
         if not self.description or self.description not in text:
             return text

@@ -38,11 +38,9 @@ class Checkpoint:
                 continue
 
     def get(self, key: str) -> Record | None:
-        """The record of this key; None where there is none."""
         return self._known.get(key)
 
     def records(self) -> list[Record]:
-        """All records, whatever their key."""
         return list(self._known.values())
 
     def add(self, key: str, record: Mapping[str, Any]) -> None:

@@ -16,8 +16,8 @@ from algorithms.files.case_folder import Case
 from algorithms.maps.map_fusion import fuse
 from algorithms.methods.registry import METHODS
 from app.drawing.grid_pixels import Pixels
-from app.drawing.palette import LIGHT
-from app.evaluation.figure_style import colour, figure_files
+from app.drawing.palette import LIGHT, css
+from app.evaluation.figure_style import figure_files
 from app.evaluation.method_comparison import ComparedRun, tally
 from app.evaluation.method_run import MethodRun
 from app.report.result_files import overlay
@@ -27,7 +27,7 @@ MOST_PIXELS = 320  # a side of a panel: walls of one pixel are then seen
 MARGIN = 10  # pixels around it
 MOST_CASES = 8  # with bars of their own
 
-RIGHT, WRONG, NOTHING = colour(LIGHT.ref), colour(LIGHT.conflict), colour(LIGHT.margin)
+RIGHT, WRONG, NOTHING = css(LIGHT.ref), css(LIGHT.conflict), css(LIGHT.margin)
 
 
 def maps_figure(case: Case, scores: Sequence[ComparedRun], title: str) -> dict[str, bytes]:
@@ -51,7 +51,7 @@ def maps_figure(case: Case, scores: Sequence[ComparedRun], title: str) -> dict[s
             ("wall that the other denies", LIGHT.conflict),
         )
         figure.legend(
-            handles=[Patch(color=colour(rgb), label=word) for word, rgb in keys],
+            handles=[Patch(color=css(rgb), label=word) for word, rgb in keys],
             loc="outside lower center",
             ncols=len(keys),
         )
@@ -65,7 +65,7 @@ def _panel(axes: Axes, case: Case, score: ComparedRun) -> None:
     axes.set_yticks([])
     axes.grid(visible=False)
     for spine in axes.spines.values():
-        spine.set(visible=True, color=colour(LIGHT.unknown))
+        spine.set(visible=True, color=css(LIGHT.unknown))
     said, hue = _said(score.trial)
     axes.set_title("\n".join(textwrap.wrap(METHODS[score.method].title, 30)), fontsize=8.5)
     axes.set_xlabel(said, color=hue, fontsize=8)
@@ -107,7 +107,7 @@ def _said(trial: MethodRun) -> tuple[str, str]:
     index = "" if trial.index is None else f"\neq. (23): {trial.index:.3f}"
     verdict = ("accepted, bent" if trial.bent else "accepted") if trial.accepted else "refused"
     if trial.right is None:
-        return f"{verdict}{index}", colour(LIGHT.text)
+        return f"{verdict}{index}", css(LIGHT.text)
     word, hue = ("right", RIGHT) if trial.right else ("WRONG", WRONG)
     off = ""
     if trial.distance is not None and trial.angle is not None:
@@ -168,7 +168,7 @@ def _means(figure: Figure, scores: Sequence[ComparedRun], methods: Sequence[str]
     for row, name in enumerate(methods):
         mean = rows[name].index
         if mean is not None:
-            axes.barh(row, mean, height=0.75, color=colour(LIGHT.unknown), zorder=1)
+            axes.barh(row, mean, height=0.75, color=css(LIGHT.unknown), zorder=1)
             axes.text(1.03, row, f"{mean:.3f}", va="center", fontsize=8)
         for right, hue, fill in ((True, RIGHT, RIGHT), (False, WRONG, "white")):
             values = [

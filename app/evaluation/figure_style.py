@@ -10,7 +10,7 @@ import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from app.drawing.palette import LIGHT, Rgb, css
+from app.drawing.palette import LIGHT, css
 
 DPI = 150  # of the PNG; a figure of 9 inches is then wider than a README shows it
 
@@ -41,11 +41,6 @@ STYLE = {
 # Okabe and Ito's, in an order in which neighbours differ also in lightness; and a sign for each
 COLOURS = [css(c) for c in (LIGHT.ref, LIGHT.conflict, LIGHT.mov, LIGHT.best, LIGHT.particle, LIGHT.rim)]
 MARKERS = ["o", "s", "^", "D", "v", "P"]
-
-
-def colour(rgb: Rgb) -> str:
-    """A colour of the palette as matplotlib takes it."""
-    return css(rgb)
 
 
 def figure_files(draw: Callable[[Figure], None], width: float, height: float) -> dict[str, bytes]:

@@ -58,7 +58,6 @@ class MethodRun:
 
     @property
     def pose(self) -> Pose2 | None:
-        """The transform."""
         return None if self.T_ref_mov is None else Pose2(*self.T_ref_mov)
 
     @property
@@ -67,18 +66,15 @@ class MethodRun:
         return self.T_ref_mov is not None and self.right is False
 
     def plain(self) -> dict[str, Any]:
-        """As JSON holds it."""
         return asdict(self)
 
     @staticmethod
     def of(plain: Mapping[str, Any]) -> MethodRun:
-        """The run of ``plain``."""
         T = plain["T_ref_mov"]
         return MethodRun(**{**plain, "T_ref_mov": None if T is None else tuple(T)})
 
     @staticmethod
     def failure(reason: str) -> MethodRun:
-        """A run that could not be made."""
         return MethodRun(None, False, reason, None, None, None, None, None, 0.0, failed=True)
 
 

@@ -40,6 +40,15 @@ class SweepAxis:
         """As its flag is called."""
         return ".".join(self.path).replace("_", "-")
 
+    @property
+    def numeric(self) -> bool:
+        """Whether the setting is a number; a choice has its values side by side."""
+        return all(isinstance(value, int | float) and not isinstance(value, bool) for value in self.values)
+
+    def place(self, value: Any) -> float:
+        """Where a value stands: at its number, or in a row."""
+        return float(value) if self.numeric else float(self.values.index(value))
+
 
 @dataclass(frozen=True)
 class SweepPlan:
@@ -68,7 +77,6 @@ class SweepPlan:
         return [(x, y) for y in (self.y.values if self.y else (None,)) for x in self.x.values]
 
     def config_at(self, x: Any, y: Any = None) -> Any:
-        """All settings at one place."""
         config = with_value(self.config, self.x.path, x)
         return config if self.y is None else with_value(config, self.y.path, y)
 
@@ -89,7 +97,6 @@ class Spread:
 
     @staticmethod
     def of(values: Sequence[float]) -> Spread:
-        """Of one value or more."""
         return Spread(fmean(values), median(values), pstdev(values), min(values), max(values))
 
 
@@ -120,7 +127,6 @@ class SweepPoint:
 
     @property
     def accepted(self) -> int:
-        """How many of them were accepted."""
         return sum(trial.accepted for trial in self.trials)
 
     @property

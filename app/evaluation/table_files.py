@@ -19,7 +19,6 @@ def json_bytes(value: Any) -> bytes:
 
 
 def csv_bytes(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
-    """A CSV file."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(header)
@@ -33,7 +32,6 @@ def share_text(value: float | None) -> str:
 
 
 def metres_text(value: float | None) -> str:
-    """A length."""
     return "" if value is None else f"{value:.4f}"
 
 
@@ -43,7 +41,6 @@ def angle_text(value: float | None) -> str:
 
 
 def yes_text(value: bool | None) -> str:
-    """A yes or a no."""
     return "" if value is None else "yes" if value else "no"
 
 
@@ -52,7 +49,6 @@ JUDGED = ("right", "fine", "accepted")
 
 
 def judged_cells(trial: MethodRun) -> tuple[str, ...]:
-    """Cells of JUDGED."""
     return tuple(map(yes_text, (trial.right, trial.fine, trial.accepted)))
 
 
@@ -61,7 +57,6 @@ PLACED = ("distance_m", "angle_deg", "x_m", "y_m", "theta_deg")
 
 
 def placed_cells(trial: MethodRun) -> tuple[str, ...]:
-    """Cells of PLACED."""
     x, y, theta = trial.T_ref_mov or (None, None, None)
     off = metres_text(trial.distance), angle_text(trial.angle)
     return (*off, metres_text(x), metres_text(y), angle_text(theta))

@@ -53,7 +53,6 @@ class BackgroundJob:
 
     @property
     def busy(self) -> bool:
-        """Whether anything is going on."""
         return self._stop is not None
 
     def start(self, work: Callable[[Event], Iterator[Any]]) -> None:

@@ -33,7 +33,6 @@ class Shared:
 
 
 def unpacked(data: bytes) -> Any:
-    """The value in ``Shared.data``."""
     return pickle.loads(zlib.decompress(data))
 
 
@@ -80,7 +79,6 @@ class SerialExecutor(Executor):
     jobs = 1
 
     def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
-        """As in Executor; a task that kills its process kills this one."""
         known: tuple[str, Any] = ("", None)
         for number, task in enumerate(tasks):
             if stop is not None and stop.is_set():

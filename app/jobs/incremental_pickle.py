@@ -42,13 +42,11 @@ class IncrementalPickle:
         self._before, self._things = self._things, {}
 
     def pack(self, value: Any) -> bytes:
-        """A value for the other end."""
         buffer = io.BytesIO()
         _Packer(buffer, self).dump(value)
         return buffer.getvalue()
 
     def unpack(self, data: bytes) -> Any:
-        """A value from the other end."""
         return _Unpacker(io.BytesIO(data), self).load()
 
     def number(self, thing: Any) -> Number | None:

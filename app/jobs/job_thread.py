@@ -112,7 +112,6 @@ class JobThread:
         return self.bench.steps(job, RunCallbacks(wanted), aside=True)
 
     def close(self) -> None:
-        """End the worker; the tab is gone."""
         self._requests.close()
         self._waiting.cut()
 

@@ -51,7 +51,6 @@ class ProcessExecutor(Executor):
         self.jobs, self._gentle = jobs, gentle
 
     def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
-        """As in Executor."""
         left = iter(enumerate(tasks))
         with _folder() as folder:
             while True:

@@ -48,7 +48,6 @@ class TappedRunner(Runner):
         self._bench, self._through = bench, through
 
     def steps(self, job: MergeJob, asker: RunCallbacks, aside: bool = False) -> Generator[Step, None, None]:
-        """As in Runner."""
         with closing(self._bench.steps(job, asker, aside)) as steps:
             yield from self._through(steps)
 

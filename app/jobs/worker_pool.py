@@ -60,7 +60,6 @@ class WorkerPool:
 
     @property
     def pids(self) -> list[int]:
-        """The processes that are there now."""
         return [worker.pid for worker in self._workers if worker.pid is not None]
 
     def close(self) -> None:
@@ -96,7 +95,6 @@ class _Worker:
 
     @property
     def pid(self) -> int | None:
-        """Of the process; None where there is none."""
         process = self._process
         return None if process is None else process.pid
 
@@ -186,7 +184,6 @@ class _Place(Runner):
         self._maps: tuple[object, object] = (None, None)
 
     def steps(self, job: MergeJob, asker: RunCallbacks, aside: bool = False) -> Generator[Step, None, None]:
-        """As in Runner."""
         with self._lock:
             if self._closed:
                 raise WorkerDiedError

@@ -30,7 +30,6 @@ class JsonFormatter(logging.Formatter):
     """A record as one line: when, level, where, what, and the facts that ``extra={"facts": ...}`` gave."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """The line."""
         line: dict[str, Any] = {
             "when": datetime.fromtimestamp(record.created, timezone.utc).isoformat(timespec="milliseconds"),
             "level": record.levelname.lower(),

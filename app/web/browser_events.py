@@ -133,7 +133,6 @@ class BrowserEvents:
         return True
 
     def close(self) -> None:
-        """End the thread; the tab is gone."""
         listen_unseen(self._text._impl.uuid, False)
         with self._wake:
             self._closed = True

@@ -48,7 +48,6 @@ Exit status: 0 done, 1 no method could be run on some case, 2 bad input, 130 int
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    """Tell the parser what the command takes."""
     parser.add_argument(
         "cases", metavar="DIR|CASE|SAMPLE", help="folder of cases, one case, or a sample's name"
     )

@@ -65,7 +65,6 @@ COLUMNS = {
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    """Tell the parser what the command takes; flags of the settings depend on the method in ``words``."""
     parser.add_argument("folder", type=Path, metavar="DIR", help="folder of cases, or one case")
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--rough", action="store_true", help="take observation_rough.yaml of each case")

@@ -69,7 +69,6 @@ Exit status: 0 merged, bent or not, 1 refused (with --force too), or bent with -
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    """Tell the parser what the command takes; flags of the settings depend on the method in ``words``."""
     parser.add_argument("map1", type=Path, metavar="MAP1", help="map of robot 1, the observer: YAML or image")
     parser.add_argument("map2", type=Path, metavar="MAP2", help="map of robot 2, the observed")
     parser.add_argument("--observation", type=Path, required=True, metavar="FILE", help="what robot 1 saw")

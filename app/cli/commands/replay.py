@@ -42,7 +42,6 @@ HTML_SUFFIXES = (".html", ".htm")
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    """Tell the parser what the command takes; flags of the settings depend on the method in ``words``."""
     parser.add_argument("first", metavar="CASE|MAP1", help="a sample's name or a case folder; or a map")
     parser.add_argument("map2", type=Path, metavar="MAP2", nargs="?", help="map of robot 2, the observed")
     parser.add_argument(

@@ -43,7 +43,6 @@ can be read on the network, the token with it. SECURITY.md tells more. Ctrl-C en
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    """Tell the parser what the command takes."""
     parser.add_argument("map1", type=Path, metavar="MAP1", nargs="?", help="map of robot 1, the observer")
     parser.add_argument("map2", type=Path, metavar="MAP2", nargs="?", help="map of robot 2, the observed")
     parser.add_argument("--observation", type=Path, metavar="FILE", help="what robot 1 saw")

@@ -48,7 +48,6 @@ Exit status: 0 done, 1 some point could not be run, 2 bad input, 130 interrupted
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    """Tell the parser what the command takes; flags of the settings depend on the method in ``words``."""
     parser.add_argument("case", metavar="CASE", help="a sample's name, or the folder of a case")
     parser.add_argument("--x", metavar="RANGE", help="the setting that is swept")
     parser.add_argument("--y", metavar="RANGE", help="a second one: all of its values with all of the first")

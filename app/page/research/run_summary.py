@@ -26,7 +26,6 @@ class RunSummary:
 
 
 def outcome_of(trial: MethodRun) -> RunSummary:
-    """What became of a trial."""
     if trial.failed:
         return RunSummary("Could not be run.", sentence(trial.reason), "", "plain")
     seconds = f"{trial.seconds:.2f} s"
