@@ -15,10 +15,10 @@ from app.evaluation.table_files import (
     PLACED,
     apart_text,
     csv_bytes,
+    fixed,
     json_bytes,
     judged_cells,
     placed_cells,
-    share_text,
     text_rows,
 )
 from app.system.hardware import machine
@@ -87,22 +87,18 @@ def case_files(name: str, case: Case, scores: Sequence[ComparedRun]) -> dict[str
 
 
 def _methods_csv(rows: dict[str, MethodTotals]) -> bytes:
-    names = list(MethodTotals.__dataclass_fields__)
-    return csv_bytes(
-        ("method", *names),
-        (
-            (method, *("" if value is None else value for value in asdict(row).values()))
-            for method, row in rows.items()
-        ),
-    )
+    header = ("method", *MethodTotals.__dataclass_fields__)
+    return csv_bytes(header, ((method, *asdict(row).values()) for method, row in rows.items()))
 
 
 def _scores_csv(scores: Sequence[ComparedRun]) -> bytes:
     rows = [
-        (score.case, score.method, *judged_cells(score.trial), share_text(score.trial.index))
-        + placed_cells(score.trial)
-        + ("" if score.trial.failed else f"{score.trial.seconds:.3f}", score.trial.reason)
+        (
+            *(score.case, score.method, *judged_cells(run), fixed(run.index, 6), *placed_cells(run)),
+            *(None if run.failed else fixed(run.seconds, 3), run.reason),
+        )
         for score in scores
+        for run in [score.trial]
     ]
     return csv_bytes(("case", "method", *JUDGED, "index", *PLACED, "seconds", "said"), rows)
 

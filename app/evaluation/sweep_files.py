@@ -11,10 +11,10 @@ from app.evaluation.table_files import (
     JUDGED,
     PLACED,
     csv_bytes,
+    fixed,
     json_bytes,
     judged_cells,
     placed_cells,
-    share_text,
 )
 from app.report.result_files import plain
 from app.system.hardware import machine
@@ -64,20 +64,21 @@ def points_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
     """A row per point, without anything that was measured with a clock."""
     rows = []
     for point in points:
-        spread, n = point.index, len(point.trials)
-        numbers = ("", "", "", "")
-        if spread is not None:
-            numbers = tuple(map(share_text, (spread.mean, spread.deviation, spread.low, spread.high)))
-        right = "" if point.right is None else point.right
-        rows.append((*_at(plan, point), n, *numbers, right, point.accepted, point.failed))
-    index = ("index_mean", "index_deviation", "index_min", "index_max")
-    return csv_bytes((*_names(plan), "seeds", *index, "right", "accepted", "failed"), rows)
+        index = point.index
+        numbers: list[float | None] = [None] * 4
+        if index is not None:
+            numbers = [index.mean, index.deviation, index.low, index.high]
+        shares = [fixed(number, 6) for number in numbers]
+        counts = (point.right, point.accepted, point.failed)
+        rows.append((*_at(plan, point), len(point.trials), *shares, *counts))
+    index_names = ("index_mean", "index_deviation", "index_min", "index_max")
+    return csv_bytes((*_names(plan), "seeds", *index_names, "right", "accepted", "failed"), rows)
 
 
 def runs_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
     """A row per merge: metres and degrees."""
     rows = [
-        (*_at(plan, point), seed, share_text(trial.index), *judged_cells(trial), *placed_cells(trial))
+        (*_at(plan, point), seed, fixed(trial.index, 6), *judged_cells(trial), *placed_cells(trial))
         for point in points
         for seed, trial in zip(plan.seeds, point.trials, strict=False)
     ]
@@ -87,19 +88,17 @@ def runs_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
 def times_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
     """A row per point: seconds of a merge, over the seeds."""
     header = ("seconds_mean", "seconds_median", "seconds_min", "seconds_max")
-    rows = [
-        (
-            *_at(plan, point),
-            *(f"{getattr(point.seconds, of):.4f}" for of in ("mean", "median", "low", "high")),
-        )
-        for point in points
-        if not point.failed
-    ]
+    rows = []
+    for point in points:
+        if not point.failed:
+            took = point.seconds
+            numbers = (took.mean, took.median, took.low, took.high)
+            rows.append((*_at(plan, point), *(fixed(number, 4) for number in numbers)))
     return csv_bytes((*_names(plan), *header), rows)
 
 
 def _names(plan: SweepPlan) -> tuple[str, ...]:
-    return tuple(axis.name for axis in (plan.y, plan.x) if axis is not None)
+    return tuple(reversed(plan.swept))
 
 
 def _at(plan: SweepPlan, point: SweepPoint) -> tuple[str, ...]:

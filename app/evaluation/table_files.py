@@ -19,47 +19,40 @@ def json_bytes(value: Any) -> bytes:
 
 
 def csv_bytes(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
+    """A CSV file: None is left empty, a bool is yes or no."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(header)
-    writer.writerows(rows)
+    writer.writerows(map(_csv_cell, row) for row in rows)
     return text.getvalue().encode()
 
 
-def share_text(value: float | None) -> str:
-    """A share of 1; empty where there is none, here and below."""
-    return "" if value is None else f"{value:.6f}"
+def _csv_cell(value: Any) -> Any:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return "" if value is None else value
 
 
-def metres_text(value: float | None) -> str:
-    return "" if value is None else f"{value:.4f}"
-
-
-def angle_text(value: float | None) -> str:
-    """An angle, given in radians, told in degrees."""
-    return "" if value is None else f"{degrees(value):.4f}"
-
-
-def yes_text(value: bool | None) -> str:
-    return "" if value is None else "yes" if value else "no"
+def fixed(value: float | None, digits: int) -> str | None:
+    """A number with so many decimals."""
+    return None if value is None else f"{value:.{digits}f}"
 
 
 JUDGED = ("right", "fine", "accepted")
 """Columns of what is to be said of a run."""
 
-
-def judged_cells(trial: MethodRun) -> tuple[str, ...]:
-    return tuple(map(yes_text, (trial.right, trial.fine, trial.accepted)))
-
-
 PLACED = ("distance_m", "angle_deg", "x_m", "y_m", "theta_deg")
 """Columns of a run's transform: how far off it is, and what it is."""
 
 
-def placed_cells(trial: MethodRun) -> tuple[str, ...]:
-    x, y, theta = trial.T_ref_mov or (None, None, None)
-    off = metres_text(trial.distance), angle_text(trial.angle)
-    return (*off, metres_text(x), metres_text(y), angle_text(theta))
+def judged_cells(run: MethodRun) -> list[bool | None]:
+    return [run.right, run.fine, run.accepted]
+
+
+def placed_cells(run: MethodRun) -> list[str | None]:
+    x, y, theta = run.T_ref_mov or (None, None, None)
+    angle, turn = (None if each is None else degrees(each) for each in (run.angle, theta))
+    return [fixed(value, 4) for value in (run.distance, angle, x, y, turn)]
 
 
 def apart_text(distance: float | None, angle: float | None) -> str:
