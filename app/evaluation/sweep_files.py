@@ -38,7 +38,7 @@ def sweep_files(case: Case, plan: SweepPlan, points: Sequence[SweepPoint]) -> di
     """
     from app.evaluation.sweep_figure import sweep_figure
 
-    name, told = name_of(plan), in_order(plan, points)
+    name, points = name_of(plan), in_order(plan, points)
     about = {
         "case": case.name,
         "observation": case.observation_file,
@@ -50,11 +50,11 @@ def sweep_files(case: Case, plan: SweepPlan, points: Sequence[SweepPoint]) -> di
         "machine": machine(),
     }
     title = f"{case.name}: {METHODS[plan.method].title}"
-    figures = sweep_figure(plan, told, title, case.ref.resolution)
+    figures = sweep_figure(plan, points, title, case.ref.resolution)
     return {
-        f"{name}.csv": points_csv(plan, told),
-        f"{name}.runs.csv": runs_csv(plan, told),
-        f"{name}.times.csv": times_csv(plan, told),
+        f"{name}.csv": points_csv(plan, points),
+        f"{name}.runs.csv": runs_csv(plan, points),
+        f"{name}.times.csv": times_csv(plan, points),
         f"{name}.json": json_bytes(about),
         **{f"{name}{suffix}": data for suffix, data in figures.items()},
     }

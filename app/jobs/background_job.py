@@ -27,7 +27,7 @@ def beside_the_page(jobs: int) -> Executor:
     return ProcessExecutor(max(1, min(jobs, kernels.cores() - 1)), gentle=True)
 
 
-class Asking(Protocol):
+class JobListener(Protocol):
     """Who is told of the work; one call at a time, with nobody else drawing."""
 
     def told(self, part: Any) -> None:
@@ -40,9 +40,11 @@ class Asking(Protocol):
 class BackgroundJob:
     """One piece of work at a time, in a thread of its own. Nothing is told once ``stop`` has returned."""
 
-    def __init__(self, asking: Asking, drawing: RLock, name: str, say: Callable[[str, float], None]) -> None:
+    def __init__(
+        self, listener: JobListener, drawing: RLock, name: str, say: Callable[[str, float], None]
+    ) -> None:
         """say : shows a sentence, and the share of the work that is done"""
-        self._asking, self._drawing, self._name, self._say = asking, drawing, name, say
+        self._listener, self._drawing, self._name, self._say = listener, drawing, name, say
         self._stop: Event | None = None  # of the work at hand
         self._began = 0.0
 
@@ -86,7 +88,7 @@ class BackgroundJob:
                 self._tell(stop, self._begin)
                 with closing(work(stop)) as parts:  # type: ignore[type-var]
                     for part in parts:
-                        if not self._tell(stop, lambda part=part: self._asking.told(part)):
+                        if not self._tell(stop, lambda part=part: self._listener.told(part)):
                             return
             except MapMergeError as error:
                 why = str(error)
@@ -103,7 +105,7 @@ class BackgroundJob:
 
     def _over(self, why: str) -> None:
         self._stop = None
-        self._asking.over(why)
+        self._listener.over(why)
 
     def _tell(self, stop: Event, tell: Callable[[], None]) -> bool:
         with self._drawing:

@@ -141,11 +141,11 @@ class JobThread:
             self._ended = job
             self._listener.ended(job, story)
 
-        asker = RunCallbacks(lambda: self._requests.wants(job), waits)
+        callbacks = RunCallbacks(lambda: self._requests.wants(job), waits)
         if not self._deliver(job, lambda: self._listener.begun(job)):
             return
         drawn_at = -FRAME
-        with closing(self.bench.steps(job, asker)) as steps:
+        with closing(self.bench.steps(job, callbacks)) as steps:
             for step in steps:
                 story.tell(step)
                 mark = self._waiting.mark

@@ -1,4 +1,4 @@
-"""Hangs the rules of access.py and gate.py into viser, which itself asks nobody who they are.
+"""Hangs the rules of access_control and message_filter into viser, which itself asks nobody who they are.
 
 Measured on viser 1.1.1: any web page that is open in the same browser could drive a server on this
 machine, any client could have a public tunnel opened, write any property of a widget, and fill the
@@ -124,8 +124,8 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
 def _response(answer: HttpReply) -> Response:
     body = answer.body.encode()
     kind = "text/html" if answer.body.startswith("<") else "text/plain"
-    told = {"Content-Type": f"{kind}; charset=utf-8", "Content-Length": str(len(body))}
-    headers = websockets.datastructures.Headers({**told, **HEADERS, **answer.headers})
+    own = {"Content-Type": f"{kind}; charset=utf-8", "Content-Length": str(len(body))}
+    headers = websockets.datastructures.Headers({**own, **HEADERS, **answer.headers})
     return Response(answer.status, http.HTTPStatus(answer.status).phrase, headers, body)
 
 

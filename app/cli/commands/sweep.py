@@ -132,18 +132,15 @@ def _fixed(args: argparse.Namespace, config: Any, paper: dict[tuple[str, ...], A
 
 def _summary(plan: SweepPlan, points: Sequence[SweepPoint]) -> list[str]:
     """What a person wants to know first: where it is best, and what went wrong."""
-    told = [point for point in points if point.index is not None]
+    found = [(point.index, point) for point in points if point.index is not None]
     lines = [f"{name_of(plan)}: {len(points)} points of {len(plan.seeds)} seeds"]
-    if told:
-        best = max(told, key=lambda point: point.index.mean if point.index else 0.0)
-        worst = min(told, key=lambda point: point.index.mean if point.index else 0.0)
-        for word, point in (("most", best), ("least", worst)):
-            assert point.index is not None
-            judged = "" if point.right is None else f", {point.right} of {len(point.trials)} right"
-            lines.append(
-                f"  {word:>5} agreement, eq. (23): {point.index.mean:.4f} ± {point.index.deviation:.4f} "
-                f"at {_place(plan, point)}{judged}, {point.seconds.median:.2f} s a merge"
-            )
+    for word, pick in (("most", max), ("least", min)) if found else ():
+        index, point = pick(found, key=lambda each: each[0].mean)
+        judged = "" if point.right is None else f", {point.right} of {len(point.trials)} right"
+        lines.append(
+            f"  {word:>5} agreement, eq. (23): {index.mean:.4f} ± {index.deviation:.4f} "
+            f"at {_place(plan, point)}{judged}, {point.seconds.median:.2f} s a merge"
+        )
     reasons = dict.fromkeys(point.failed for point in points if point.failed)
     return [*lines, *(f"  could not be run: {reason}" for reason in reasons)]
 

@@ -131,10 +131,10 @@ def columns(plan: SweepPlan, points: Points, measure: str, here: int | None) -> 
     places = plan.places()
     rows = []
     for n, point in points.items():
-        told = reading(point, measure)
-        if told is not None:
-            mark = told.middle if n == here else np.nan
-            rows.append((plan.x.place(places[n][0]), told.high, told.low, told.middle, mark))
+        value = reading(point, measure)
+        if value is not None:
+            mark = value.middle if n == here else np.nan
+            rows.append((plan.x.place(places[n][0]), value.high, value.low, value.middle, mark))
     if not rows:
         return np.array(reach(plan.x)), *(np.full(2, np.nan) for _ in range(4))
     return tuple(np.array(column, dtype=np.float64) for column in zip(*sorted(rows), strict=True))
@@ -142,10 +142,13 @@ def columns(plan: SweepPlan, points: Points, measure: str, here: int | None) -> 
 
 def height(plan: SweepPlan, points: Points, measure: str) -> tuple[float, float]:
     """Lower and upper end of the y axis, in whole steps, so that it seldom changes while a curve grows."""
-    told = [found for point in points.values() if (found := reading(point, measure)) is not None]
+    values = [value for point in points.values() if (value := reading(point, measure)) is not None]
     if measure in (RIGHT, ACCEPTED):
         return -0.04 * len(plan.seeds), 1.04 * len(plan.seeds)
-    low, high = min((each.low for each in told), default=0.0), max((each.high for each in told), default=1.0)
+    low, high = (
+        min((each.low for each in values), default=0.0),
+        max((each.high for each in values), default=1.0),
+    )
     if measure == TIME:
         step = 10.0 ** floor(log10(max(high, 1e-3)))
         return 0.0, step * ceil(1.05 * high / step)
@@ -161,9 +164,9 @@ def field(plan: SweepPlan, points: Points, measure: str) -> Numbers:
     assert plan.y is not None
     cells = np.full(len(plan.y.values) * len(plan.x.values), np.nan)
     for n, point in points.items():
-        told = reading(point, measure)
-        if told is not None:
-            cells[n] = told.middle
+        value = reading(point, measure)
+        if value is not None:
+            cells[n] = value.middle
     return cells.reshape(len(plan.y.values), len(plan.x.values))
 
 
