@@ -20,6 +20,7 @@ from app.evaluation.table_files import (
     judged_cells,
     placed_cells,
     text_rows,
+    zip_bytes,
 )
 from app.system.hardware import machine
 
@@ -69,8 +70,10 @@ def contest_files(scores: Sequence[ComparedRun], configs: Configs, seed: int) ->
         "settings": configs,
         "machine": machine(),
     }
+    header = ("method", *MethodTotals.__dataclass_fields__)
+    rows = [(method, *asdict(row).values()) for method, row in totals.items()]
     return {
-        "methods.csv": _methods_csv(totals),
+        "methods.csv": csv_bytes(header, rows),
         "scores.csv": _scores_csv(scores),
         "compare.json": json_bytes(about),
         **{f"bars{suffix}": data for suffix, data in bars_figure(scores).items()},
@@ -86,9 +89,9 @@ def case_files(name: str, case: Case, scores: Sequence[ComparedRun]) -> dict[str
     return {f"maps_{name.replace('/', '_')}{suffix}": data for suffix, data in figure.items()}
 
 
-def _methods_csv(rows: dict[str, MethodTotals]) -> bytes:
-    header = ("method", *MethodTotals.__dataclass_fields__)
-    return csv_bytes(header, ((method, *asdict(row).values()) for method, row in rows.items()))
+def contest_archive(case: Case, scores: Sequence[ComparedRun], configs: Configs, seed: int) -> bytes:
+    """A zip of the tables, bars and merged maps of one pair."""
+    return zip_bytes({**contest_files(scores, configs, seed), **case_files(case.name, case, scores)})
 
 
 def _scores_csv(scores: Sequence[ComparedRun]) -> bytes:

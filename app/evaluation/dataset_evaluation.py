@@ -5,7 +5,7 @@ probabilities are what they say.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from statistics import median
 from time import perf_counter
@@ -95,9 +95,11 @@ def evaluate(
     """
     executor = SerialExecutor() if executor is None else executor
     found: Sequence[Pair] = case_folders(order.root) if pairs is None else pairs
-    tasks = (Task((_read(pair, order) if executor.far else pair, order)) for pair in found)
+    tasks = (Task((pair, order, _read(pair, order) if executor.far else None)) for pair in found)
     for number, answer in executor.run(_work, tasks):
-        yield _failed(found[number], order, answer.reason) if isinstance(answer, LostTask) else answer
+        if isinstance(answer, LostTask):
+            answer = _evaluated(name_of_pair(order.root, found[number]), order, error=answer.reason)
+        yield answer
 
 
 def rough_folders(root: Path) -> list[Path]:
@@ -105,61 +107,45 @@ def rough_folders(root: Path) -> list[Path]:
     return [folder for folder in case_folders(root) if (folder / ROUGH_OBSERVATION_FILE).exists()]
 
 
-@dataclass(frozen=True, eq=False)
-class LoadedCase:
-    """A case that was read, for somebody who can't read our files, too.
-
-    seconds : what reading it took
-    """
-
-    name: str
-    case: Case
-    seconds: float
+Loaded = tuple[Case, float]
+"""A case, called by its place in the folder, and the seconds that reading it took."""
 
 
-def _work(_: None, given: tuple[Pair | LoadedCase | EvaluatedCase, EvaluationTask]) -> EvaluatedCase:
+def _work(_: None, given: tuple[Pair, EvaluationTask, Loaded | EvaluatedCase | None]) -> EvaluatedCase:
     return run_case(*given)
 
 
-def run_case(what: Pair | LoadedCase | EvaluatedCase, order: EvaluationTask) -> EvaluatedCase:
+def run_case(pair: Pair, order: EvaluationTask, read: Loaded | EvaluatedCase | None = None) -> EvaluatedCase:
     """Merge one case and judge it. A case that fails says why; it raises nothing but an interrupt.
 
-    what : an EvaluatedCase is one that could not be read
+    read : what ``_read`` has made of it, for somebody who can't read our files; None: it is read here
     """
-    read = what if isinstance(what, LoadedCase | EvaluatedCase) else _read(what, order)
+    read = read or _read(pair, order)
     if isinstance(read, EvaluatedCase):
         return read
-    case, began, truth = read.case, perf_counter(), None
+    (case, reading_s), began, truth = read, perf_counter(), None
     result = merge_or_reason(case, order.method, order.config, order.seed)
     outcome: dict[str, Any] = {"error": result}
     if isinstance(result, NoAnswerError):
         outcome, truth = {"no_answer": str(result)}, judge_case(case, None)
     elif not isinstance(result, str):
-        outcome, truth = (
-            {"report": report_of(result, order.config, read.seconds)},
-            judge_case(case, result),
-        )
-    seconds = read.seconds + perf_counter() - began
-    return EvaluatedCase(read.name, _observation_file(order), **outcome, truth=truth, seconds=seconds)
+        outcome = {"report": report_of(result, order.config, reading_s)}
+        truth = judge_case(case, result)
+    seconds = reading_s + perf_counter() - began
+    return _evaluated(case.name, order, **outcome, truth=truth, seconds=seconds)
 
 
-def _read(pair: Pair, order: EvaluationTask) -> LoadedCase | EvaluatedCase:
+def _read(pair: Pair, order: EvaluationTask) -> Loaded | EvaluatedCase:
     """The case in a folder, or the one that two make; why not, where it can't be read."""
-    began = perf_counter()
+    name, began = name_of_pair(order.root, pair), perf_counter()
     try:
-        case = read_pair(pair, order.rough)
+        return replace(read_pair(pair, order.rough), name=name), perf_counter() - began
     except Exception as error:
-        return _failed(pair, order, reason_of(error), perf_counter() - began)
-    return LoadedCase(name_of_pair(order.root, pair), case, perf_counter() - began)
+        return _evaluated(name, order, error=reason_of(error), seconds=perf_counter() - began)
 
 
-def _failed(pair: Pair, order: EvaluationTask, reason: str, seconds: float = 0.0) -> EvaluatedCase:
-    name = name_of_pair(order.root, pair)
-    return EvaluatedCase(name, _observation_file(order), error=reason, seconds=seconds)
-
-
-def _observation_file(order: EvaluationTask) -> str:
-    return ROUGH_OBSERVATION_FILE if order.rough else OBSERVATION_FILE
+def _evaluated(name: str, order: EvaluationTask, **outcome: Any) -> EvaluatedCase:
+    return EvaluatedCase(name, ROUGH_OBSERVATION_FILE if order.rough else OBSERVATION_FILE, **outcome)
 
 
 def totals_of(cases: Sequence[EvaluatedCase]) -> dict[str, dict[str, Any]]:

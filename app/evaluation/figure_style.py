@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from io import BytesIO
+from threading import Lock
 from typing import Any
 
 import matplotlib as mpl
@@ -42,6 +43,8 @@ STYLE = {
 COLOURS = [css(c) for c in (LIGHT.ref, LIGHT.conflict, LIGHT.mov, LIGHT.best, LIGHT.particle, LIGHT.rim)]
 MARKERS = ["o", "s", "^", "D", "v", "P"]
 
+_DRAWING = Lock()  # matplotlib is told how to draw for the whole process
+
 
 def figure_files(draw: Callable[[Figure], None], width: float, height: float) -> dict[str, bytes]:
     """The files of a figure by their suffix, ".png" and ".svg": the same bytes for the same drawing.
@@ -49,7 +52,7 @@ def figure_files(draw: Callable[[Figure], None], width: float, height: float) ->
     draw          : fills the figure
     width, height : inches
     """
-    with mpl.rc_context(STYLE):
+    with _DRAWING, mpl.rc_context(STYLE):
         figure = Figure(figsize=(width, height), layout="constrained")
         FigureCanvasAgg(figure)
         draw(figure)

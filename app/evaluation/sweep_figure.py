@@ -117,8 +117,13 @@ def _heat(
     _ticks(axes.yaxis, y.values)
     axes.set(title=f"Mean of {len(plan.seeds)} seeds", xlabel=_label(plan, plan.x), ylabel=_label(plan, y))
     if plan.x.path == SPREAD:
+
+        def squared_cells(value: float) -> str:
+            cells = (value / cell) ** 2
+            return f"{cells:.0f}" if cells < 10_000 else f"{cells / 1000:.0f}k"
+
         above = axes.secondary_xaxis("top")
-        _ticks(above.xaxis, plan.x.values, lambda value: _round((value / cell) ** 2))
+        _ticks(above.xaxis, plan.x.values, squared_cells)
         above.set_xlabel("Σ_a of the paper (squared cells)", fontsize=8)
         above.tick_params(labelsize=7)
         axes.set_title(axes.get_title("left"), loc="left", pad=6)
@@ -177,10 +182,6 @@ def _name_x(axes: Axes, plan: SweepPlan, axis: SweepAxis) -> None:
 
 def _label(plan: SweepPlan, axis: SweepAxis) -> str:
     return plan.setting(axis).label
-
-
-def _round(value: float) -> str:
-    return f"{value:.0f}" if value < 10_000 else f"{value / 1000:.0f}k"
 
 
 def _short(value: Any) -> str:

@@ -15,6 +15,7 @@ from app.evaluation.table_files import (
     json_bytes,
     judged_cells,
     placed_cells,
+    zip_bytes,
 )
 from app.report.result_files import plain
 from app.system.hardware import machine
@@ -58,6 +59,11 @@ def sweep_files(case: Case, plan: SweepPlan, points: Sequence[SweepPoint]) -> di
         f"{name}.json": json_bytes(about),
         **{f"{name}{suffix}": data for suffix, data in figures.items()},
     }
+
+
+def sweep_archive(case: Case, plan: SweepPlan, points: Sequence[SweepPoint]) -> bytes:
+    """A zip of the files of a sweep, as far as it came."""
+    return zip_bytes(sweep_files(case, plan, points))
 
 
 def points_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:

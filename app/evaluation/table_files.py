@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import zipfile
 from collections.abc import Iterable, Mapping, Sequence
 from math import degrees
 from typing import Any
@@ -16,6 +17,15 @@ from app.report.result_files import plain
 def json_bytes(value: Any) -> bytes:
     """A JSON file; settings and arrays in it are written as JSON can hold them."""
     return (json.dumps(plain(value), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+
+
+def zip_bytes(files: Mapping[str, bytes]) -> bytes:
+    """A zip of files by their names."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as target:
+        for name, content in files.items():
+            target.writestr(name, content)
+    return packed.getvalue()
 
 
 def csv_bytes(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:

@@ -78,10 +78,11 @@ class BackgroundJob:
 
     def _run(self, work: Callable[[Event], Iterator[Any]], stop: Event) -> None:
         why = ""
-        waits = "Waits: other tabs compare or sweep already."
-        with _turns.take(
-            lambda: not stop.is_set(), lambda before: self._tell(stop, lambda: self._say(waits, 0.0))
-        ) as mine:
+
+        def waits(_: int) -> None:
+            self._tell(stop, lambda: self._say("Waits: other tabs compare or sweep already.", 0.0))
+
+        with _turns.take(lambda: not stop.is_set(), waits) as mine:
             if not mine:
                 return
             try:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import signal
-from collections import OrderedDict
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import chain
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
@@ -142,8 +142,6 @@ def _no_room(error: OSError) -> OutputError:
 
 # ---- what runs in the other process
 
-_known: OrderedDict[str, Any] = OrderedDict()
-
 
 def _begin(line: Connection, jobs: int, gentle: bool) -> None:
     if gentle and hasattr(os, "nice"):  # not on Windows
@@ -166,9 +164,6 @@ def _do(work: Work, path: Path | None, order: Any) -> Any:
     return work(None if path is None else _value_in(path), order)
 
 
+@lru_cache(maxsize=KEPT)
 def _value_in(path: Path) -> Any:
-    if path.name not in _known:
-        _known[path.name] = unpacked(path.read_bytes())
-        if len(_known) > KEPT:
-            _known.popitem(last=False)
-    return _known[path.name]
+    return unpacked(path.read_bytes())

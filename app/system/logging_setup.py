@@ -104,6 +104,6 @@ def start(verbose: bool) -> None:
     logging.getLogger("app").setLevel(VERBOSE if verbose else QUIET)
 
 
-def facts(**told: Any) -> dict[str, Any]:
+def facts(**values: Any) -> dict[str, Any]:
     """What a line is to hold beside its words: ``log.info("merged", extra=facts(seconds=1.2))``."""
-    return {"facts": told}
+    return {"facts": values}

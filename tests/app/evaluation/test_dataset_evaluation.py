@@ -191,7 +191,7 @@ def test_a_bug_in_one_case_is_told_as_one(cases, monkeypatch):
 
 def die(_, given):
     """Stands for what works on a case: one of them takes its process down."""
-    folder, _order = given
+    folder, _order, _read = given
     if folder.name == "neg_1":
         os._exit(1)
     return EvaluatedCase(folder.name, "o")

@@ -18,7 +18,7 @@ from algorithms.common.setting_bounds import Bounds
 from algorithms.methods.registry import METHODS
 from app.drawing.palette import DARK, LIGHT
 from app.drawing.svg.thumbnail import thumbnail
-from app.evaluation.evaluation_archive import contest_archive
+from app.evaluation.comparison_files import contest_archive
 from app.evaluation.method_run import MethodRun
 from app.evaluation.parameter_sweep import SweepAxis, SweepPlan, SweepPoint
 from app.jobs import background_job as background
