@@ -1,6 +1,7 @@
 """Who computes when many tabs want to: so many at a time, the others in their order.
 
-A turn is one step of a run, not a whole one: all of them go on, and none has to wait for another's end.
+For merges a turn is one step of a run, not a whole one: all of them go on, and none has to wait for
+another's end.
 """
 
 from __future__ import annotations

@@ -102,24 +102,24 @@ class Access:
         """Name of the cookie: browsers send those of one port to the other ones of a host, too."""
         return f"mapmeld_{sha256(self.token.encode()).hexdigest()[:8]}"
 
-    def answer(self, asked: HttpRequest) -> HttpReply | None:
+    def answer(self, request: HttpRequest) -> HttpReply | None:
         """What is said instead of what was asked for; None: come in."""
-        host = asked.headers.get("host", "")
+        host = request.headers.get("host", "")
         if self.names is not None and _name(host) not in self.names:
             return HttpReply(421, "this page does not answer to that name")
-        if asked.upgrade and not _same(asked.headers.get("origin"), host):
+        if request.upgrade and not _same(request.headers.get("origin"), host):
             return HttpReply(403, "only the page itself may connect")
-        path, _, query = asked.path.partition("?")
-        if self.token and not self._known(asked.headers.get("cookie", "")):
+        path, _, query = request.path.partition("?")
+        if self.token and not self._known(request.headers.get("cookie", "")):
             given = urllib.parse.parse_qs(query).get("token", [""])[0]
-            if asked.upgrade or path != "/" or not same(given, self.token):
+            if request.upgrade or path != "/" or not same(given, self.token):
                 return _token_page(wrong=bool(given))
-            secure = self.tls is not None or asked.headers.get("x-forwarded-proto") == "https"
+            secure = self.tls is not None or request.headers.get("x-forwarded-proto") == "https"
             # No path: it is then that of the page, which behind a proxy may lie in a folder.
             # No redirection either: whoever follows a link from elsewhere would come without the cookie.
             cookie = f"{self.cookie}={self.token}; HttpOnly; SameSite=Strict{'; Secure' if secure else ''}"
             return HttpReply(200, _ENTER_PAGE, {"Set-Cookie": cookie, **TOKEN_PAGE_HEADERS})
-        if query and not asked.upgrade:
+        if query and not request.upgrade:
             # viser's page would connect to, or play, whatever another address in the query names
             return HttpReply(303, headers={"Location": "./"})
         return None
