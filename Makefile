@@ -77,7 +77,7 @@ replays: $(VENV)/ready
 	  $(BIN)/mapmeld replay $$name --out static/replays/$$name.html || exit; done
 
 verdict: $(VENV)/ready
-	@$(BIN)/python -m app.cli.verdict_training $(ARGS)
+	@$(TOOL)/verdict_training.py $(ARGS)
 
 results: $(VENV)/ready
 	@$(PIP) install -e '.[surf]'

@@ -106,11 +106,12 @@ EXERCISED_BY = {
         "app.cli.commands.compare",
         "app.cli.progress_bar",
         "app.evaluation.comparison_files",
-        "app.evaluation.csv_tables",
+        "app.evaluation.table_files",
         "app.evaluation.sweep_files",
     },
     "app/cli/test_main.py": {
         "app.cli.argument_parser",
+        "app.cli.map_arguments",
         "app.cli.setting_flags",
     },
     "app/drawing/scene/test_search_symbols.py": {
@@ -131,7 +132,6 @@ EXERCISED_BY = {
     "app/evaluation/test_figures.py": {
         "app.evaluation.comparison_figure",
         "app.evaluation.figure_style",
-        "app.evaluation.reliability_figure",
         "app.evaluation.sweep_figure",
     },
     "app/evaluation/test_parameter_sweep.py": {
@@ -193,7 +193,6 @@ EXERCISED_BY = {
         "app.page.research.sweep_curves",
         "app.page.research.sweep_request",
         "app.drawing.svg.thumbnail",
-        "app.evaluation.evaluation_archive",
         "app.jobs.background_job",
     },
     "app/page/test_cancellable_task.py": {
@@ -261,7 +260,6 @@ EXERCISED_BY = {
 }
 BY_NO_TEST = {
     "algorithms.simulator.large_pair": "only the benchmarks are so large",
-    "app.cli.verdict_training": "an hour of work: make verdict",
 }
 
 

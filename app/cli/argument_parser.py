@@ -19,7 +19,6 @@ class Parser(argparse.ArgumentParser):
         self.what_became_of: Callable[[str], str] = lambda flag: ""  # says it of an option that is gone
 
     def format_help(self) -> str:
-        """Description, usage, arguments."""
         text = super().format_help()
         if not self.description or self.description not in text:
             return text
@@ -70,3 +69,22 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     """ ", did you mean X?" for the nearest known word; empty where none is near."""
     near = difflib.get_close_matches(word, list(known), n=1)
     return f", did you mean {near[0]}?" if near else ""
+
+
+def whole_number(low: int, high: int | None = None, fault: str = "") -> Callable[[str], int]:
+    """The ``type`` of an argument that is a whole number in a range.
+
+    fault : what is said of anything else, after the text itself
+    """
+    fault = fault or f"is no whole number from {low} " + ("up" if high is None else f"to {high}")
+
+    def read(text: str) -> int:
+        try:
+            number = int(text)
+        except ValueError:
+            number = low - 1
+        if number < low or (high is not None and number > high):
+            raise argparse.ArgumentTypeError(f"{text} {fault}")
+        return number
+
+    return read

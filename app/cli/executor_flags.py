@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import argparse
-
-from app.cli.argument_parser import Parser
+from app.cli.argument_parser import Parser, whole_number
 from app.jobs.executor import Executor, SerialExecutor
 
 
@@ -13,14 +11,13 @@ def add_workers(parser: Parser, jobs: int | None) -> None:
 
     jobs : processes unless told otherwise; None: one per core
     """
-    told = "one per core" if jobs is None else jobs
     who = parser.add_mutually_exclusive_group()
     who.add_argument(
         "--jobs",
-        type=_jobs,
+        type=whole_number(1),
         default=jobs,
         metavar="N",
-        help=f"merges at a time, a process each, which share the cores (default: {told})",
+        help=f"merges at a time, a process each, which share the cores (default: {jobs or 'one per core'})",
     )
     who.add_argument(
         "--scheduler",
@@ -28,12 +25,6 @@ def add_workers(parser: Parser, jobs: int | None) -> None:
         help="let the workers of a Dask cluster do it, e.g. tcp://192.168.0.7:8786; "
         "needs pip install 'mapmeld[dask]', here and there",
     )
-
-
-def _jobs(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text} is no whole number from 1 up")
-    return int(text)
 
 
 def executor_for(jobs: int | None = None, scheduler: str | None = None) -> Executor:
@@ -47,7 +38,8 @@ def executor_for(jobs: int | None = None, scheduler: str | None = None) -> Execu
         from app.jobs.dask_executor import DaskExecutor
 
         return DaskExecutor(scheduler)
-    from app.jobs.process_executor import ProcessExecutor, cores
+    from algorithms.common import parallel_kernels as kernels
+    from app.jobs.process_executor import ProcessExecutor
 
-    jobs = cores() if jobs is None else jobs
+    jobs = kernels.cores() if jobs is None else jobs
     return SerialExecutor() if jobs == 1 else ProcessExecutor(jobs)

@@ -17,13 +17,12 @@ from app.cli.argument_parser import Parser, did_you_mean
 
 PROG = "mapmeld"
 
-EXIT_MERGED = 0
 EXIT_REFUSED = 1
 EXIT_BAD_INPUT = 2
 EXIT_BUG = 70  # not 1, which means "refused"
 EXIT_INTERRUPTED = 130
 
-OF_THE_MACHINE = {
+SYSTEM_ERRORS = {
     errno.EACCES,
     errno.EDQUOT,
     errno.EFBIG,
@@ -75,22 +74,22 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
         return status
     except NoAnswerError as refusal:  # where a command has nothing of its own to say of it
-        return _complain(str(refusal), EXIT_REFUSED)
+        return _print_error(str(refusal), EXIT_REFUSED)
     except MapMergeError as error:
-        return _complain(str(error), EXIT_BAD_INPUT)
+        return _print_error(str(error), EXIT_BAD_INPUT)
     except MemoryError:
-        return _complain("there is not enough memory for these maps; use smaller ones", EXIT_BAD_INPUT)
+        return _print_error("there is not enough memory for these maps; use smaller ones", EXIT_BAD_INPUT)
     except KeyboardInterrupt:
-        return _complain("interrupted; nothing half-written is left", EXIT_INTERRUPTED)
+        return _print_error("interrupted; nothing half-written is left", EXIT_INTERRUPTED)
     except BrokenPipeError:  # whoever read our stdout has gone: not our mistake, and not theirs
-        _write_no_more()
+        _discard_stdout()
         return EXIT_INTERRUPTED
     except OSError as error:
-        if error.errno not in OF_THE_MACHINE:
-            return _a_bug()
-        return _complain(_fault(error), EXIT_BAD_INPUT)
+        if error.errno not in SYSTEM_ERRORS:
+            return _report_bug()
+        return _print_error(_system_error(error), EXIT_BAD_INPUT)
     except Exception:  # of ours: told with its trace, and an exit status of its own
-        return _a_bug()
+        return _report_bug()
 
 
 def entry() -> None:
@@ -99,9 +98,9 @@ def entry() -> None:
         if getattr(sys, name) is None:  # closed by whoever started us, as for work in the background
             setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115
     for name in ("SIGTERM", "SIGHUP"):  # whoever asks it to end, or takes its terminal away: it ends whole
-        asked = getattr(signal, name, None)
-        if asked is not None and signal.getsignal(asked) is not signal.SIG_IGN:  # as nohup has it
-            signal.signal(asked, signal.default_int_handler)
+        signum = getattr(signal, name, None)
+        if signum is not None and signal.getsignal(signum) is not signal.SIG_IGN:  # as nohup has it
+            signal.signal(signum, signal.default_int_handler)
     status = main()
     if status == EXIT_INTERRUPTED:
         # not by the ordinary way out, which waits for threads that the interrupt may have caught
@@ -146,27 +145,27 @@ def _hyphened(word: str) -> str:
     return flag.replace("_", "-") + equals + value
 
 
-def _a_bug() -> int:
+def _report_bug() -> int:
     """One of ours: told whole, and with a status that nobody takes for a refusal."""
     traceback.print_exc()
-    return _complain("this is a bug of mapmeld; please report the lines above", EXIT_BUG)
+    return _print_error("this is a bug of mapmeld; please report the lines above", EXIT_BUG)
 
 
-def _fault(error: OSError) -> str:
+def _system_error(error: OSError) -> str:
     """What the machine would not do, and what helps."""
     if error.filename is None:
-        _write_no_more()
+        _discard_stdout()
         where = "where the output goes, and for temporary files ($TMPDIR)"
         return f"the system says: {error.strerror}; see that there is room {where}"
     return f"{error.filename}: {error.strerror}; check the path and who may use it"
 
 
-def _write_no_more() -> None:
+def _discard_stdout() -> None:
     """Let what is left for stdout go nowhere: Python would try it again at its end, and complain."""
     with suppress(UnsupportedOperation):  # a stdout that is no file
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _complain(message: str, status: int) -> int:
+def _print_error(message: str, status: int) -> int:
     sys.stderr.write(f"{PROG}: {' '.join(message.split())}\n")
     return status

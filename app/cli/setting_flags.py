@@ -8,13 +8,11 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
-from app.cli.argument_parser import Parser, did_you_mean
+from app.cli.argument_parser import Parser, did_you_mean, whole_number
 from app.model.settings import Setting, settings_of, value_at, what_became_of, with_value
-from app.system.data_paths import samples
 
 SHORT = {("verdict", "accept_from"): ("--accept-from",), ("verdict", "refuse_bent"): ("--strict",)}
 """Settings that have a short flag, too."""
@@ -42,19 +40,8 @@ def add_method(parser: Parser, words: Sequence[str], default: str = DEFAULT_METH
 
 def add_seed(parser: Parser) -> None:
     """Add ``--seed``."""
-    parser.add_argument(
-        "--seed", type=_seed, default=0, help="the same seed gives the same answer (default: 0)"
-    )
-
-
-def case_folder(name: str, parser: Parser) -> Path:
-    """The folder of a case, or of the sample of that name; a usage error where there is neither."""
-    known, folder = samples(), Path(name)
-    if folder.is_dir():
-        return folder
-    if name not in known:
-        parser.error(f"{name} is neither a folder nor a sample{did_you_mean(name, known)}")
-    return known[name]
+    hint = "the same seed gives the same answer (default: 0)"
+    parser.add_argument("--seed", type=whole_number(0), default=0, help=hint)
 
 
 def config_from(args: argparse.Namespace) -> Any:
@@ -67,32 +54,23 @@ def config_from(args: argparse.Namespace) -> Any:
     return config
 
 
+def method_name(name: str) -> str:
+    """The name of a method, as it was given."""
+    if name not in METHODS:
+        near = did_you_mean(name, METHODS) or f"; known are {', '.join(METHODS)}"
+        raise argparse.ArgumentTypeError(f"there is no method {name or 'without a name'}{near}")
+    return name
+
+
 def _method_flag(parser: argparse.ArgumentParser, default: str) -> None:
     titles = "\n".join(f"{name}: {method.title}" for name, method in METHODS.items())
     parser.add_argument(
         "--method",
-        type=_method,
+        type=method_name,
         default=default,
         metavar="NAME",
         help=f"one of\n{titles}\n(default: {default})".replace("%", "%%"),
     )
-
-
-def _method(name: str) -> str:
-    if name not in METHODS:
-        near = did_you_mean(name, METHODS) or f"; known are {', '.join(METHODS)}"
-        raise argparse.ArgumentTypeError(f"there is no method {name}{near}")
-    return name
-
-
-def _seed(text: str) -> int:
-    try:
-        seed = int(text)
-    except ValueError:
-        seed = -1
-    if seed < 0:
-        raise argparse.ArgumentTypeError(f"{text} is no whole number from 0 up")
-    return seed
 
 
 def _flag(setting: Setting) -> str:
@@ -100,38 +78,24 @@ def _flag(setting: Setting) -> str:
 
 
 def _add(group: Any, setting: Setting) -> None:
-    flag, about = f"--{_flag(setting)}", [setting.hint or setting.label]
+    names, about = [f"--{_flag(setting)}", *SHORT.get(setting.path, ())], setting.hint or setting.label
+    bounds = setting.bounds
+    how: dict[str, Any]
     if isinstance(setting.default, bool):
-        word = "yes" if setting.default else "no"
-        group.add_argument(
-            flag,
-            *SHORT.get(setting.path, ()),
-            dest=_flag(setting),
-            action=argparse.BooleanOptionalAction,
-            default=None,
-            help=_help(about, word),
-        )
-        return
-    if setting.choices is not None:
+        default, how = "yes" if setting.default else "no", {"action": argparse.BooleanOptionalAction}
+    elif setting.choices is not None:
         options = {str(getattr(option, "value", option)): option for option in setting.choices.values()}
         default = next(word for word, option in options.items() if option == setting.default)
-        reader, metavar = _choice(options), "|".join(options)
+        how = {"type": _choice(options), "metavar": "|".join(options)}
     else:
-        bounds = setting.bounds
         unit = f" {bounds.unit}" if bounds and bounds.unit else ""
         default = f"{setting.default:g}{unit}"
         if bounds:
             symbol = f"{bounds.symbol}, " if bounds.symbol else ""
-            about.append(f"[{symbol}{bounds.low:g} … {bounds.high:g}{unit}]")
-        reader, metavar = _number(setting), "N" if setting.whole else "X"
-    names = [flag, *SHORT.get(setting.path, ())]
-    group.add_argument(
-        *names, dest=_flag(setting), type=reader, metavar=metavar, default=None, help=_help(about, default)
-    )
-
-
-def _help(about: list[str], default: str) -> str:
-    return f"{' '.join(about)} (default: {default})".replace("%", "%%")
+            about += f" [{symbol}{bounds.low:g} … {bounds.high:g}{unit}]"
+        how = {"type": _number(setting), "metavar": "N" if setting.whole else "X"}
+    text = f"{about} (default: {default})".replace("%", "%%")
+    group.add_argument(*names, dest=_flag(setting), default=None, help=text, **how)
 
 
 def _choice(options: dict[str, Any]) -> Callable[[str], Any]:

@@ -32,14 +32,16 @@ class Checkpoint:
         self._torn = bool(data) and not data.endswith(b"\n")
         for line in data.splitlines():
             try:
-                told = json.loads(line)
-                self._known[told["key"]] = told["record"]
+                entry = json.loads(line)
+                self._known[entry["key"]] = dict(entry["record"])
             except (ValueError, KeyError, TypeError):  # torn by a stop: that point is worked out again
                 continue
 
     def get(self, key: str) -> Record | None:
-        """The record of this key; None where there is none."""
         return self._known.get(key)
+
+    def records(self) -> list[Record]:
+        return list(self._known.values())
 
     def add(self, key: str, record: Mapping[str, Any]) -> None:
         """Keep a record; raises OutputError."""

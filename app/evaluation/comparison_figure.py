@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from math import ceil, degrees
+from math import ceil
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,10 +17,11 @@ from algorithms.files.case_folder import Case
 from algorithms.maps.map_fusion import fuse
 from algorithms.methods.registry import METHODS
 from app.drawing.grid_pixels import Pixels
-from app.drawing.palette import LIGHT
-from app.evaluation.figure_style import colour, figure_files
+from app.drawing.palette import LIGHT, css
+from app.evaluation.figure_style import figure_files
 from app.evaluation.method_comparison import ComparedRun, tally
 from app.evaluation.method_run import MethodRun
+from app.evaluation.table_files import apart_text
 from app.report.result_files import overlay
 
 COLUMNS = 4
@@ -27,36 +29,51 @@ MOST_PIXELS = 320  # a side of a panel: walls of one pixel are then seen
 MARGIN = 10  # pixels around it
 MOST_CASES = 8  # with bars of their own
 
-RIGHT, WRONG, NOTHING = colour(LIGHT.ref), colour(LIGHT.conflict), colour(LIGHT.margin)
+RIGHT, WRONG, NOTHING = css(LIGHT.ref), css(LIGHT.conflict), css(LIGHT.margin)
+RIGHT_AND_WRONG = (
+    Patch(facecolor=RIGHT, edgecolor=RIGHT, label="right transform"),
+    Patch(facecolor="white", edgecolor=WRONG, label="wrong transform"),
+)
 
 
 def maps_figure(case: Case, scores: Sequence[ComparedRun], title: str) -> dict[str, bytes]:
     """The files of the merged maps of one case, a panel per method, by suffix."""
     in_order = [score for name in METHODS for score in scores if score.method == name]
-    columns = min(COLUMNS, len(in_order))
-    rows = ceil(len(in_order) / columns)
+    rows, columns = _grid(len(in_order))
 
     def draw(figure: Figure) -> None:
         figure.suptitle(title, x=0.01, ha="left")
         figure.get_layout_engine().set(w_pad=0.08, h_pad=0.12, hspace=0.03)  # type: ignore[union-attr]
-        panels = figure.subplots(rows, columns, squeeze=False).ravel()
-        for panel, score in zip(panels, in_order, strict=False):
+        panels = _panels(figure, len(in_order))
+        for panel, score in zip(panels.ravel(), in_order, strict=False):
             _panel(panel, case, score)
-        for panel in panels[len(in_order) :]:
-            panel.set_axis_off()
-        keys = (
-            ("wall of map 1", LIGHT.ref),
-            ("wall of map 2", LIGHT.mov),
-            ("wall of both", LIGHT.agreed),
-            ("wall that the other denies", LIGHT.conflict),
-        )
-        figure.legend(
-            handles=[Patch(color=colour(rgb), label=word) for word, rgb in keys],
-            loc="outside lower center",
-            ncols=len(keys),
-        )
+        keys = {
+            "wall of map 1": LIGHT.ref,
+            "wall of map 2": LIGHT.mov,
+            "wall of both": LIGHT.agreed,
+            "wall that the other denies": LIGHT.conflict,
+        }
+        _legend(figure, [Patch(color=css(rgb), label=label) for label, rgb in keys.items()])
 
     return figure_files(draw, 2.6 * columns, 2.9 * rows + 0.6)
+
+
+def _grid(count: int) -> tuple[int, int]:
+    """Rows and columns of so many panels."""
+    columns = min(COLUMNS, count)
+    return ceil(count / columns), columns
+
+
+def _panels(figure: Figure, count: int, **shared: bool) -> Any:
+    """Rows of axes; those that are too many are not drawn."""
+    panels = figure.subplots(*_grid(count), squeeze=False, **shared)
+    for panel in panels.ravel()[count:]:
+        panel.set_axis_off()
+    return panels
+
+
+def _legend(figure: Figure, patches: Sequence[Patch]) -> None:
+    figure.legend(handles=patches, loc="outside lower center", ncols=len(patches))
 
 
 def _panel(axes: Axes, case: Case, score: ComparedRun) -> None:
@@ -65,10 +82,10 @@ def _panel(axes: Axes, case: Case, score: ComparedRun) -> None:
     axes.set_yticks([])
     axes.grid(visible=False)
     for spine in axes.spines.values():
-        spine.set(visible=True, color=colour(LIGHT.unknown))
-    said, hue = _said(score.trial)
+        spine.set(visible=True, color=css(LIGHT.unknown))
+    outcome, hue = _outcome(score.trial)
     axes.set_title("\n".join(textwrap.wrap(METHODS[score.method].title, 30)), fontsize=8.5)
-    axes.set_xlabel(said, color=hue, fontsize=8)
+    axes.set_xlabel(outcome, color=hue, fontsize=8)
     pose = score.trial.pose
     if pose is None:
         why = textwrap.fill(score.trial.reason.removeprefix("Refused: "), 34, max_lines=7)
@@ -98,7 +115,7 @@ def _square(pixels: Pixels) -> Pixels:
     return square
 
 
-def _said(trial: MethodRun) -> tuple[str, str]:
+def _outcome(trial: MethodRun) -> tuple[str, str]:
     """What became of it, and the colour of that."""
     if trial.failed:
         return "could not be run", NOTHING
@@ -107,11 +124,9 @@ def _said(trial: MethodRun) -> tuple[str, str]:
     index = "" if trial.index is None else f"\neq. (23): {trial.index:.3f}"
     verdict = ("accepted, bent" if trial.bent else "accepted") if trial.accepted else "refused"
     if trial.right is None:
-        return f"{verdict}{index}", colour(LIGHT.text)
+        return f"{verdict}{index}", css(LIGHT.text)
     word, hue = ("right", RIGHT) if trial.right else ("WRONG", WRONG)
-    off = ""
-    if trial.distance is not None and trial.angle is not None:
-        off = f", {trial.distance:.2f} m and {degrees(trial.angle):.1f}° off"
+    off = "" if trial.distance is None else f", {apart_text(trial.distance, trial.angle)}"
     return f"{word}{off}\n{verdict}{index.replace(chr(10), ' · ')}", hue
 
 
@@ -121,22 +136,19 @@ def bars_figure(scores: Sequence[ComparedRun]) -> dict[str, bytes]:
     methods = [name for name in METHODS if any(score.method == name for score in scores)]
     if len(cases) > MOST_CASES:
         return figure_files(lambda figure: _means(figure, scores, methods), 8, 1.2 + 0.32 * len(methods))
-    columns = min(COLUMNS, len(cases))
-    rows = ceil(len(cases) / columns)
+    rows, columns = _grid(len(cases))
 
     def draw(figure: Figure) -> None:
-        panels = figure.subplots(rows, columns, squeeze=False, sharey=True, sharex=True)
+        panels = _panels(figure, len(cases), sharey=True, sharex=True)
         for panel, case in zip(panels.ravel(), cases, strict=False):
             mine = {score.method: score.trial for score in scores if score.case == case}
             _bars(panel, [mine.get(name) for name in methods], case)
-        for panel in panels.ravel()[len(cases) :]:
-            panel.set_axis_off()
         first = panels[0, 0]
         first.set_yticks(range(len(methods)), methods)
         first.invert_yaxis()
         for panel in panels[-1]:
             panel.set_xlabel("eq. (23)")
-        _legend(figure)
+        _legend(figure, RIGHT_AND_WRONG)
 
     return figure_files(draw, 2.0 + 2.1 * columns, 0.9 + rows * (0.5 + 0.2 * len(methods)))
 
@@ -146,20 +158,14 @@ def _bars(axes: Axes, trials: Sequence[MethodRun | None], title: str) -> None:
     axes.set_xticks([0, 0.5, 1])
     axes.grid(visible=False, axis="y")
     for row, trial in enumerate(trials):
-        if trial is None or trial.failed:
-            axes.text(0.02, row, "not run", va="center", fontsize=7, color=NOTHING)
-        elif trial.T_ref_mov is None:
-            axes.text(0.02, row, "no transform", va="center", fontsize=7, color=NOTHING)
+        if trial is None or trial.failed or trial.T_ref_mov is None:
+            text = "not run" if trial is None or trial.failed else "no transform"
+            axes.text(0.02, row, text, va="center", fontsize=7, color=NOTHING)
         elif trial.index is not None:
-            _bar(axes, row, trial.index, trial.right)
-
-
-def _bar(axes: Axes, row: int, index: float, right: bool | None) -> None:
-    hue = {True: RIGHT, False: WRONG, None: NOTHING}[right]
-    axes.barh(
-        row, index, height=0.7, color=hue if right is not False else "white", edgecolor=hue, linewidth=1.2
-    )
-    axes.text(index + 0.015, row, f"{index:.2f}", va="center", fontsize=7)
+            hue = {True: RIGHT, False: WRONG, None: NOTHING}[trial.right]
+            fill = "white" if trial.right is False else hue
+            axes.barh(row, trial.index, height=0.7, color=fill, edgecolor=hue, linewidth=1.2)
+            axes.text(trial.index + 0.015, row, f"{trial.index:.2f}", va="center", fontsize=7)
 
 
 def _means(figure: Figure, scores: Sequence[ComparedRun], methods: Sequence[str]) -> None:
@@ -168,7 +174,7 @@ def _means(figure: Figure, scores: Sequence[ComparedRun], methods: Sequence[str]
     for row, name in enumerate(methods):
         mean = rows[name].index
         if mean is not None:
-            axes.barh(row, mean, height=0.75, color=colour(LIGHT.unknown), zorder=1)
+            axes.barh(row, mean, height=0.75, color=css(LIGHT.unknown), zorder=1)
             axes.text(1.03, row, f"{mean:.3f}", va="center", fontsize=8)
         for right, hue, fill in ((True, RIGHT, RIGHT), (False, WRONG, "white")):
             values = [
@@ -187,15 +193,4 @@ def _means(figure: Figure, scores: Sequence[ComparedRun], methods: Sequence[str]
     axes.set_yticks(range(len(methods)), methods)
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
-    _legend(figure)
-
-
-def _legend(figure: Figure) -> None:
-    figure.legend(
-        handles=[
-            Patch(facecolor=RIGHT, edgecolor=RIGHT, label="right transform"),
-            Patch(facecolor="white", edgecolor=WRONG, label="wrong transform"),
-        ],
-        loc="outside lower center",
-        ncols=2,
-    )
+    _legend(figure, RIGHT_AND_WRONG)

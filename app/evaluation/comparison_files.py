@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import asdict
-from math import degrees
 from typing import Any
 
 from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS
-from app.evaluation.csv_tables import JUDGED, PLACED, csv_bytes, judged_cells, placed_cells, share_text
 from app.evaluation.method_comparison import ComparedRun, Configs, MethodTotals, tally
-from app.report.result_files import plain
+from app.evaluation.table_files import (
+    JUDGED,
+    PLACED,
+    apart_text,
+    csv_bytes,
+    fixed,
+    json_bytes,
+    judged_cells,
+    placed_cells,
+    text_rows,
+    zip_bytes,
+)
 from app.system.hardware import machine
 
 TABLE = {
@@ -40,35 +49,34 @@ NOTES = (
 )
 
 
-def sorted_scores(scores: Iterable[ComparedRun]) -> list[ComparedRun]:
-    """By case, then in the order of the table of methods: however they came."""
-    order = list(METHODS)
-    return sorted(scores, key=lambda score: (score.case, order.index(score.method)))
-
-
 def table_rows(scores: Sequence[ComparedRun]) -> list[list[str]]:
     """Header and a row per method, as a person reads them."""
-    rows = [[TITLES.get(name, name) for name in TABLE]]
-    for method, row in tally(scores).items():
-        values: dict[str, Any] = {"method": method, **asdict(row)}
-        if not row.judged:
-            values |= dict.fromkeys(("right", "fine", "wrong", "no_answer", "wrong_accepted"))
-        rows.append(
-            ["–" if values[name] is None else form.format(values[name]) for name, form in TABLE.items()]
-        )
-    return rows
+    rows: list[dict[str, Any]] = [{"method": method, **asdict(row)} for method, row in tally(scores).items()]
+    for row in rows:
+        if not row["judged"]:
+            row |= dict.fromkeys(("right", "fine", "wrong", "no_answer", "wrong_accepted"))
+    return text_rows(TABLE, rows, TITLES)
 
 
 def contest_files(scores: Sequence[ComparedRun], configs: Configs, seed: int) -> dict[str, bytes]:
     """Tables, JSON and bars by name; the pictures of each case come from ``case_files``."""
     from app.evaluation.comparison_figure import bars_figure
 
-    told = sorted_scores(scores)
+    scores, totals = _in_order(scores), tally(scores)
+    about = {
+        "scores": [{"case": s.case, "method": s.method, **s.trial.plain()} for s in scores],
+        "methods": totals,
+        "seed": seed,
+        "settings": configs,
+        "machine": machine(),
+    }
+    header = ("method", *MethodTotals.__dataclass_fields__)
+    rows = [(method, *asdict(row).values()) for method, row in totals.items()]
     return {
-        "methods.csv": _methods_csv(tally(told)),
-        "scores.csv": _scores_csv(told),
-        "compare.json": _json(told, configs, seed),
-        **{f"bars{suffix}": data for suffix, data in bars_figure(told).items()},
+        "methods.csv": csv_bytes(header, rows),
+        "scores.csv": _scores_csv(scores),
+        "compare.json": json_bytes(about),
+        **{f"bars{suffix}": data for suffix, data in bars_figure(scores).items()},
     }
 
 
@@ -81,53 +89,38 @@ def case_files(name: str, case: Case, scores: Sequence[ComparedRun]) -> dict[str
     return {f"maps_{name.replace('/', '_')}{suffix}": data for suffix, data in figure.items()}
 
 
-def _methods_csv(rows: dict[str, MethodTotals]) -> bytes:
-    names = list(MethodTotals.__dataclass_fields__)
-    return csv_bytes(
-        ("method", *names),
-        (
-            (method, *("" if value is None else value for value in asdict(row).values()))
-            for method, row in rows.items()
-        ),
-    )
+def contest_archive(case: Case, scores: Sequence[ComparedRun], configs: Configs, seed: int) -> bytes:
+    """A zip of the tables, bars and merged maps of one pair."""
+    return zip_bytes({**contest_files(scores, configs, seed), **case_files(case.name, case, scores)})
 
 
 def _scores_csv(scores: Sequence[ComparedRun]) -> bytes:
     rows = [
-        (score.case, score.method, *judged_cells(score.trial), share_text(score.trial.index))
-        + placed_cells(score.trial)
-        + ("" if score.trial.failed else f"{score.trial.seconds:.3f}", score.trial.reason)
+        (
+            *(score.case, score.method, *judged_cells(run), fixed(run.index, 6), *placed_cells(run)),
+            *(None if run.failed else fixed(run.seconds, 3), run.reason),
+        )
         for score in scores
+        for run in [score.trial]
     ]
     return csv_bytes(("case", "method", *JUDGED, "index", *PLACED, "seconds", "said"), rows)
 
 
-def _json(scores: Sequence[ComparedRun], configs: Configs, seed: int) -> bytes:
-    told = {
-        "scores": [{"case": s.case, "method": s.method, **s.trial.plain()} for s in scores],
-        "methods": {name: asdict(row) for name, row in tally(scores).items()},
-        "seed": seed,
-        "settings": configs,
-        "machine": machine(),
-    }
-    return (json.dumps(plain(told), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+def _in_order(scores: Sequence[ComparedRun]) -> list[ComparedRun]:
+    """By case, then in the order of the table of methods: however they came."""
+    order = list(METHODS)
+    return sorted(scores, key=lambda score: (score.case, order.index(score.method)))
 
 
 def remarks(scores: Sequence[ComparedRun]) -> list[str]:
     """A line for each wrong merge that was accepted, and for each reason why something could not be run."""
-    lines = []
-    for score in sorted_scores(scores):
-        trial = score.trial
-        if trial.wrong and trial.accepted:
-            apart = "the maps share no place"
-            if trial.distance is not None and trial.angle is not None:
-                apart = f"{trial.distance:.2f} m and {degrees(trial.angle):.1f}° off"
-            lines.append(f"wrong merge accepted: {score.case}, {score.method}: {apart}")
-    failed: dict[tuple[str, str], int] = {}
-    for score in scores:
-        if score.trial.failed:
-            key = (score.method, score.trial.reason)
-            failed[key] = failed.get(key, 0) + 1
+    lines = [
+        f"wrong merge accepted: {score.case}, {score.method}: "
+        f"{apart_text(score.trial.distance, score.trial.angle)}"
+        for score in _in_order(scores)
+        if score.trial.wrong and score.trial.accepted
+    ]
+    failed = Counter((score.method, score.trial.reason) for score in scores if score.trial.failed)
     lines += [f"{method} could not be run on {n} of the cases: {why}" for (method, why), n in failed.items()]
     unjudged = {score.case for score in scores if score.trial.right is None and not score.trial.failed}
     if unjudged:

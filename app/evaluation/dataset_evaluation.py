@@ -4,7 +4,7 @@ probabilities are what they say.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from statistics import median
@@ -13,20 +13,16 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.common.errors import MapMergeError, NoAnswerError
-from algorithms.files.case_folder import Case, case_folders, group_of, name_in, read_case
+from algorithms.common.errors import NoAnswerError
+from algorithms.files.case_folder import Case, case_folders, group_of
 from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE
-from algorithms.methods import registry as methods
 from algorithms.verdict.calibration import brier_score, calibration_error, reliability
-from app.evaluation.crossed_pairs import Crossing, crossed_case
-from app.evaluation.method_run import judge_case
+from app.evaluation.crossed_pairs import Pair, name_of_pair, read_pair
+from app.evaluation.method_run import Judgement, judge_case, merge_or_reason, reason_of
 from app.jobs.executor import Executor, LostTask, SerialExecutor, Task
 from app.report.result_files import plain, report_of
 
 OVERALL = "overall"
-
-Entry = dict[str, Any]
-"""What is told of one case: case, observation, report or no_answer or error, seconds, truth."""
 
 
 @dataclass(frozen=True)
@@ -44,46 +40,66 @@ class EvaluationTask:
     rough: bool = False
 
 
-def evaluate(
-    order: EvaluationTask, executor: Executor | None = None, folders: Sequence[Path | Crossing] | None = None
-) -> Iterator[Entry]:
-    """Yield an entry per case folder, in the order of their completion.
+@dataclass(frozen=True)
+class EvaluatedCase:
+    """What came of one case.
 
-    A case that fails has its "error", and the others go on.
+    report    : as in report.json; without one ``no_answer`` says that the method found no transform, or
+                ``error`` why it could not be run
+    truth     : None where none is known, or the method could not be run
+    seconds   : reading included
+    """
+
+    case: str
+    observation: str
+    report: dict[str, Any] | None = None
+    no_answer: str = ""
+    error: str = ""
+    truth: Judgement | None = None
+    seconds: float = 0.0
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the method stands by a merge."""
+        return self.report is not None and bool(self.report["verdict"]["accepted"])
+
+    @property
+    def probability(self) -> float:
+        """How likely its merge is said to be right."""
+        return 0.0 if self.report is None else float(self.report["verdict"]["probability"])
+
+    @property
+    def transform_right(self) -> bool:
+        """Whether the transform is right; of maps that share no place none is."""
+        return self.truth is not None and self.truth.expected == "merge" and self.truth.right
+
+    @property
+    def wrong_accepted(self) -> bool:
+        """Whether the method stands by a wrong merge: what must not happen."""
+        return self.truth is not None and self.accepted and not self.truth.right
+
+    def plain(self) -> dict[str, Any]:
+        """As JSON holds it: of report, no_answer and error what there is."""
+        outcome = ("report", "no_answer", "error")
+        return {name: value for name, value in asdict(self).items() if value or name not in outcome}
+
+
+def evaluate(
+    order: EvaluationTask, executor: Executor | None = None, pairs: Sequence[Pair] | None = None
+) -> Iterator[EvaluatedCase]:
+    """Yield what came of each case, in the order of completion. A case that fails costs no other.
 
     executor : who does it; the answers don't depend on it
-    folders  : the cases; all under ``order.root`` unless given
+    pairs    : the cases; all under ``order.root`` unless given
     raises   : InputFileError where there is no case
     """
     executor = SerialExecutor() if executor is None else executor
-    found: Sequence[Path | Crossing] = case_folders(order.root) if folders is None else folders
-    unread: list[Entry] = []
-    taken: list[Path | Crossing] = []
-
-    def tasks() -> Iterator[Task]:
-        for folder in found:
-            read = folder if not executor.far else _read(folder, order)
-            if isinstance(read, dict):
-                unread.append(read)
-            else:
-                taken.append(folder)
-                yield Task((read, order))
-
-    for number, answer in executor.run(_work, tasks()):
+    found: Sequence[Pair] = case_folders(order.root) if pairs is None else pairs
+    tasks = (Task((pair, order, _read(pair, order) if executor.far else None)) for pair in found)
+    for number, answer in executor.run(_work, tasks):
         if isinstance(answer, LostTask):
-            answer = _entry(taken[number], order) | {"error": answer.reason, "seconds": 0.0, "truth": None}
+            answer = _evaluated(name_of_pair(order.root, found[number]), order, error=answer.reason)
         yield answer
-        while unread:
-            yield unread.pop(0)
-    yield from unread
-
-
-def evaluate_both(order: EvaluationTask, executor: Executor | None = None) -> Iterator[Entry]:
-    """Yield an entry per case with its observation, then one per case that also has a rough one."""
-    yield from evaluate(replace(order, rough=False), executor)
-    folders = rough_folders(order.root)
-    if folders:
-        yield from evaluate(replace(order, rough=True), executor, folders)
 
 
 def rough_folders(root: Path) -> list[Path]:
@@ -91,68 +107,48 @@ def rough_folders(root: Path) -> list[Path]:
     return [folder for folder in case_folders(root) if (folder / ROUGH_OBSERVATION_FILE).exists()]
 
 
-@dataclass(frozen=True, eq=False)
-class LoadedCase:
-    """A case that was read for somebody who can't read our files.
-
-    entry   : what its entry begins with
-    seconds : what reading it took
-    """
-
-    entry: Entry
-    case: Case
-    seconds: float
+Loaded = tuple[Case, float]
+"""A case, called by its place in the folder, and the seconds that reading it took."""
 
 
-def _work(_: None, given: tuple[Path | Crossing | LoadedCase, EvaluationTask]) -> Entry:
+def _work(_: None, given: tuple[Pair, EvaluationTask, Loaded | EvaluatedCase | None]) -> EvaluatedCase:
     return run_case(*given)
 
 
-def run_case(what: Path | Crossing | LoadedCase, order: EvaluationTask) -> Entry:
-    """Merge one case and judge it. A case that fails says why; it raises nothing but an interrupt."""
-    read = what if isinstance(what, LoadedCase) else _read(what, order)
-    if not isinstance(read, LoadedCase):
+def run_case(pair: Pair, order: EvaluationTask, read: Loaded | EvaluatedCase | None = None) -> EvaluatedCase:
+    """Merge one case and judge it. A case that fails says why; it raises nothing but an interrupt.
+
+    read : what ``_read`` has made of it, for somebody who can't read our files; None: it is read here
+    """
+    read = read or _read(pair, order)
+    if isinstance(read, EvaluatedCase):
         return read
-    case, entry, began = read.case, dict(read.entry), perf_counter()
+    (case, reading_s), began, truth = read, perf_counter(), None
+    result = merge_or_reason(case, order.method, order.config, order.seed)
+    outcome: dict[str, Any] = {"error": result}
+    if isinstance(result, NoAnswerError):
+        outcome, truth = {"no_answer": str(result)}, judge_case(case, None)
+    elif not isinstance(result, str):
+        outcome = {"report": report_of(result, order.config, reading_s)}
+        truth = judge_case(case, result)
+    seconds = reading_s + perf_counter() - began
+    return _evaluated(case.name, order, **outcome, truth=truth, seconds=seconds)
+
+
+def _read(pair: Pair, order: EvaluationTask) -> Loaded | EvaluatedCase:
+    """The case in a folder, or the one that two make; why not, where it can't be read."""
+    name, began = name_of_pair(order.root, pair), perf_counter()
     try:
-        result = methods.merge(case.ref, case.mov, case.observations, order.method, order.config, order.seed)
-        entry |= {"report": report_of(result, order.config, read.seconds), "truth": judge_case(case, result)}
-    except NoAnswerError as refusal:
-        entry |= {"no_answer": str(refusal), "truth": judge_case(case, None)}
+        return replace(read_pair(pair, order.rough), name=name), perf_counter() - began
     except Exception as error:
-        entry |= _failed(error)
-    entry["seconds"] = read.seconds + perf_counter() - began
-    return entry
+        return _evaluated(name, order, error=reason_of(error), seconds=perf_counter() - began)
 
 
-def _read(what: Path | Crossing, order: EvaluationTask) -> LoadedCase | Entry:
-    """The case in a folder, or the one that two make; its entry where it can't be read."""
-    entry, began = _entry(what, order), perf_counter()
-    try:
-        if isinstance(what, Path):
-            case = read_case(what, order.rough)
-        else:
-            case = crossed_case(read_case(what.observer, order.rough), read_case(what.observed, order.rough))
-        return LoadedCase(entry, case, perf_counter() - began)
-    except Exception as error:
-        return entry | _failed(error) | {"seconds": perf_counter() - began}
+def _evaluated(name: str, order: EvaluationTask, **outcome: Any) -> EvaluatedCase:
+    return EvaluatedCase(name, ROUGH_OBSERVATION_FILE if order.rough else OBSERVATION_FILE, **outcome)
 
 
-def _failed(error: Exception) -> Entry:
-    """What is told of a case that could not be run: a bug in one case must not cost the others."""
-    known = isinstance(error, MapMergeError)
-    return {"error": str(error) if known else f"bug: {type(error).__name__}: {error}", "truth": None}
-
-
-def _entry(what: Path | Crossing, order: EvaluationTask) -> Entry:
-    names = [what] if isinstance(what, Path) else [what.observer, what.observed]
-    return {
-        "case": " x ".join(name_in(order.root, folder) for folder in names),
-        "observation": ROUGH_OBSERVATION_FILE if order.rough else OBSERVATION_FILE,
-    }
-
-
-def totals_of(entries: Sequence[Entry]) -> dict[str, dict[str, Any]]:
+def totals_of(cases: Sequence[EvaluatedCase]) -> dict[str, dict[str, Any]]:
     """Counts per group, and overall.
 
     n, judged, errors : cases, those with a truth that ran, those that failed
@@ -161,61 +157,38 @@ def totals_of(entries: Sequence[Entry]) -> dict[str, dict[str, Any]]:
     refused           : of all that ran; with those where the method found no transform at all
     wrong_accepted    : of the judged: accepted, and not right
     """
-    groups: dict[str, list[Entry]] = {}
-    for entry in entries:
-        groups.setdefault(group_of(entry["case"]), []).append(entry)
+    groups: dict[str, list[EvaluatedCase]] = {}
+    for case in cases:
+        groups.setdefault(group_of(case.case), []).append(case)
     totals = {name: _totals(groups[name]) for name in sorted(groups)}
-    return {**totals, OVERALL: _totals(entries)}
+    return {**totals, OVERALL: _totals(cases)}
 
 
-def _totals(entries: Sequence[Entry]) -> dict[str, Any]:
-    ran = [entry for entry in entries if "error" not in entry]
-    judged = [entry for entry in ran if entry["truth"] is not None]
+def _totals(cases: Sequence[EvaluatedCase]) -> dict[str, Any]:
+    ran = [case for case in cases if not case.error]
+    truths = [case.truth for case in ran if case.truth is not None]
     return {
-        "n": len(entries),
-        "judged": len(judged),
-        "right": sum(entry["truth"]["right"] for entry in judged),
-        "fine": sum(entry["truth"]["fine"] for entry in judged),
-        "right_accepted": sum(is_right(entry) and _accepted(entry) for entry in judged),
-        "refused": sum(not _accepted(entry) for entry in ran),
-        "wrong_accepted": sum(is_wrong_accepted(entry) for entry in judged),
-        "errors": len(entries) - len(ran),
-        "median_seconds": median(entry["seconds"] for entry in ran) if ran else None,
+        "n": len(cases),
+        "judged": len(truths),
+        "right": sum(truth.right for truth in truths),
+        "fine": sum(truth.fine for truth in truths),
+        "right_accepted": sum(case.transform_right and case.accepted for case in ran),
+        "refused": sum(not case.accepted for case in ran),
+        "wrong_accepted": sum(case.wrong_accepted for case in ran),
+        "errors": len(cases) - len(ran),
+        "median_seconds": median(case.seconds for case in ran) if ran else None,
     }
 
 
-def is_right(entry: Mapping[str, Any]) -> bool:
-    """Whether the transform is right; of maps that share no place none is."""
-    truth = entry["truth"]
-    return truth is not None and truth.get("expected") != "refuse" and bool(truth["right"])
-
-
-def calibration_of(entries: Sequence[Entry]) -> dict[str, Any]:
-    """How true the probabilities are, over all entries that ran and have a truth.
+def calibration_of(cases: Sequence[EvaluatedCase]) -> dict[str, Any]:
+    """How true the probabilities are, over all cases that ran and have a truth.
 
     bins  : n, mean probability and share that is right, by probability
     ece   : expected calibration error
     brier : mean squared error of the probability
     """
-    judged = [entry for entry in entries if "error" not in entry and entry["truth"] is not None]
-    told = np.array([_probability(entry) for entry in judged], dtype=np.float64)
-    right = np.array([is_right(entry) for entry in judged], dtype=np.bool_)
-    return {
-        "n": len(judged),
-        "bins": [plain(asdict(each)) for each in reliability(told, right)],
-        "ece": plain(calibration_error(told, right)),
-        "brier": plain(brier_score(told, right)),
-    }
-
-
-def _probability(entry: Mapping[str, Any]) -> float:
-    return float(entry["report"]["verdict"]["probability"]) if "report" in entry else 0.0
-
-
-def is_wrong_accepted(entry: Mapping[str, Any]) -> bool:
-    """Whether the method stood by a wrong merge: what must not happen."""
-    return entry["truth"] is not None and _accepted(entry) and not entry["truth"]["right"]
-
-
-def _accepted(entry: Mapping[str, Any]) -> bool:
-    return "report" in entry and bool(entry["report"]["verdict"]["accepted"])
+    judged = [case for case in cases if case.truth is not None]
+    stated = np.array([case.probability for case in judged], dtype=np.float64)
+    right = np.array([case.transform_right for case in judged], dtype=np.bool_)
+    scores = {"ece": calibration_error(stated, right), "brier": brier_score(stated, right)}
+    return plain({"n": len(judged), "bins": reliability(stated, right), **scores})

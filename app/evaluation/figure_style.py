@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from io import BytesIO
+from threading import Lock
 from typing import Any
 
 import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from app.drawing.palette import LIGHT, Rgb, css
+from app.drawing.palette import LIGHT, css
 
 DPI = 150  # of the PNG; a figure of 9 inches is then wider than a README shows it
 
@@ -42,10 +43,7 @@ STYLE = {
 COLOURS = [css(c) for c in (LIGHT.ref, LIGHT.conflict, LIGHT.mov, LIGHT.best, LIGHT.particle, LIGHT.rim)]
 MARKERS = ["o", "s", "^", "D", "v", "P"]
 
-
-def colour(rgb: Rgb) -> str:
-    """A colour of the palette as matplotlib takes it."""
-    return css(rgb)
+_DRAWING = Lock()  # matplotlib is told how to draw for the whole process
 
 
 def figure_files(draw: Callable[[Figure], None], width: float, height: float) -> dict[str, bytes]:
@@ -54,7 +52,7 @@ def figure_files(draw: Callable[[Figure], None], width: float, height: float) ->
     draw          : fills the figure
     width, height : inches
     """
-    with mpl.rc_context(STYLE):
+    with _DRAWING, mpl.rc_context(STYLE):
         figure = Figure(figsize=(width, height), layout="constrained")
         FigureCanvasAgg(figure)
         draw(figure)

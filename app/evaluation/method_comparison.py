@@ -54,23 +54,17 @@ def compare_methods(
     A method that can't be run on a pair, and a pair that can't be read, cost no other.
     """
     asked: list[tuple[str, str]] = []
-    unread: list[ComparedRun] = []
 
     def tasks() -> Iterator[Task]:
         for name, case in pairs:
-            if isinstance(case, UnreadableCase):
-                unread.extend(ComparedRun(name, method, _not_run(case.reason)) for method in configs)
-                continue
             shared = Shared.of(case)
             for method, config in configs.items():
                 asked.append((name, method))
                 yield Task((method, config, seed), shared)
 
     for number, answer in executor.run(_work, tasks(), stop):
-        yield ComparedRun(*asked[number], _not_run(answer.reason) if isinstance(answer, LostTask) else answer)
-        while unread:
-            yield unread.pop(0)
-    yield from unread
+        run = MethodRun.failure(answer.reason) if isinstance(answer, LostTask) else answer
+        yield ComparedRun(*asked[number], run)
 
 
 def pairs_in(root: Path, rough: bool = False) -> tuple[int, Pairs]:
@@ -91,17 +85,15 @@ def pairs_in(root: Path, rough: bool = False) -> tuple[int, Pairs]:
     return len(folders), read()
 
 
-def _work(case: Case, order: tuple[str, Any, int]) -> MethodRun:
+def _work(case: Case | UnreadableCase, order: tuple[str, Any, int]) -> MethodRun:
+    if isinstance(case, UnreadableCase):
+        return MethodRun.failure(case.reason)
     method, config, seed = order
     try:
         true = true_fusion(case)
     except MapMergeError as error:
-        return _not_run(str(error))
+        return MethodRun.failure(str(error))
     return run_method(case, method, config, seed, true)
-
-
-def _not_run(reason: str) -> MethodRun:
-    return MethodRun(None, False, reason, None, None, None, None, None, 0.0, failed=True)
 
 
 @dataclass(frozen=True)
@@ -135,15 +127,13 @@ class MethodTotals:
 
 def tally(scores: Sequence[ComparedRun]) -> dict[str, MethodTotals]:
     """A row per method, in the order of the table of methods."""
-    found = {score.method for score in scores}
-    return {
-        name: _tally([score.trial for score in scores if score.method == name])
-        for name in METHODS
-        if name in found
-    }
+    trials: dict[str, list[MethodRun]] = {}
+    for score in scores:
+        trials.setdefault(score.method, []).append(score.trial)
+    return {name: _totals(trials[name]) for name in METHODS if name in trials}
 
 
-def _tally(trials: Sequence[MethodRun]) -> MethodTotals:
+def _totals(trials: Sequence[MethodRun]) -> MethodTotals:
     ran = [trial for trial in trials if not trial.failed]
     judged = [trial for trial in ran if trial.right is not None]
     indices = [trial.index for trial in judged if trial.index is not None]

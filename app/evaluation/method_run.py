@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass
-from math import atan2, hypot, radians
+from math import radians
 from time import perf_counter
-from typing import Any
-
-import numpy as np
+from typing import Any, Literal
 
 from algorithms.common.errors import MapMergeError, NoAnswerError
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.files.case_folder import Case
-from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
 from algorithms.methods import registry as methods
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.stage_runner import StageCache
-from algorithms.observations.observation import Observation
 from algorithms.verdict.decision import Outcome
 from algorithms.verdict.performance_index import performance_index
+from app.jobs.warm_up import small_merge
 from app.model.settings import settings_of, value_at
 
 FINE_M = 0.15
@@ -60,7 +58,6 @@ class MethodRun:
 
     @property
     def pose(self) -> Pose2 | None:
-        """The transform."""
         return None if self.T_ref_mov is None else Pose2(*self.T_ref_mov)
 
     @property
@@ -69,14 +66,32 @@ class MethodRun:
         return self.T_ref_mov is not None and self.right is False
 
     def plain(self) -> dict[str, Any]:
-        """As JSON holds it."""
         return asdict(self)
 
     @staticmethod
     def of(plain: Mapping[str, Any]) -> MethodRun:
-        """The trial of ``plain``."""
         T = plain["T_ref_mov"]
         return MethodRun(**{**plain, "T_ref_mov": None if T is None else tuple(T)})
+
+    @staticmethod
+    def failure(reason: str) -> MethodRun:
+        return MethodRun(None, False, reason, None, None, None, None, None, 0.0, failed=True)
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A merge held against the truth.
+
+    distance, angle : from the truth, at the seen robot; metres, radians; None without a transform
+    right, fine     : within the case's tolerance, within FINE_M and FINE_RAD. Two maps that share no place
+                      have no right transform: there, right means refused
+    """
+
+    distance: float | None
+    angle: float | None
+    right: bool
+    fine: bool
+    expected: Literal["merge", "refuse"]
 
 
 def true_fusion(case: Case) -> Fusion | None:
@@ -93,29 +108,60 @@ def run_method(
     """Run a method and judge it; what goes wrong with it is in the answer.
 
     config : its settings; None: its defaults
-    true   : ``true_fusion(case)``, made once for many attempts
-    memo   : as in ``methods.run``. The seconds of a stage that is told again count as if it had run
+    true   : ``true_fusion(case)``, made once for many runs
+    memo   : as in ``methods.run``. The seconds of a stage that is remembered count as if it had run
     """
     config = methods.METHODS[method].defaults if config is None else config
     _load_code(method, config)
     began = perf_counter()
+    result = merge_or_reason(case, method, config, seed, memo)
+    elapsed = perf_counter() - began
+    if isinstance(result, str):
+        return MethodRun.failure(result)
+    merged = result if isinstance(result, MergeResult) else None
+    judged = judge_case(case, merged)
+    strangers = judged is not None and judged.expected == "refuse"
+    index = None if strangers else 0.0
+    if merged is not None and not strangers:
+        index = performance_index(merged.fusion, true) or 0.0
+    T = None if merged is None else merged.T_ref_mov
+    return MethodRun(
+        T_ref_mov=None if T is None else (T.x, T.y, T.theta),
+        accepted=merged is not None and merged.verdict.accepted,
+        reason=str(result) if merged is None else merged.verdict.reason,
+        index=index,
+        distance=None if judged is None else judged.distance,
+        angle=None if judged is None else judged.angle,
+        right=merged is None if strangers else None if judged is None else judged.right,
+        fine=None if judged is None else judged.fine,
+        seconds=elapsed if merged is None else sum(merged.timings_s.values()),
+        bent=merged is not None and merged.verdict.outcome is Outcome.BENT,
+    )
+
+
+def merge_or_reason(
+    case: Case, method: str, config: Any, seed: int, memo: StageCache | None = None
+) -> MergeResult | NoAnswerError | str:
+    """The result of a method; its refusal where it finds no transform; or why it could not be run: a bug in
+    one method must not cost the others.
+    """
     try:
         *_, last = methods.run(method, case.ref, case.mov, case.observations, config, seed, memo)
     except NoAnswerError as refusal:
-        return _judged(case, None, str(refusal), perf_counter() - began, true)
-    except MapMergeError as error:
-        return _failed(str(error))
-    except Exception as error:  # a bug in one method must not cost the others
-        return _failed(f"bug: {type(error).__name__}: {error}")
+        return refusal
+    except Exception as error:
+        return reason_of(error)
     assert isinstance(last.detail, MergeResult)
-    result = last.detail
-    return _judged(case, result, result.verdict.reason, sum(result.timings_s.values()), true)
+    return last.detail
 
 
-def judge_case(case: Case, result: MergeResult | None) -> dict[str, Any] | None:
+def reason_of(error: Exception) -> str:
+    """What went wrong, and whether it is a bug."""
+    return str(error) if isinstance(error, MapMergeError) else f"bug: {type(error).__name__}: {error}"
+
+
+def judge_case(case: Case, result: MergeResult | None) -> Judgement | None:
     """How far a merge is from the truth; None where no truth is known.
-
-    Two maps that share no place have no right transform: there, right means refused.
 
     result : None for a method that found no transform, which refuses
     """
@@ -123,56 +169,13 @@ def judge_case(case: Case, result: MergeResult | None) -> dict[str, Any] | None:
     if truth is None:
         return None
     distance = angle = None
+    right = fine = False
     if truth.T_ref_mov is not None and result is not None:
         distance, angle = pose_error(result.T_ref_mov, truth.T_ref_mov, result.encounter.x_mov)
+        right, fine = truth.allows(distance, angle), distance <= FINE_M and angle <= FINE_RAD
     if truth.expected == "refuse":
         right, fine = result is None or not result.verdict.accepted, False
-    elif result is None:
-        right = fine = False
-    else:
-        assert distance is not None
-        assert angle is not None
-        right = truth.allows(distance, angle)
-        fine = distance <= FINE_M and angle <= FINE_RAD
-    return {
-        "distance": distance,
-        "angle": angle,
-        "right": right,
-        "fine": fine,
-        "expected": truth.expected,
-    }
-
-
-def _judged(
-    case: Case, result: MergeResult | None, reason: str, seconds: float, true: Fusion | None
-) -> MethodRun:
-    told = judge_case(case, result)
-    lost = case.truth is not None and case.truth.expected == "refuse"  # maps that share no place
-    right = fine = None
-    if told is not None:
-        right = result is None if lost else told["right"]
-        fine = told["fine"]
-    index = None if lost else 0.0
-    if result is not None and not lost:
-        index = performance_index(result.fusion, true) or 0.0
-    return MethodRun(
-        T_ref_mov=None
-        if result is None
-        else (result.T_ref_mov.x, result.T_ref_mov.y, result.T_ref_mov.theta),
-        accepted=result is not None and result.verdict.accepted,
-        reason=reason,
-        index=index,
-        distance=None if told is None else told["distance"],
-        angle=None if told is None else told["angle"],
-        right=right,
-        fine=fine,
-        seconds=seconds,
-        bent=result is not None and result.verdict.outcome is Outcome.BENT,
-    )
-
-
-def _failed(reason: str) -> MethodRun:
-    return MethodRun(None, False, reason, None, None, None, None, None, 0.0, failed=True)
+    return Judgement(distance, angle, right, fine, truth.expected)
 
 
 # ---- the first run of a method loads its code: seconds that are not the method's
@@ -186,26 +189,6 @@ def _load_code(method: str, config: Any) -> None:
     if (method, words) in _loaded:
         return
     _loaded.add((method, words))
-    room, seen = _room()
-    try:
-        list(methods.run(method, room, room, seen, config))
-    except Exception:  # a room so small may be beyond a method; what matters is told of the real maps
-        return
-
-
-def _room() -> tuple[GridMap, Observation]:
-    """A room of 4 x 3 m with a wall in it, and two robots there."""
-    cells = np.full((60, 80), FREE, dtype=np.int8)
-    for walls in (cells[:2], cells[-2:], cells[:, :2], cells[:, -2:], cells[20:22, 30:60], cells[40:, 50:52]):
-        walls[:] = OCCUPIED
-    observer, (x, y) = Pose2(1.0, 1.6, 0.3), (3.2, 1.9)
-    seen = Observation(
-        observer=observer,
-        observed_x=x,
-        observed_y=y,
-        observed_heading=2.0,
-        range=hypot(x - observer.x, y - observer.y),
-        bearing=atan2(y - observer.y, x - observer.x) - observer.theta,
-        bearing_back=atan2(observer.y - y, observer.x - x) - 2.0,
-    )
-    return GridMap(cells, 0.05, name="room"), seen
+    room = small_merge()
+    with suppress(Exception):  # a room so small may be beyond a method; the real maps tell what matters
+        list(methods.run(method, room.ref, room.mov, room.observations, config))

@@ -40,6 +40,15 @@ class SweepAxis:
         """As its flag is called."""
         return ".".join(self.path).replace("_", "-")
 
+    @property
+    def numeric(self) -> bool:
+        """Whether the setting is a number; a choice has its values side by side."""
+        return all(isinstance(value, int | float) and not isinstance(value, bool) for value in self.values)
+
+    def place(self, value: Any) -> float:
+        """Where a value stands: at its number, or in a row."""
+        return float(value) if self.numeric else float(self.values.index(value))
+
 
 @dataclass(frozen=True)
 class SweepPlan:
@@ -58,12 +67,16 @@ class SweepPlan:
         for x, y in self.places():  # raises SettingError at once, not in the middle
             self.config_at(x, y)
 
+    @property
+    def swept(self) -> list[str]:
+        """Names of the settings that are swept."""
+        return [axis.name for axis in (self.x, self.y) if axis is not None]
+
     def places(self) -> list[tuple[Any, Any]]:
         """Every (x, y), y None where there is no second setting; x runs fastest."""
         return [(x, y) for y in (self.y.values if self.y else (None,)) for x in self.x.values]
 
     def config_at(self, x: Any, y: Any = None) -> Any:
-        """All settings at one place."""
         config = with_value(self.config, self.x.path, x)
         return config if self.y is None else with_value(config, self.y.path, y)
 
@@ -84,7 +97,6 @@ class Spread:
 
     @staticmethod
     def of(values: Sequence[float]) -> Spread:
-        """Of one value or more."""
         return Spread(fmean(values), median(values), pstdev(values), min(values), max(values))
 
 
@@ -115,7 +127,6 @@ class SweepPoint:
 
     @property
     def accepted(self) -> int:
-        """How many of them were accepted."""
         return sum(trial.accepted for trial in self.trials)
 
     @property
@@ -134,17 +145,17 @@ def sweep(
     """Yield every point as it is done; those that the journal knows first.
 
     Points come coarse to fine, so that a curve shows its shape early and what is left can be estimated.
-    Each is in the journal before it is told. Close the generator to stop, or set ``stop`` in another
+    Each is in the journal before it is yielded. Close the generator to stop, or set ``stop`` in another
     thread.
     """
     journal = Checkpoint() if journal is None else journal
-    keys, todo = point_keys(case, plan), []
+    bases, todo = bases_of(case, plan), []
     for place in _coarse_first(plan.places()):
-        record = journal.get(keys[place])
+        record = journal.get(_digest(bases[place]))
         if record is None:
             todo.append(place)
         else:
-            yield SweepPoint(*place, tuple(MethodRun.of(trial) for trial in record["trials"]))
+            yield SweepPoint(*place, tuple(map(MethodRun.of, record["trials"])))
     if not todo:
         return
     shared = Shared.of(case)
@@ -152,17 +163,45 @@ def sweep(
     for number, answer in executor.run(_work, tasks, stop):
         place = todo[number]
         if isinstance(answer, LostTask):
-            yield SweepPoint(*place, (MethodRun(None, False, answer.reason, *[None] * 5, 0.0, failed=True),))
+            yield SweepPoint(*place, (MethodRun.failure(answer.reason),))
             continue
-        point = SweepPoint(*place, tuple(MethodRun.of(trial) for trial in answer))
+        point = SweepPoint(*place, tuple(map(MethodRun.of, answer)))
         if not point.failed:
-            journal.add(keys[place], {"x": plain(place[0]), "y": plain(place[1]), "trials": answer})
+            at = {"x": plain(point.x), "y": plain(point.y)}
+            made_of = {"swept": plan.swept, "made_of": bases[place]}
+            journal.add(_digest(bases[place]), {**at, **made_of, "trials": answer})
         yield point
 
 
 def done_before(case: Case, plan: SweepPlan, journal: Checkpoint) -> int:
     """How many points of a sweep the journal knows."""
     return sum(journal.get(key) is not None for key in point_keys(case, plan).values())
+
+
+def outdated(case: Case, plan: SweepPlan, journal: Checkpoint) -> str:
+    """Why points of this sweep that the journal has are not used, as a sentence; "" where there are none.
+
+    Records of early versions do not say what they were made of, nor which settings were swept.
+    """
+    bases = bases_of(case, plan)
+    at = {(json.dumps(plain(x)), json.dumps(plain(y))): place for place in bases for x, y in [place]}
+    differing: dict[tuple[Any, Any], set[str]] = {}
+    for record in journal.records():
+        place = at.get((json.dumps(record.get("x")), json.dumps(record.get("y"))))
+        if place is None or record.get("swept", plan.swept) != plan.swept:
+            continue
+        made_of = record.get("made_of", dict.fromkeys(bases[place]))
+        found = {name for name, digest in bases[place].items() if made_of.get(name) != digest}
+        differing[place] = min(found, differing.get(place, found), key=len)
+    old = [found for found in differing.values() if found]
+    if not old:
+        return ""
+    parts = [name for name in next(iter(bases.values())) if any(name in found for found in old)]
+    made = f"with other {', '.join(parts)}"
+    if len(parts) == len(next(iter(bases.values()))):
+        made = f"by another version of mapmeld, or {made}"
+    known = f"{len(old)} of {len(bases)} points are in the journal"
+    return f"{known}, but were made {made}: they are merged anew, as answers may differ"
 
 
 def in_order(plan: SweepPlan, points: Sequence[SweepPoint]) -> list[SweepPoint]:
@@ -193,22 +232,27 @@ def _coarse_first(places: list[tuple[Any, Any]]) -> list[tuple[Any, Any]]:
 
 def point_keys(case: Case, plan: SweepPlan) -> dict[tuple[Any, Any], str]:
     """A key per place: equal where maps, sightings, truth, method, settings, seeds and code are equal."""
+    return {place: _digest(basis) for place, basis in bases_of(case, plan).items()}
+
+
+def bases_of(case: Case, plan: SweepPlan) -> dict[tuple[Any, Any], dict[str, str]]:
+    """A digest of each thing that the numbers of a place rest on, by its name."""
     common = {
-        "maps": [_digest(case.ref), _digest(case.mov)],
+        "maps": [_cells_digest(case.ref), _cells_digest(case.mov)],
         "observations": observations_to_bytes(case.observations).decode(),
         "truth": None if case.truth is None else truth_to_bytes(case.truth).decode(),
         "method": plan.method,
         "seeds": plan.seeds,
         "versions": {**versions(), "code": [code(METHODS[plan.method].run.__module__), code(merit.__name__)]},
     }
-    return {
-        place: sha256(
-            json.dumps({**common, "settings": plain(plan.config_at(*place))}, sort_keys=True).encode()
-        ).hexdigest()[:32]
-        for place in plan.places()
-    }
+    digests = {name: _digest(value) for name, value in common.items()}
+    return {place: {**digests, "settings": _digest(plain(plan.config_at(*place)))} for place in plan.places()}
 
 
-def _digest(grid: GridMap) -> str:
+def _digest(value: Any) -> str:
+    return sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()[:32]
+
+
+def _cells_digest(grid: GridMap) -> str:
     about = repr((grid.cells.shape, grid.resolution, grid.origin)).encode()
     return sha256(about + grid.cells.tobytes()).hexdigest()

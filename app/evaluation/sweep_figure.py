@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
-from app.drawing.palette import LIGHT
-from app.evaluation.figure_style import COLOURS, MARKERS, colour, figure_files
+from app.drawing.palette import LIGHT, css
+from app.evaluation.figure_style import COLOURS, MARKERS, figure_files
 from app.evaluation.parameter_sweep import Spread, SweepAxis, SweepPlan, SweepPoint, in_order
 from app.evaluation.sweep_axes import SPREAD, looks_even_by_factor
 
@@ -27,49 +28,51 @@ def sweep_figure(plan: SweepPlan, points: Sequence[SweepPoint], title: str, cell
     title : which maps, by which method
     cell  : edge of a cell; metres
     """
-    told = [point for point in in_order(plan, points) if not point.failed]
-    if plan.y is None:
-        judged = any(point.right is not None for point in told)
-        return figure_files(
-            lambda figure: _curves(figure, plan, told, title, cell), 9.5 if judged else 7, 3.4
-        )
-    return figure_files(lambda figure: _both(figure, plan, told, title, cell), 10, 4.2)
+    ran = [point for point in in_order(plan, points) if not point.failed]
+    if plan.y is not None:
+        return figure_files(lambda figure: _both(figure, plan, ran, title, cell), 10, 4.2)
+    width = 9.5 if any(point.right is not None for point in ran) else 7
+    return figure_files(lambda figure: _curves(figure, plan, ran, title), width, 3.4)
 
 
-def _curves(figure: Figure, plan: SweepPlan, points: list[SweepPoint], title: str, cell: float) -> None:
+@dataclass(frozen=True)
+class _Curve:
+    """A number over the values of a setting, with its spread over the seeds.
+
+    number : of its colour and marker
+    joined : between choices lies nothing: they are not
+    median : shown with the extremes, instead of the mean with the standard deviation within them
+    """
+
+    at: list[float]
+    spreads: list[Spread | None]
+    number: int
+    joined: bool
+    label: str | None = None
+    width: float = 1.8
+    median: bool = False
+
+
+def _curves(figure: Figure, plan: SweepPlan, points: list[SweepPoint], title: str) -> None:
     judged = [point for point in points if point.right is not None]
     panels = figure.subplots(1, 3 if judged else 2)
     figure.suptitle(title, x=0.01, ha="left")
-    at = _places(plan.x, points)
-    joined = _is_number(plan.x)
-    _line(panels[0], at, [point.index for point in points], COLOURS[0], MARKERS[0], joined=joined)
+    at, joined = [plan.x.place(point.x) for point in points], plan.x.numeric
+    _line(panels[0], _Curve(at, [point.index for point in points], 0, joined))
     _no_closer(panels[0])
     panels[0].set(title="How much agrees", ylabel=INDEX)
     if judged:
         seeds = len(plan.seeds)
-        panels[1].plot(
-            _places(plan.x, judged), [point.right for point in judged], color=COLOURS[2], marker=MARKERS[2],
-            linestyle="-" if joined else "",
-        )  # fmt: skip
+        places, counts = [plan.x.place(point.x) for point in judged], [point.right for point in judged]
+        panels[1].plot(places, counts, color=COLOURS[2], marker=MARKERS[2], linestyle="-" if joined else "")
         panels[1].yaxis.set_major_locator(MaxNLocator(integer=True))
-        panels[1].set(
-            title="How often it is right",
-            ylabel=f"right transforms of {seeds}",
-            ylim=(-0.03 * seeds, seeds * 1.05),
-        )
-    _line(
-        panels[-1],
-        at,
-        [point.seconds for point in points],
-        COLOURS[1],
-        MARKERS[1],
-        middle="median",
-        joined=joined,
-    )
+        panels[1].set(title="How often it is right", ylabel=f"right transforms of {seeds}")
+        panels[1].set_ylim(-0.03 * seeds, seeds * 1.05)
+    _line(panels[-1], _Curve(at, [point.seconds for point in points], 1, joined, median=True))
     panels[-1].set(title="How long it takes", ylabel="time of a merge (s)")
     panels[-1].set_ylim(bottom=0)
     for panel in panels:
-        _name_x(panel, plan, plan.x, cell)
+        _name_x(panel, plan, plan.x)
 
 
 def _both(figure: Figure, plan: SweepPlan, points: list[SweepPoint], title: str, cell: float) -> None:
@@ -78,18 +81,18 @@ def _both(figure: Figure, plan: SweepPlan, points: list[SweepPoint], title: str,
     figure.suptitle(title, x=0.01, ha="left")
     _heat(figure, heat, plan, plan.y, points, cell)
     shown = plan.y.values[:: max(1, -(-len(plan.y.values) // MOST_CURVES))]
+    beside = 0.0 if plan.x.numeric else 0.08  # curves over a choice stand beside one another
     for number, y in enumerate(shown):
         mine = [point for point in points if point.y == y]
+        at = [plan.x.place(point.x) + beside * number for point in mine]
         # the first is drawn widest: curves that lie on each other are all seen
-        _line(
-            lines, _places(plan.x, mine, number), [point.index for point in mine], COLOURS[number],
-            MARKERS[number], label=_short(y), width=1.2 + 1.3 * (len(shown) - 1 - number),
-            joined=_is_number(plan.x),
-        )  # fmt: skip
+        width = 1.2 + 1.3 * (len(shown) - 1 - number)
+        indices = [point.index for point in mine]
+        _line(lines, _Curve(at, indices, number, plan.x.numeric, _short(y), width))
     lines.legend(title=_label(plan, plan.y), title_fontsize=8)
     _no_closer(lines)
     lines.set(title="Mean and spread over the seeds", ylabel=INDEX)
-    _name_x(lines, plan, plan.x, cell)
+    _name_x(lines, plan, plan.x)
 
 
 def _heat(
@@ -108,14 +111,19 @@ def _heat(
             bright = means[row, col] > low + 0.6 * (high - low)
             axes.text(
                 col, row, f"{means[row, col]:.3f}".removeprefix("0"), ha="center", va="center", fontsize=7,
-                color=colour(LIGHT.text if bright else LIGHT.free),
+                color=css(LIGHT.text if bright else LIGHT.free),
             )  # fmt: skip
     _ticks(axes.xaxis, plan.x.values)
     _ticks(axes.yaxis, y.values)
     axes.set(title=f"Mean of {len(plan.seeds)} seeds", xlabel=_label(plan, plan.x), ylabel=_label(plan, y))
     if plan.x.path == SPREAD:
+
+        def squared_cells(value: float) -> str:
+            cells = (value / cell) ** 2
+            return f"{cells:.0f}" if cells < 10_000 else f"{cells / 1000:.0f}k"
+
         above = axes.secondary_xaxis("top")
-        _ticks(above.xaxis, plan.x.values, lambda value: _round((value / cell) ** 2))
+        _ticks(above.xaxis, plan.x.values, squared_cells)
         above.set_xlabel("Σ_a of the paper (squared cells)", fontsize=8)
         above.tick_params(labelsize=7)
         axes.set_title(axes.get_title("left"), loc="left", pad=6)
@@ -128,29 +136,26 @@ def _ticks(axis: Any, values: Sequence[Any], text: Any = None) -> None:
     axis.set_ticks(range(0, len(values), every), [(text or _short)(value) for value in values[::every]])
 
 
-def _line(
-    axes: Axes, at: list[float], spreads: Sequence[Spread | None], hue: str, marker: str, label: str = "",
-    width: float = 1.8, middle: str = "mean", joined: bool = True,
-) -> None:  # fmt: skip
-    """A curve with a band: mean and standard deviation within the extremes, or median and extremes.
-
-    joined : between choices lies nothing: they are not
-    """
-    pairs = [(x, spread) for x, spread in zip(at, spreads, strict=True) if spread is not None]
-    x = [place for place, _ in pairs]
-    if middle == "median":
-        curve = [spread.median for _, spread in pairs]
-        low, high = [spread.low for _, spread in pairs], [spread.high for _, spread in pairs]
+def _line(axes: Axes, curve: _Curve) -> None:
+    pairs = [(x, each) for x, each in zip(curve.at, curve.spreads, strict=True) if each is not None]
+    x, spreads = [x for x, _ in pairs], [each for _, each in pairs]
+    if curve.median:
+        middle = [each.median for each in spreads]
+        low, high = [each.low for each in spreads], [each.high for each in spreads]
     else:
-        curve = [spread.mean for _, spread in pairs]
-        low = [max(spread.low, spread.mean - spread.deviation) for _, spread in pairs]
-        high = [min(spread.high, spread.mean + spread.deviation) for _, spread in pairs]
-    if not joined:
-        reach = np.abs(np.array([low, high]) - curve)
-        axes.errorbar(x, curve, reach, color=hue, fmt=marker, markersize=6, capsize=4, label=label or None)
+        middle = [each.mean for each in spreads]
+        low = [max(each.low, each.mean - each.deviation) for each in spreads]
+        high = [min(each.high, each.mean + each.deviation) for each in spreads]
+    colour, marker = COLOURS[curve.number], MARKERS[curve.number]
+    if not curve.joined:
+        reach = np.abs(np.array([low, high]) - middle)
+        axes.errorbar(x, middle, reach, color=colour, fmt=marker, markersize=6, capsize=4, label=curve.label)
         return
-    axes.fill_between(x, low, high, color=hue, alpha=0.18, linewidth=0)
-    axes.plot(x, curve, color=hue, marker=marker, markersize=3 + width, linewidth=width, label=label or None)
+    axes.fill_between(x, low, high, color=colour, alpha=0.18, linewidth=0)
+    size = 3 + curve.width
+    axes.plot(
+        x, middle, color=colour, marker=marker, markersize=size, linewidth=curve.width, label=curve.label
+    )
 
 
 def _no_closer(axes: Axes) -> None:
@@ -162,22 +167,9 @@ def _no_closer(axes: Axes) -> None:
         axes.set_ylim(high - LEAST_SPAN, high)
 
 
-def _places(axis: SweepAxis, points: Sequence[SweepPoint], beside: int = 0) -> list[float]:
-    """Where points stand: at their number, or in a row where the setting is a choice, a little beside
-    those of another curve.
-    """
-    if _is_number(axis):
-        return [float(point.x) for point in points]
-    return [axis.values.index(point.x) + 0.08 * beside for point in points]
-
-
-def _is_number(axis: SweepAxis) -> bool:
-    return all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in axis.values)
-
-
-def _name_x(axes: Axes, plan: SweepPlan, axis: SweepAxis, cell: float) -> None:
+def _name_x(axes: Axes, plan: SweepPlan, axis: SweepAxis) -> None:
     axes.set_xlabel(_label(plan, axis))
-    if not _is_number(axis):
+    if not axis.numeric:
         _ticks(axes.xaxis, axis.values)
         axes.set_xlim(-0.5, len(axis.values) - 0.5)
     elif len(axis.values) > 1 and looks_even_by_factor(axis.values):
@@ -190,10 +182,6 @@ def _name_x(axes: Axes, plan: SweepPlan, axis: SweepAxis, cell: float) -> None:
 
 def _label(plan: SweepPlan, axis: SweepAxis) -> str:
     return plan.setting(axis).label
-
-
-def _round(value: float) -> str:
-    return f"{value:.0f}" if value < 10_000 else f"{value / 1000:.0f}k"
 
 
 def _short(value: Any) -> str:

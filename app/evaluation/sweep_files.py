@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
 
 from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS
-from app.evaluation.csv_tables import JUDGED, PLACED, csv_bytes, judged_cells, placed_cells, share_text
 from app.evaluation.parameter_sweep import SweepPlan, SweepPoint, in_order
+from app.evaluation.table_files import (
+    JUDGED,
+    PLACED,
+    csv_bytes,
+    fixed,
+    json_bytes,
+    judged_cells,
+    placed_cells,
+    zip_bytes,
+)
 from app.report.result_files import plain
 from app.system.hardware import machine
 
@@ -31,57 +39,7 @@ def sweep_files(case: Case, plan: SweepPlan, points: Sequence[SweepPoint]) -> di
     """
     from app.evaluation.sweep_figure import sweep_figure
 
-    name, told = name_of(plan), in_order(plan, points)
-    title = f"{case.name}: {METHODS[plan.method].title}"
-    figures = sweep_figure(plan, told, title, case.ref.resolution)
-    return {
-        f"{name}.csv": points_csv(plan, told),
-        f"{name}.runs.csv": runs_csv(plan, told),
-        f"{name}.times.csv": times_csv(plan, told),
-        f"{name}.json": _about(case, plan),
-        **{f"{name}{suffix}": data for suffix, data in figures.items()},
-    }
-
-
-def points_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
-    """A row per point, without anything that was measured with a clock."""
-    rows = []
-    for point in points:
-        spread, n = point.index, len(point.trials)
-        numbers = ("", "", "", "")
-        if spread is not None:
-            numbers = tuple(map(share_text, (spread.mean, spread.deviation, spread.low, spread.high)))
-        right = "" if point.right is None else point.right
-        rows.append((*_at(plan, point), n, *numbers, right, point.accepted, point.failed))
-    index = ("index_mean", "index_deviation", "index_min", "index_max")
-    return csv_bytes((*_names(plan), "seeds", *index, "right", "accepted", "failed"), rows)
-
-
-def runs_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
-    """A row per merge: metres and degrees."""
-    rows = [
-        (*_at(plan, point), seed, share_text(trial.index), *judged_cells(trial), *placed_cells(trial))
-        for point in points
-        for seed, trial in zip(plan.seeds, point.trials, strict=False)
-    ]
-    return csv_bytes((*_names(plan), "seed", "index", *JUDGED, *PLACED), rows)
-
-
-def times_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
-    """A row per point: seconds of a merge, over the seeds."""
-    header = ("seconds_mean", "seconds_median", "seconds_min", "seconds_max")
-    rows = [
-        (
-            *_at(plan, point),
-            *(f"{getattr(point.seconds, of):.4f}" for of in ("mean", "median", "low", "high")),
-        )
-        for point in points
-        if not point.failed
-    ]
-    return csv_bytes((*_names(plan), *header), rows)
-
-
-def _about(case: Case, plan: SweepPlan) -> bytes:
+    name, points = name_of(plan), in_order(plan, points)
     about = {
         "case": case.name,
         "observation": case.observation_file,
@@ -92,11 +50,61 @@ def _about(case: Case, plan: SweepPlan) -> bytes:
         "settings": plan.config,
         "machine": machine(),
     }
-    return (json.dumps(plain(about), indent=1, ensure_ascii=False) + "\n").encode()
+    title = f"{case.name}: {METHODS[plan.method].title}"
+    figures = sweep_figure(plan, points, title, case.ref.resolution)
+    return {
+        f"{name}.csv": points_csv(plan, points),
+        f"{name}.runs.csv": runs_csv(plan, points),
+        f"{name}.times.csv": times_csv(plan, points),
+        f"{name}.json": json_bytes(about),
+        **{f"{name}{suffix}": data for suffix, data in figures.items()},
+    }
+
+
+def sweep_archive(case: Case, plan: SweepPlan, points: Sequence[SweepPoint]) -> bytes:
+    """A zip of the files of a sweep, as far as it came."""
+    return zip_bytes(sweep_files(case, plan, points))
+
+
+def points_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
+    """A row per point, without anything that was measured with a clock."""
+    rows = []
+    for point in points:
+        index = point.index
+        numbers: list[float | None] = [None] * 4
+        if index is not None:
+            numbers = [index.mean, index.deviation, index.low, index.high]
+        shares = [fixed(number, 6) for number in numbers]
+        counts = (point.right, point.accepted, point.failed)
+        rows.append((*_at(plan, point), len(point.trials), *shares, *counts))
+    index_names = ("index_mean", "index_deviation", "index_min", "index_max")
+    return csv_bytes((*_names(plan), "seeds", *index_names, "right", "accepted", "failed"), rows)
+
+
+def runs_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
+    """A row per merge: metres and degrees."""
+    rows = [
+        (*_at(plan, point), seed, fixed(trial.index, 6), *judged_cells(trial), *placed_cells(trial))
+        for point in points
+        for seed, trial in zip(plan.seeds, point.trials, strict=False)
+    ]
+    return csv_bytes((*_names(plan), "seed", "index", *JUDGED, *PLACED), rows)
+
+
+def times_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
+    """A row per point: seconds of a merge, over the seeds."""
+    header = ("seconds_mean", "seconds_median", "seconds_min", "seconds_max")
+    rows = []
+    for point in points:
+        if not point.failed:
+            took = point.seconds
+            numbers = (took.mean, took.median, took.low, took.high)
+            rows.append((*_at(plan, point), *(fixed(number, 4) for number in numbers)))
+    return csv_bytes((*_names(plan), *header), rows)
 
 
 def _names(plan: SweepPlan) -> tuple[str, ...]:
-    return tuple(axis.name for axis in (plan.y, plan.x) if axis is not None)
+    return tuple(reversed(plan.swept))
 
 
 def _at(plan: SweepPlan, point: SweepPoint) -> tuple[str, ...]:

@@ -5,28 +5,29 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import closing
-from threading import BoundedSemaphore, Event, RLock, Thread
+from threading import Event, RLock, Thread
 from time import perf_counter
 from typing import Any, Protocol
 
+from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import MapMergeError
 from app.jobs.executor import Executor
-from app.jobs.process_executor import ProcessExecutor, cores
+from app.jobs.fair_semaphore import FairSemaphore
+from app.jobs.process_executor import ProcessExecutor
 
 log = logging.getLogger(__name__)
 
 MOST_AT_ONCE = 2  # comparisons and sweeps of all tabs; a further one waits for its turn
-LOOK_S = 0.1  # how often one that waits looks whether it is still wanted
 
-_turns = BoundedSemaphore(MOST_AT_ONCE)
+_turns = FairSemaphore(MOST_AT_ONCE, patience=0.0)
 
 
 def beside_the_page(jobs: int) -> Executor:
     """Processes for work behind a page: one core is left to it, and what is left is not fought for."""
-    return ProcessExecutor(max(1, min(jobs, cores() - 1)), gentle=True)
+    return ProcessExecutor(max(1, min(jobs, kernels.cores() - 1)), gentle=True)
 
 
-class Asking(Protocol):
+class JobListener(Protocol):
     """Who is told of the work; one call at a time, with nobody else drawing."""
 
     def told(self, part: Any) -> None:
@@ -39,9 +40,11 @@ class Asking(Protocol):
 class BackgroundJob:
     """One piece of work at a time, in a thread of its own. Nothing is told once ``stop`` has returned."""
 
-    def __init__(self, asking: Asking, drawing: RLock, name: str, say: Callable[[str, float], None]) -> None:
+    def __init__(
+        self, listener: JobListener, drawing: RLock, name: str, say: Callable[[str, float], None]
+    ) -> None:
         """say : shows a sentence, and the share of the work that is done"""
-        self._asking, self._drawing, self._name, self._say = asking, drawing, name, say
+        self._listener, self._drawing, self._name, self._say = listener, drawing, name, say
         self._stop: Event | None = None  # of the work at hand
         self._began = 0.0
 
@@ -52,7 +55,6 @@ class BackgroundJob:
 
     @property
     def busy(self) -> bool:
-        """Whether anything is going on."""
         return self._stop is not None
 
     def start(self, work: Callable[[Event], Iterator[Any]]) -> None:
@@ -75,25 +77,27 @@ class BackgroundJob:
         return stop is not None
 
     def _run(self, work: Callable[[Event], Iterator[Any]], stop: Event) -> None:
-        if not _turns.acquire(blocking=False):
-            self._tell(stop, lambda: self._say("Waits: other tabs compare or sweep already.", 0.0))
-            while not _turns.acquire(timeout=LOOK_S):
-                if stop.is_set():
-                    return
         why = ""
-        try:
-            self._tell(stop, self._begin)
-            with closing(work(stop)) as parts:  # type: ignore[type-var]
-                for part in parts:
-                    if not self._tell(stop, lambda part=part: self._asking.told(part)):
-                        return
-        except MapMergeError as error:
-            why = str(error)
-        except Exception as error:
-            log.exception("the %s ended in a bug", self._name)
-            why = f"A bug of mapmeld's ended it ({type(error).__name__}); the server's log has the details."
-        finally:
-            _turns.release()
+
+        def waits(_: int) -> None:
+            self._tell(stop, lambda: self._say("Waits: other tabs compare or sweep already.", 0.0))
+
+        with _turns.take(lambda: not stop.is_set(), waits) as mine:
+            if not mine:
+                return
+            try:
+                self._tell(stop, self._begin)
+                with closing(work(stop)) as parts:  # type: ignore[type-var]
+                    for part in parts:
+                        if not self._tell(stop, lambda part=part: self._listener.told(part)):
+                            return
+            except MapMergeError as error:
+                why = str(error)
+            except Exception as error:
+                log.exception("the %s ended in a bug", self._name)
+                why = (
+                    f"A bug of mapmeld's ended it ({type(error).__name__}); the server's log has the details."
+                )
         self._tell(stop, lambda: self._over(why))
 
     def _begin(self) -> None:
@@ -102,7 +106,7 @@ class BackgroundJob:
 
     def _over(self, why: str) -> None:
         self._stop = None
-        self._asking.over(why)
+        self._listener.over(why)
 
     def _tell(self, stop: Event, tell: Callable[[], None]) -> bool:
         with self._drawing:

@@ -39,12 +39,7 @@ class DaskExecutor(Executor):
         """
         self._address = address
         with self._client() as client:
-            self._jobs = self._greet(client)
-
-    @property
-    def jobs(self) -> int:
-        """Threads of all workers, when they were greeted."""
-        return self._jobs
+            self.jobs = self._greet(client)
 
     def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
         """As in Executor; raises SettingError where the scheduler goes away."""

@@ -33,7 +33,6 @@ class Shared:
 
 
 def unpacked(data: bytes) -> Any:
-    """The value in ``Shared.data``."""
     return pickle.loads(zlib.decompress(data))
 
 
@@ -59,12 +58,8 @@ class Executor(ABC):
     far  : whether its workers may be on other machines: they can't be told to read files of this one
     """
 
+    jobs: int
     far = False
-
-    @property
-    @abstractmethod
-    def jobs(self) -> int:
-        """How many tasks are worked on at a time."""
 
     @abstractmethod
     def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
@@ -81,13 +76,9 @@ class Executor(ABC):
 class SerialExecutor(Executor):
     """This process, one task after the other."""
 
-    @property
-    def jobs(self) -> int:
-        """One."""
-        return 1
+    jobs = 1
 
     def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
-        """As in Executor; a task that kills its process kills this one."""
         known: tuple[str, Any] = ("", None)
         for number, task in enumerate(tasks):
             if stop is not None and stop.is_set():

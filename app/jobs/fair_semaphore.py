@@ -1,6 +1,7 @@
 """Who computes when many tabs want to: so many at a time, the others in their order.
 
-A turn is one step of a run, not a whole one: all of them go on, and none has to wait for another's end.
+For merges a turn is one step of a run, not a whole one: all of them go on, and none has to wait for
+another's end.
 """
 
 from __future__ import annotations
@@ -11,14 +12,16 @@ from contextlib import AbstractContextManager, contextmanager
 from threading import Condition
 from time import monotonic
 
-PATIENCE = 1.0  # seconds of waiting that need no words
+PATIENCE = 1.0  # seconds of waiting that need no words, unless told otherwise
+LOOK_S = 0.25  # how often one that waits looks whether it is still wanted
 
 
 class FairSemaphore:
     """So many at a time, first come, first served."""
 
-    def __init__(self, places: int) -> None:
-        self._free = places
+    def __init__(self, places: int, patience: float | None = None) -> None:
+        """patience : seconds of waiting that need no words; None: PATIENCE"""
+        self._free, self._patience = places, patience
         self._queue: deque[object] = deque()
         self._wake = Condition()
 
@@ -29,32 +32,27 @@ class FairSemaphore:
         wanted : whether it still makes sense to wait; asked now and then
         tell   : is told how many are before, where it takes a while
         """
-        me, since, told = object(), monotonic(), False
+        me, began, said = object(), monotonic(), False
+        patience = PATIENCE if self._patience is None else self._patience
         with self._wake:
             self._queue.append(me)
         try:
             while True:
                 with self._wake:
-                    ready = self._wake.wait_for(lambda: self._free > 0 and self._queue[0] is me, 0.25)
+                    ready = self._wake.wait_for(lambda: self._free > 0 and self._queue[0] is me, LOOK_S)
                     if ready:
-                        self._queue.popleft()
                         self._free -= 1
-                        self._wake.notify_all()  # there may be a place for the next one, too
                         break
                     before = self._queue.index(me)
                 if not wanted():
                     break
-                if not told and monotonic() - since > PATIENCE:
-                    told = True
+                if not said and monotonic() - began > patience:
+                    said = True
                     tell(before)
-        except BaseException:
-            ready = False
-            raise
         finally:
-            if not ready:
-                with self._wake:
-                    self._queue.remove(me)
-                    self._wake.notify_all()
+            with self._wake:
+                self._queue.remove(me)
+                self._wake.notify_all()  # there may be a place for the next one, too
         try:
             yield ready
         finally:

@@ -42,13 +42,11 @@ class IncrementalPickle:
         self._before, self._things = self._things, {}
 
     def pack(self, value: Any) -> bytes:
-        """A value for the other end."""
         buffer = io.BytesIO()
         _Packer(buffer, self).dump(value)
         return buffer.getvalue()
 
     def unpack(self, data: bytes) -> Any:
-        """A value from the other end."""
         return _Unpacker(io.BytesIO(data), self).load()
 
     def number(self, thing: Any) -> Number | None:
@@ -92,39 +90,39 @@ def _lasting(kind: type) -> tuple[str, ...]:
 
 
 class _Packer(pickle.Pickler):
-    def __init__(self, file: io.BytesIO, parcels: IncrementalPickle) -> None:
+    def __init__(self, file: io.BytesIO, line: IncrementalPickle) -> None:
         super().__init__(file, pickle.HIGHEST_PROTOCOL)
-        self._parcels = parcels
+        self._line = line
 
     def reducer_override(self, thing: Any) -> Any:
         names = _lasting(type(thing))
         if not names:
             return NotImplemented
-        number = self._parcels.number(thing)
+        number = self._line.number(thing)
         if number is not None:
             return known, (number,)
-        number = self._parcels.give(thing)  # made of its fields alone: what was worked out of them stays here
+        number = self._line.give(thing)  # made of its fields alone: what was worked out of them stays here
         return new, (number, type(thing), *(getattr(thing, name) for name in names))
 
 
 class _Unpacker(pickle.Unpickler):
-    def __init__(self, file: io.BytesIO, parcels: IncrementalPickle) -> None:
+    def __init__(self, file: io.BytesIO, line: IncrementalPickle) -> None:
         super().__init__(file)
-        self._parcels = parcels
+        self._line = line
 
     def find_class(self, module: str, name: str) -> Any:
         if module == __name__ and name == known.__name__:
-            return self._parcels.thing
+            return self._line.thing
         if module == __name__ and name == new.__name__:
-            return self._parcels.made  # none of its own: 3.10 never frees the ring
+            return self._line.made  # none of its own: 3.10 never frees the ring
         return super().find_class(module, name)
 
 
 def known(number: Number) -> Any:
-    """Stands in a parcel for a thing that the other end has."""
+    """Stands in a pickle for a thing that the other end has."""
     raise pickle.UnpicklingError(f"{number} means something to its line alone")
 
 
 def new(number: Number, kind: type, *values: Any) -> Any:
-    """Stands in a parcel for a thing that comes with its number."""
+    """Stands in a pickle for a thing that comes with its number."""
     raise pickle.UnpicklingError(f"{number} means something to its line alone")

@@ -8,13 +8,14 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import closing
-from threading import Condition, RLock, Thread
+from threading import RLock
 from time import perf_counter
 from typing import Protocol
 
 from algorithms.common.errors import MapMergeError
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import AnswersDetail, CandidatesDetail, Step
+from app.jobs.latest_request import LatestRequest
 from app.jobs.runner import RunCallbacks, Runner
 from app.model.merge_job import MergeJob
 from app.model.playback import FRAME, InterruptibleWait, dwell
@@ -68,35 +69,26 @@ class JobThread:
     ) -> None:
         self._listener, self.runner, self._clock = listener, runner, clock
         self._waiting = waiting or InterruptibleWait()
-        self._wake = Condition()
-        self._wanted: MergeJob | None = None
-        self._running: MergeJob | None = None
         self._ended: MergeJob | None = None  # the last that came to its end
-        self._story = RunState()
+        self._told: tuple[MergeJob | None, RunState] = (None, RunState())  # the run at hand
         self._pace = 0.0
-        self._closed = False
         self.drawing = drawing or RLock()
-        self._worker = Thread(target=self._work, name="mapmeld-session", daemon=True)
-        self._worker.start()
+        self._requests = LatestRequest(self._work, "mapmeld-session", runner.close)
 
     @property
     def busy(self) -> bool:
         """Whether a run is going on or about to."""
-        return self._running is not None or self._wanted is not None
+        return self._requests.newest is not None
 
     @property
     def telling(self) -> bool:
         """Whether that is a run that is told step by step, and no search for a refusal's cause."""
-        job = self._wanted or self._running
+        job = self._requests.newest
         return job is not None and job.goal != "cause"
 
     def request(self, job: MergeJob) -> None:
         """Run this next; a run that is going on is left where it is."""
-        with self._wake:
-            if self._closed:
-                return
-            self._wanted = job
-            self._wake.notify()
+        self._requests.ask(job)
         self._waiting.cut()
 
     def set_pace(self, pace: float) -> None:
@@ -107,68 +99,57 @@ class JobThread:
 
     def stop(self) -> None:
         """Leave the run that is going on; nothing of it is drawn once this has returned."""
-        with self._wake:
-            self._wanted = None
-            job, self._running = self._running, None
+        job = self._requests.drop()
         self._waiting.cut()
         with self.drawing:
             if job is not None and job is not self._ended:  # it may have come to its end just now
-                self._listener.stopped(job, self._story)
+                of, story = self._told
+                self._listener.stopped(job, story if of is job else RunState(job.config))
 
     def told_again(self, job: MergeJob, wanted: Callable[[], bool]) -> Iterator[Step]:
         """The steps of a run once more, for a recording: those that are known are not computed again."""
         return self.runner.steps(job, RunCallbacks(wanted), aside=True)
 
     def close(self) -> None:
-        """End the worker; the tab is gone."""
-        with self._wake:
-            self._closed, self._wanted, self._running = True, None, None
-            self._wake.notify()
+        self._requests.close()
         self._waiting.cut()
 
-    def _work(self) -> None:
+    def _work(self, job: MergeJob) -> None:
+        began, story = self._clock(), RunState(job.config)
+        self._told, self._pace = (job, story), job.pace
+
+        def fail(error: Exception) -> None:
+            self._deliver(job, lambda: self._listener.failed(job, story, error))
+
         try:
-            self._work_on()
-        finally:
-            self.runner.close()
+            self._tell(job, story)
+        except MapMergeError as error:
+            fail(error)
+        except Exception as error:
+            log.exception("a run of %s ended in a bug", job.method)
+            fail(error)
+        log.info("run over", extra=facts(method=job.method, seconds=round(self._clock() - began, 3)))
 
-    def _work_on(self) -> None:
-        while True:
-            with self._wake:
-                self._wake.wait_for(lambda: self._closed or self._wanted is not None)
-                if self._closed:
-                    return
-                job, self._wanted = self._wanted, None
-                assert job is not None
-                self._running, self._story, self._pace = job, RunState(job.config), job.pace
-            began = self._clock()
-            try:
-                self._tell(job)
-            except MapMergeError as error:
-                self._fail(job, error)
-            except Exception as error:
-                log.exception("a run of %s ended in a bug", job.method)
-                self._fail(job, error)
-            log.info("run over", extra=facts(method=job.method, seconds=round(self._clock() - began, 3)))
-            with self._wake:
-                if self._running is job:
-                    self._running = None
-
-    def _fail(self, job: MergeJob, error: Exception) -> None:
-        self._deliver(job, lambda: self._listener.failed(job, self._story, error))
-
-    def _tell(self, job: MergeJob) -> None:
+    def _tell(self, job: MergeJob, story: RunState) -> None:
         """Iterate the method; draw at most every FRAME, except where a step is meant to be seen."""
-        story = self._story
+
+        def waits(before: int) -> None:
+            self._deliver(job, lambda: self._listener.waits(job, before))
+
+        def end() -> None:
+            self._ended = job
+            self._listener.ended(job, story)
+
+        callbacks = RunCallbacks(lambda: self._requests.wants(job), waits)
         if not self._deliver(job, lambda: self._listener.begun(job)):
             return
         drawn_at = -FRAME
-        with closing(self.runner.steps(job, self._asker(job))) as steps:
+        with closing(self.runner.steps(job, callbacks)) as steps:
             for step in steps:
                 story.tell(step)
                 mark = self._waiting.mark
                 stay = dwell(step, self._pace, job.again)
-                if not self._wants(job):
+                if not self._requests.wants(job):
                     return
                 if stay >= FRAME or self._clock() - drawn_at >= FRAME:
                     drawn_at = self._clock()
@@ -176,32 +157,19 @@ class JobThread:
                         return
                     stay -= self._clock() - drawn_at
                 self._waiting.wait(stay, mark)
-                if not self._wants(job):
+                if not self._requests.wants(job):
                     return
                 if job.goal == "candidates" and isinstance(step.detail, (CandidatesDetail, AnswersDetail)):
                     break
                 if isinstance(step.detail, MergeResult):
                     break
         self._listener.ending(job, story)
-        self._deliver(job, lambda: self._end(job, story))
-
-    def _end(self, job: MergeJob, story: RunState) -> None:
-        self._ended = job
-        self._listener.ended(job, story)
-
-    def _asker(self, job: MergeJob) -> RunCallbacks:
-        def waits(before: int) -> None:
-            self._deliver(job, lambda: self._listener.waits(job, before))
-
-        return RunCallbacks(lambda: self._wants(job), waits)
-
-    def _wants(self, job: MergeJob) -> bool:
-        return self._running is job and self._wanted is None and not self._closed
+        self._deliver(job, end)
 
     def _deliver(self, job: MergeJob, tell: Callable[[], None]) -> bool:
         """Tell the listener, unless the run has been stopped or overtaken; whether it was told."""
         with self.drawing:
-            if not self._wants(job):
+            if not self._requests.wants(job):
                 return False
             tell()
         return True

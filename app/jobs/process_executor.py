@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import signal
-from collections import OrderedDict
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import chain
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
@@ -43,29 +43,18 @@ class _Stopped:
     untouched: list[Numbered]
 
 
-def cores() -> int:
-    """How many cores this process may use."""
-    return kernels.cores()
-
-
 class ProcessExecutor(Executor):
     """Processes of this machine, which share its cores evenly."""
 
     def __init__(self, jobs: int, gentle: bool = False) -> None:
         """gentle : they take only what time others leave them."""
-        self._jobs, self._gentle = jobs, gentle
-
-    @property
-    def jobs(self) -> int:
-        """How many processes."""
-        return self._jobs
+        self.jobs, self._gentle = jobs, gentle
 
     def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
-        """As in Executor."""
         left = iter(enumerate(tasks))
         with _folder() as folder:
             while True:
-                stopped = yield from self._some(work, left, self._jobs, folder, stop)
+                stopped = yield from self._some(work, left, self.jobs, folder, stop)
                 if stopped is None:
                     return
                 left = chain(stopped.untouched, left)
@@ -83,7 +72,7 @@ class ProcessExecutor(Executor):
         listening, line = SPAWN.Pipe(duplex=False)
         running: dict[Future[Any], Numbered] = {}
         pool = ProcessPoolExecutor(
-            jobs, mp_context=SPAWN, initializer=_begin, initargs=(listening, self._jobs, self._gentle)
+            jobs, mp_context=SPAWN, initializer=_begin, initargs=(listening, self.jobs, self._gentle)
         )
         try:
             while stop is None or not stop.is_set():
@@ -153,14 +142,12 @@ def _no_room(error: OSError) -> OutputError:
 
 # ---- what runs in the other process
 
-_known: OrderedDict[str, Any] = OrderedDict()
-
 
 def _begin(line: Connection, jobs: int, gentle: bool) -> None:
     if gentle and hasattr(os, "nice"):  # not on Windows
         os.nice(10)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the first process hears it and ends the others
-    threads = max(1, cores() // jobs)
+    threads = max(1, kernels.cores() // jobs)
     kernels.use_threads(threads)
     cv2.setNumThreads(threads)
     Thread(target=_end_with, args=(line,), daemon=True).start()
@@ -177,9 +164,6 @@ def _do(work: Work, path: Path | None, order: Any) -> Any:
     return work(None if path is None else _value_in(path), order)
 
 
+@lru_cache(maxsize=KEPT)
 def _value_in(path: Path) -> Any:
-    if path.name not in _known:
-        _known[path.name] = unpacked(path.read_bytes())
-        if len(_known) > KEPT:
-            _known.popitem(last=False)
-    return _known[path.name]
+    return unpacked(path.read_bytes())

@@ -27,7 +27,9 @@ class Runner(ABC):
     """Of one tab. It remembers the stages of one run for the next."""
 
     @abstractmethod
-    def steps(self, job: MergeJob, asker: RunCallbacks, aside: bool = False) -> Generator[Step, None, None]:
+    def steps(
+        self, job: MergeJob, callbacks: RunCallbacks, aside: bool = False
+    ) -> Generator[Step, None, None]:
         """The steps of a run, each worked out when it is asked for and it is this run's turn.
 
         They end early where nobody wants them any more.
@@ -47,9 +49,10 @@ class TappedRunner(Runner):
     def __init__(self, bench: Runner, through: Callable[[Iterator[Step]], Iterator[Step]]) -> None:
         self._bench, self._through = bench, through
 
-    def steps(self, job: MergeJob, asker: RunCallbacks, aside: bool = False) -> Generator[Step, None, None]:
-        """As in Runner."""
-        with closing(self._bench.steps(job, asker, aside)) as steps:
+    def steps(
+        self, job: MergeJob, callbacks: RunCallbacks, aside: bool = False
+    ) -> Generator[Step, None, None]:
+        with closing(self._bench.steps(job, callbacks, aside)) as steps:
             yield from self._through(steps)
 
     def close(self) -> None:

@@ -16,11 +16,21 @@ from app.model.merge_job import MergeJob
 
 
 def small_merge() -> MergeJob:
-    """Merge a room with itself."""
-    cells = np.full((40, 60), FREE, dtype=np.int8)
-    cells[[0, -1], :], cells[:, [0, -1]] = OCCUPIED, OCCUPIED
-    room = GridMap(cells, 0.1)
-    return MergeJob(room, room, (Observation(Pose2(2.0, 2.0), 3.0, 2.0, 1.0, 0.0),), None)
+    """Merge a room of 4 x 3 m with itself: a wall stands in it, and two robots that see each other."""
+    cells = np.full((60, 80), FREE, dtype=np.int8)
+    for walls in (cells[:2], cells[-2:], cells[:, :2], cells[:, -2:], cells[20:22, 30:60], cells[40:, 50:52]):
+        walls[:] = OCCUPIED
+    room = GridMap(cells, 0.05, name="room")
+    seen = Observation(
+        observer=Pose2(1.0, 1.6, 0.3),
+        observed_x=3.2,
+        observed_y=1.9,
+        observed_heading=2.0,
+        range=2.22,
+        bearing=-0.164,
+        bearing_back=1.277,
+    )
+    return MergeJob(room, room, (seen,), None)
 
 
 def warm_up() -> Iterator[Step]:

@@ -10,7 +10,7 @@ import atexit
 import contextlib
 import itertools
 import logging
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
 from math import inf
 from multiprocessing.connection import Connection
 from threading import Lock
@@ -55,12 +55,11 @@ class WorkerPool:
         self._lock, self._closed = Lock(), False
 
     def bench(self) -> Runner:
-        """A place for a tab; it takes no worker before its first run."""
-        return _Place(self)
+        """A runner for a tab; it takes no worker before its first run."""
+        return PoolRunner(self)
 
     @property
     def pids(self) -> list[int]:
-        """The processes that are there now."""
         return [worker.pid for worker in self._workers if worker.pid is not None]
 
     def close(self) -> None:
@@ -70,15 +69,15 @@ class WorkerPool:
         for worker in self._workers:
             worker.close()
 
-    def seat(self, place: _Place) -> _Worker:
+    def assign(self, runner: PoolRunner) -> _Worker:
         """The worker of a tab: one that serves no other, if there may be one."""
         with self._lock:
-            if all(worker.places for worker in self._workers) and len(self._workers) < self._most:
+            if all(worker.runners for worker in self._workers) and len(self._workers) < self._most:
                 self._workers.append(_Worker())
                 if self._closed:
                     self._workers[-1].close()
-            worker = min(self._workers, key=lambda worker: len(worker.places))
-            worker.places.add(place)
+            worker = min(self._workers, key=lambda worker: len(worker.runners))
+            worker.runners.add(runner)
             return worker
 
 
@@ -87,7 +86,7 @@ class _Worker:
 
     def __init__(self) -> None:
         self.turns = FairSemaphore(1)
-        self.places: set[_Place] = set()
+        self.runners: set[PoolRunner] = set()
         self.life = 0  # how often it was started
         self.runs: set[tuple[int, int]] = set()  # that are under way
         self._process: Any = None
@@ -96,7 +95,6 @@ class _Worker:
 
     @property
     def pid(self) -> int | None:
-        """Of the process; None where there is none."""
         process = self._process
         return None if process is None else process.pid
 
@@ -171,7 +169,7 @@ class _Worker:
 _numbers = itertools.count()
 
 
-class _Place(Runner):
+class PoolRunner(Runner):
     """A tab at its worker.
 
     epoch : counts how often both had to begin anew with each other
@@ -182,100 +180,103 @@ class _Place(Runner):
         self._worker: _Worker | None = None
         self._lock, self._closed = Lock(), False
         self._epoch, self._life = 0, 0
-        self._parcels = IncrementalPickle("page")
+        self._pickler = IncrementalPickle("page")
         self._maps: tuple[object, object] = (None, None)
 
-    def steps(self, job: MergeJob, asker: RunCallbacks, aside: bool = False) -> Generator[Step, None, None]:
-        """As in Runner."""
+    def steps(
+        self, job: MergeJob, callbacks: RunCallbacks, aside: bool = False
+    ) -> Generator[Step, None, None]:
         with self._lock:
             if self._closed:
                 raise WorkerDiedError
-            worker = self._worker = self._worker or self._workers.seat(self)
-        with worker.turns.take(asker.wanted, asker.waits) as mine:
+            worker = self._worker = self._worker or self._workers.assign(self)
+        with worker.turns.take(callbacks.wanted, callbacks.waits) as mine:
             if not mine:
                 return
             run, epoch = self._begin(worker, job, aside), self._epoch
-        over, me = False, (self._number, run)
-        worker.runs.add(me)
+        over, key = False, (self._number, run)
+        worker.runs.add(key)
         try:
             while True:
-                with worker.turns.take(asker.wanted, asker.waits) as mine:
+                with worker.turns.take(callbacks.wanted, callbacks.waits) as mine:
                     if not mine:
                         return
                     over = True  # as it is where this fails
                     if self._epoch != epoch:
                         raise WorkerDiedError
-                    step = self._next(worker, run, asker)
+                    step = self._next(worker, run, callbacks)
                 if step is None:
                     return
                 over = False
                 yield step
         finally:
-            worker.runs.discard(me)
+            worker.runs.discard(key)
             if not over:
-                self._say(worker, epoch, "leave", run)
+                self._send(worker, epoch, "leave", run)
 
     def close(self) -> None:
         """As in Runner."""
         with self._lock:
             self._closed = True
         if self._worker is not None:
-            self._say(self._worker, self._epoch, "forget")
-            self._worker.places.discard(self)
+            self._send(self._worker, self._epoch, "forget")
+            self._worker.runners.discard(self)
             self._epoch += 1
 
     def _begin(self, worker: _Worker, job: MergeJob, aside: bool) -> int:
         worker.start()
         if worker.life != self._life:
-            self._anew()
+            self._reset()
             self._life = worker.life
         maps = job.ref, job.mov
         others = any(new is not old for new, old in zip(maps, self._maps, strict=True))
         self._maps = maps
-        turns = 2 if others else 1  # what was made of other maps is not met again
+        turns = 1 + others  # what was made of other maps is not met again
         for _ in range(turns):
-            self._parcels.turn_over()
-        try:
-            data = self._parcels.pack(job)
-        except BaseException:
-            self._anew()
-            worker.ask("forget", self._number)
-            raise
-        (run,) = self._heard(worker.ask("start", self._number, aside, turns, data))
+            self._pickler.turn_over()
+        with self._in_step(worker):
+            data = self._pickler.pack(job)
+        (run,) = self._checked(worker.ask("start", self._number, aside, turns, data))
         return int(run)
 
-    def _next(self, worker: _Worker, run: int, asker: RunCallbacks) -> Step | None:
-        (data,) = self._heard(worker.ask("next", self._number, run, wanted=asker.wanted))
+    def _next(self, worker: _Worker, run: int, callbacks: RunCallbacks) -> Step | None:
+        (data,) = self._checked(worker.ask("next", self._number, run, wanted=callbacks.wanted))
         if data is None:
             return None
-        try:
-            step: Step = self._parcels.unpack(data)
-        except BaseException:
-            self._anew()
-            worker.ask("forget", self._number)
-            raise
+        with self._in_step(worker):
+            step: Step = self._pickler.unpack(data)
         return step
 
-    def _heard(self, answer: tuple[Any, ...]) -> tuple[Any, ...]:
+    @contextlib.contextmanager
+    def _in_step(self, worker: _Worker) -> Iterator[None]:
+        """Begin anew with the worker where what is between both cannot be packed or unpacked."""
+        try:
+            yield
+        except BaseException:
+            self._reset()
+            worker.ask("forget", self._number)
+            raise
+
+    def _checked(self, answer: tuple[Any, ...]) -> tuple[Any, ...]:
         if not isinstance(answer[0], Failed):
             return answer
         failed = answer[0]
         if failed.anew:
-            self._anew()
-        raise failed.error from _ThereError(failed.trace)
+            self._reset()
+        raise failed.error from _RemoteError(failed.trace)
 
-    def _anew(self) -> None:
-        self._parcels, self._maps = IncrementalPickle("page"), (None, None)
+    def _reset(self) -> None:
+        self._pickler, self._maps = IncrementalPickle("page"), (None, None)
         self._epoch += 1
 
-    def _say(self, worker: _Worker, epoch: int, verb: str, *what: Any) -> None:
+    def _send(self, worker: _Worker, epoch: int, verb: str, *what: Any) -> None:
         """Tell what matters only as long as nobody had to begin anew."""
         with worker.turns.get(), contextlib.suppress(WorkerDiedError):
             if self._epoch == epoch and worker.life == self._life:
                 worker.ask(verb, self._number, *what)
 
 
-class _ThereError(Exception):
+class _RemoteError(Exception):
     """What went wrong in the other process, where it did: for the log."""
 
     def __str__(self) -> str:

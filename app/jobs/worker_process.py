@@ -28,7 +28,7 @@ SHARE = 0.5  # of this machine's memory that a worker may have; more is a Memory
 class Failed:
     """What went wrong here, for the page.
 
-    anew : the parcels no longer agree
+    anew : both ends no longer agree
     """
 
     error: Exception
@@ -38,7 +38,7 @@ class Failed:
 
 @dataclass
 class _Tab:
-    parcels: IncrementalPickle = field(default_factory=lambda: IncrementalPickle("worker"))
+    pickler: IncrementalPickle = field(default_factory=lambda: IncrementalPickle("worker"))
     memo: StageCache = field(default_factory=dict)
     runs: dict[int, Iterator[Step]] = field(default_factory=dict)
 
@@ -53,10 +53,10 @@ def serve(line: Connection) -> None:
     tabs: dict[int, _Tab] = {}
     with contextlib.suppress(EOFError, OSError):  # the first process is gone
         while True:
-            line.send(_obey(tabs, *line.recv()))
+            line.send(_answer(tabs, *line.recv()))
 
 
-def _obey(tabs: dict[int, _Tab], verb: str, number: int, *what: Any) -> tuple[Any, ...]:
+def _answer(tabs: dict[int, _Tab], verb: str, number: int, *what: Any) -> tuple[Any, ...]:
     if verb == "forget":
         if tabs.pop(number, None) is not None:
             give_back()
@@ -77,7 +77,7 @@ def _obey(tabs: dict[int, _Tab], verb: str, number: int, *what: Any) -> tuple[An
         del tab.runs[run]
         return (None,)
     try:
-        return (tab.parcels.pack(step),)
+        return (tab.pickler.pack(step),)
     except Exception as error:
         del tabs[number]
         return (_failed(error, anew=True),)
@@ -88,8 +88,8 @@ def _started(
 ) -> tuple[Any, ...]:
     try:
         for _ in range(turns):
-            tab.parcels.turn_over()
-        job: MergeJob = tab.parcels.unpack(data)
+            tab.pickler.turn_over()
+        job: MergeJob = tab.pickler.unpack(data)
     except Exception as error:
         del tabs[number]
         return (_failed(error, anew=True),)

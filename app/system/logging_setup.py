@@ -30,7 +30,6 @@ class JsonFormatter(logging.Formatter):
     """A record as one line: when, level, where, what, and the facts that ``extra={"facts": ...}`` gave."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """The line."""
         line: dict[str, Any] = {
             "when": datetime.fromtimestamp(record.created, timezone.utc).isoformat(timespec="milliseconds"),
             "level": record.levelname.lower(),
@@ -105,6 +104,6 @@ def start(verbose: bool) -> None:
     logging.getLogger("app").setLevel(VERBOSE if verbose else QUIET)
 
 
-def facts(**told: Any) -> dict[str, Any]:
+def facts(**values: Any) -> dict[str, Any]:
     """What a line is to hold beside its words: ``log.info("merged", extra=facts(seconds=1.2))``."""
-    return {"facts": told}
+    return {"facts": values}

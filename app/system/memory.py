@@ -41,7 +41,6 @@ class MemoryCleanup:
         self._lock, self._asked = Lock(), False
 
     def soon(self) -> None:
-        """Do it in a while."""
         with self._lock:
             if self._asked:
                 return

@@ -104,11 +104,11 @@ class BrowserEvents:
     def take(self, text: str) -> bool:
         """Take in a message; whether it was one."""
         try:
-            number, name, told = _parsed(text)
+            number, name, values = _parsed(text)
             event = self._events[name]
-            if number <= self._last or set(told) != set(event.fields):
+            if number <= self._last or set(values) != set(event.fields):
                 return False
-            fields = {field: checked(told[field], kind) for field, kind in event.fields.items()}
+            fields = {field: checked(values[field], kind) for field, kind in event.fields.items()}
         except (ValueError, KeyError, RecursionError):
             return False
         with self._wake:
@@ -117,13 +117,13 @@ class BrowserEvents:
                 self._waiting.pop()
             return self._queue(event, fields)
 
-    def then(self, callback: Callable[..., None], *told: Any) -> None:
+    def then(self, callback: Callable[..., None], *args: Any) -> None:
         """Call back with that after all that was told before it, and before what comes later.
 
         For what a widget tells, from a callback in viser's own loop: in a thread it would be overtaken.
         """
         with self._wake:
-            self._queue(_Event(partial(callback, *told), latest=False, fields={}), {})
+            self._queue(_Event(partial(callback, *args), latest=False, fields={}), {})
 
     def _queue(self, event: _Event, fields: dict[str, Any]) -> bool:
         if self._closed or len(self._waiting) >= MOST_WAITING:
@@ -133,7 +133,6 @@ class BrowserEvents:
         return True
 
     def close(self) -> None:
-        """End the thread; the tab is gone."""
         listen_unseen(self._text._impl.uuid, False)
         with self._wake:
             self._closed = True

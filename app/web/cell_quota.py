@@ -39,6 +39,5 @@ class CellQuota:
             self._held[who] = cells
 
     def release(self, who: object) -> None:
-        """Hold nothing any more."""
         with self._lock:
             self._held.pop(who, None)

@@ -35,7 +35,6 @@ class Downloads:
                 self._made.notify_all()
 
     def send(self, client: viser.ClientHandle, name: str, content: bytes) -> None:
-        """Have the browser save a file."""
         with self._made:
             self._sent = [known for known in self._sent if _waits(known)]
             self._sent.append(client)

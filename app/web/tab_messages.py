@@ -31,7 +31,6 @@ class TabMessages(BrowserMessages):
         self._run(_SCRIPT)
 
     def send(self, message: dict[str, Any]) -> None:
-        """Have the tab draw it."""
         self._run(f"window.mapmeld && window.mapmeld.apply({json.dumps(message, default=plain)})")
 
     def _run(self, source: str) -> None:

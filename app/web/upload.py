@@ -4,8 +4,8 @@ viser sends a file in one go by the connection that carries everything else: on 
 of the page comes through until it has arrived, Stop neither. Here a part is sent once earlier ones have
 arrived, nothing else waits for it, and to leave a file is to close its connection.
 
-viser's own way is closed (heard.py). What comes is kept where viser would keep it: a tab that goes takes
-its files along.
+viser's own way is closed (message_schema). What comes is kept where viser would keep it: a tab that goes
+takes its files along.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ MAX_OPEN_UPLOADS = 8  # of one tab
 MAX_NAME = 255  # letters of a file's name
 SILENCE = 60.0  # seconds until a connection that says nothing is given up
 SHORT = 0.5  # seconds; what takes less can be left by nobody
-GOODBYE = 10.0  # seconds until a connection that is left ends, whatever it still holds
+CLOSE_PATIENCE = 10.0  # seconds until a connection that is left ends, whatever it still holds
 
 
 class Announced(msgspec.Struct, forbid_unknown_fields=True):
@@ -96,7 +96,7 @@ class Uploads:
         self._recipients: dict[int, Recipient] = {}
         self._coming: list[Arrival] = []
         self._lock = threading.Lock()
-        self._partings: set[asyncio.Task[None]] = set()
+        self._endings: set[asyncio.Task[None]] = set()
 
     def welcome(self, tab: int, recipient: Recipient) -> None:
         """From now on this page is told of its tab's files."""
@@ -113,10 +113,10 @@ class Uploads:
 
     def _leave(self, tab: int, why: str) -> bool:
         with self._lock:
-            going = [one for one in self._coming if one.tab == tab]
-        dropped = [one.drop() for one in going]
-        for one in going:
-            one.loop.call_soon_threadsafe(self._part, one.connection, why)
+            going = [arrival for arrival in self._coming if arrival.tab == tab]
+        dropped = [arrival.drop() for arrival in going]
+        for arrival in going:
+            arrival.loop.call_soon_threadsafe(self._end_soon, arrival.connection, why)
         return any(dropped)
 
     # --- in viser's loop --------------------------------------------------------------------------
@@ -124,11 +124,11 @@ class Uploads:
     async def receive(self, connection: Any) -> None:
         """Take in the file that a connection brings."""
         try:
-            one = self._admitted(connection, await _heard(connection))
-            if one is None:
-                await _over(connection, "refused")
-            elif await self._watched(one):
-                await _over(connection, "arrived")
+            arrival = self._admitted(connection, await _received(connection))
+            if arrival is None:
+                await _end(connection, "refused")
+            elif await self._watched(arrival):
+                await _end(connection, "arrived")
         except ConnectionClosed:
             log.debug("a file's connection ended")
         except asyncio.TimeoutError:
@@ -140,107 +140,108 @@ class Uploads:
 
     def _admitted(self, connection: Any, word: Any) -> Arrival | None:
         """The file that is announced, with room kept for it; None where it may not come."""
-        said = msgspec.json.decode(word, type=Announced)
+        announced = msgspec.json.decode(word, type=Announced)
         for tab, client in self._tabs().items():
-            if said.button in client.gui._gui_input_handle_from_uuid:
+            if announced.button in client.gui._gui_input_handle_from_uuid:
                 loop = asyncio.get_running_loop()
-                return self._begun(Arrival(connection, tab, client.gui, said.button, said.size, loop), said)
+                arrival = Arrival(connection, tab, client.gui, announced.button, announced.size, loop)
+                return self._begun(arrival, announced)
         return None  # its button is gone
 
-    def _begun(self, one: Arrival, said: Announced) -> Arrival | None:
-        if not self._has_room(one):
-            recipient = self._recipients.get(one.tab)
+    def _begun(self, arrival: Arrival, announced: Announced) -> Arrival | None:
+        if not self._has_room(arrival):
+            recipient = self._recipients.get(arrival.tab)
             if recipient is not None:  # told in a thread: it may have to wait for a picture that is drawn
-                one.gui._thread_executor.submit(recipient.refuse, refusal(said.name, said.size))
+                arrival.gui._thread_executor.submit(recipient.refuse, refusal(announced.name, announced.size))
             return None
-        one.gui._current_file_upload_states[one.id] = {
-            "client_id": one.tab,
-            "filename": said.name,
-            "mime_type": said.kind,
+        arrival.gui._current_file_upload_states[arrival.id] = {
+            "client_id": arrival.tab,
+            "filename": announced.name,
+            "mime_type": announced.kind,
             "part_count": 0,  # as many as it takes
             "parts": {},
-            "total_bytes": said.size,
+            "total_bytes": announced.size,
             "transferred_bytes": 0,
             "lock": threading.Lock(),
         }
         with self._lock:
-            self._coming.append(one)
-        return one
+            self._coming.append(arrival)
+        return arrival
 
-    def _has_room(self, one: Arrival) -> bool:
+    def _has_room(self, arrival: Arrival) -> bool:
         """Whether a file may come now."""
-        button, coming = one.gui._gui_input_handle_from_uuid.get(one.button), _coming(one.gui)
-        if not isinstance(button, GuiUploadButtonHandle) or not usable(one.gui, button):
+        button, coming = arrival.gui._gui_input_handle_from_uuid.get(arrival.button), _coming(arrival.gui)
+        if not isinstance(button, GuiUploadButtonHandle) or not usable(arrival.gui, button):
             self._gate.drop("upload unasked")
         elif len(coming) >= MAX_OPEN_UPLOADS:
             self._gate.drop("uploads")
-        elif one.size > MAX_UPLOAD or one.size + sum(coming) > MAX_UPLOADS:
+        elif arrival.size > MAX_UPLOAD or arrival.size + sum(coming) > MAX_UPLOADS:
             self._gate.drop("upload size")
-        elif one.size + sum(sum(_coming(tab.gui)) for tab in self._tabs().values()) > MAX_UPLOADS_OF_ALL:
+        elif arrival.size + sum(sum(_coming(tab.gui)) for tab in self._tabs().values()) > MAX_UPLOADS_OF_ALL:
             self._gate.drop("uploads of all")
         else:
             return True
         return False
 
-    async def _watched(self, one: Arrival) -> bool:
+    async def _watched(self, arrival: Arrival) -> bool:
         """Take it in, and have its tab know where that takes long; whether it is there."""
-        alarm = one.loop.call_later(SHORT, self._lasts, one)
+        alarm = arrival.loop.call_later(SHORT, self._lasts, arrival)
         try:
-            return await self._taken(one)
+            return await self._taken(arrival)
         finally:
             alarm.cancel()
-            one.drop()
+            arrival.drop()
             with self._lock:
-                self._coming.remove(one)
-            self._tell(one.tab)
+                self._coming.remove(arrival)
+            self._tell(arrival.tab)
 
-    async def _taken(self, one: Arrival) -> bool:
+    async def _taken(self, arrival: Arrival) -> bool:
         """Part by part; in the end the button has the file, and says so as for any upload of viser's."""
-        await one.connection.send(json.dumps({"least": LEAST, "most": MOST, "ahead": AHEAD}))
-        while one.arrived < one.size:
-            part = await _heard(one.connection)
-            state = one.state
+        await arrival.connection.send(json.dumps({"least": LEAST, "most": MOST, "ahead": AHEAD}))
+        while arrival.arrived < arrival.size:
+            part = await _received(arrival.connection)
+            state = arrival.state
             if state is None:
                 return False
-            rest = one.size - one.arrived
+            rest = arrival.size - arrival.arrived
             if not isinstance(part, bytes) or not min(LEAST, rest) <= len(part) <= min(MOST, rest):
                 raise ValueError("a part that is too short, or too long")
             state["parts"][state["part_count"]] = part
             state["part_count"] += 1
-            state["transferred_bytes"] = one.arrived = one.arrived + len(part)
-            await one.connection.send(json.dumps({"arrived": one.arrived}))
-        if one.state is None:
+            state["transferred_bytes"] = arrival.arrived = arrival.arrived + len(part)
+            await arrival.connection.send(json.dumps({"arrived": arrival.arrived}))
+        if arrival.state is None:
             return False
-        one.gui._finish_file_upload(one.tab, one.id, one.button)
+        arrival.gui._finish_file_upload(arrival.tab, arrival.id, arrival.button)
         return True
 
-    def _lasts(self, one: Arrival) -> None:
-        one.long = True
-        self._tell(one.tab)
+    def _lasts(self, arrival: Arrival) -> None:
+        arrival.long = True
+        self._tell(arrival.tab)
 
     def _tell(self, tab: int) -> None:
         recipient = self._recipients.get(tab)
         if recipient is not None:
-            recipient.can_stop(any(one.tab == tab and one.long for one in self._coming))
+            recipient.can_stop(any(arrival.tab == tab and arrival.long for arrival in self._coming))
 
-    def _part(self, connection: Any, why: str) -> None:
-        parting = asyncio.ensure_future(_over(connection, why))
-        self._partings.add(parting)  # the loop itself would forget it
-        parting.add_done_callback(self._partings.discard)
+    def _end_soon(self, connection: Any, why: str) -> None:
+        ending = asyncio.ensure_future(_end(connection, why))
+        self._endings.add(ending)  # the loop itself would forget it
+        ending.add_done_callback(self._endings.discard)
 
 
-async def _heard(connection: Any) -> Any:
+async def _received(connection: Any) -> Any:
     return await asyncio.wait_for(connection.recv(), SILENCE)
 
 
-async def _over(connection: Any, why: str) -> None:
+async def _end(connection: Any, why: str) -> None:
     """Say the last word, and end the connection, however much it still holds.
 
     why : "arrived", "refused"; "left", by Stop; "lost", as its tab has gone
     """
     try:
-        await asyncio.wait_for(connection.send(json.dumps({"over": why})), GOODBYE)
-        await asyncio.wait_for(connection.close(), GOODBYE)
+        await asyncio.wait_for(connection.send(json.dumps({"over": why})), CLOSE_PATIENCE)
+        await asyncio.wait_for(connection.close(), CLOSE_PATIENCE)
     except (asyncio.TimeoutError, ConnectionClosed):
         connection.transport.abort()
 

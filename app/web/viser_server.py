@@ -1,4 +1,4 @@
-"""Hangs the rules of access.py and gate.py into viser, which itself asks nobody who they are.
+"""Hangs the rules of access_control and message_filter into viser, which itself asks nobody who they are.
 
 Measured on viser 1.1.1: any web page that is open in the same browser could drive a server on this
 machine, any client could have a public tunnel opened, write any property of a widget, and fill the
@@ -58,11 +58,12 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
     uploads = Uploads(gate, lambda: server.get_clients())
 
     def serve(handler: Any, at: str, on: int, *, process_request: Callable[..., Any], **options: Any) -> Any:
-        async def ask(connection: Any, request: Any) -> Any:
+        async def process(connection: Any, request: Any) -> Any:
             try:
-                asked = HttpRequest.of(request.path, request.headers.raw_items())
-                answer = access.answer(asked)
-                if answer is None and asked.upgrade and len(files if asked.path == PATH else live) >= most:
+                incoming = HttpRequest.of(request.path, request.headers.raw_items())
+                answer = access.answer(incoming)
+                full = len(files if incoming.path == PATH else live) >= most
+                if answer is None and incoming.upgrade and full:
                     answer = TOO_MANY
                 if answer is None:
                     return _with_words(process_request(connection, request))
@@ -75,26 +76,26 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
             return _response(answer)
 
         async def handle(connection: Any) -> None:
-            brings = connection.request.path == PATH
-            among = files if brings else live
-            if not brings:
+            is_upload = connection.request.path == PATH
+            group = files if is_upload else live
+            if not is_upload:
                 if connection.subprotocol != SPEAKS:  # a tab from before an upgrade; it is told to reload
                     gate.drop("version")
                     await connection.close(1002, "another version is served here: reload the page")
                     return
                 gate.guard(connection)
-            among.add(connection)
+            group.add(connection)
             try:
-                await (uploads.receive if brings else handler)(connection)
+                await (uploads.receive if is_upload else handler)(connection)
             except RuntimeError:
                 if not ending():  # viser tells who has gone in threads that may have ended already
                     raise
             finally:
-                among.discard(connection)
+                group.discard(connection)
 
         options["max_size"] = MOST
         options["create_connection"] = bounded(gate)
-        return real_serve(handle, at, on, process_request=ask, ssl=access.tls, **options)
+        return real_serve(handle, at, on, process_request=process, ssl=access.tls, **options)
 
     shim = SimpleNamespace(
         asyncio=SimpleNamespace(
@@ -124,8 +125,8 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
 def _response(answer: HttpReply) -> Response:
     body = answer.body.encode()
     kind = "text/html" if answer.body.startswith("<") else "text/plain"
-    told = {"Content-Type": f"{kind}; charset=utf-8", "Content-Length": str(len(body))}
-    headers = websockets.datastructures.Headers({**told, **HEADERS, **answer.headers})
+    own = {"Content-Type": f"{kind}; charset=utf-8", "Content-Length": str(len(body))}
+    headers = websockets.datastructures.Headers({**own, **HEADERS, **answer.headers})
     return Response(answer.status, http.HTTPStatus(answer.status).phrase, headers, body)
 
 

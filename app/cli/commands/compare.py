@@ -6,7 +6,16 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from app.cli.argument_parser import Parser, did_you_mean
+from algorithms.files.atomic_write import check_folder, write_files
+from algorithms.methods.registry import METHODS
+from app.cli.argument_parser import Parser
+from app.cli.executor_flags import add_workers, executor_for
+from app.cli.map_arguments import case_folder
+from app.cli.progress_bar import bar
+from app.cli.setting_flags import add_seed, method_name
+from app.evaluation.comparison_files import NOTES, case_files, contest_files, remarks, table_rows
+from app.evaluation.method_comparison import UnreadableCase, compare_methods, defaults_of, pairs_in
+from app.evaluation.table_files import aligned
 
 USAGE = "DIR|CASE|SAMPLE [--methods A,B,…] [--rough] [--out DIR] [--jobs N | --scheduler ADDRESS]"
 DESCRIPTION = """\
@@ -39,17 +48,12 @@ Exit status: 0 done, 1 no method could be run on some case, 2 bad input, 130 int
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    """Tell the parser what the command takes."""
-    from algorithms.methods.registry import METHODS
-    from app.cli.executor_flags import add_workers
-    from app.cli.setting_flags import add_seed
-
     parser.add_argument(
         "cases", metavar="DIR|CASE|SAMPLE", help="folder of cases, one case, or a sample's name"
     )
     parser.add_argument(
         "--methods",
-        type=_methods,
+        type=lambda text: tuple(dict.fromkeys(method_name(name.strip()) for name in text.split(","))),
         default=tuple(METHODS),
         metavar="A,B,…",
         help=f"which of them (default: all: {', '.join(METHODS)})",
@@ -62,50 +66,21 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Run all, print the table, leave the files; 1 where no method could be run on a case."""
-    from algorithms.files.atomic_write import check_folder
-    from app.cli.executor_flags import executor_for
-    from app.cli.progress_bar import bar
-    from app.cli.setting_flags import case_folder
-    from app.evaluation.comparison_files import NOTES, remarks, table_rows
-    from app.evaluation.csv_tables import aligned
-    from app.evaluation.method_comparison import compare_methods, defaults_of, pairs_in
-
     if args.out is not None:
         check_folder(args.out)
     root, configs = case_folder(args.cases, parser), defaults_of(args.methods)
     executor = executor_for(args.jobs, args.scheduler)
     n, pairs = pairs_in(root, args.rough)
-    told = compare_methods(pairs, configs, executor, args.seed)
-    scores = list(bar(iterable=told, total=n * len(configs), unit="merge"))
+    runs = compare_methods(pairs, configs, executor, args.seed)
+    scores = list(bar(iterable=runs, total=n * len(configs), unit="merge"))
     for line in (*aligned(table_rows(scores)), "", *NOTES, *remarks(scores)):
         print(line)
     if args.out is not None:
-        _leave(args, root, scores)
+        files = contest_files(scores, configs, args.seed)
+        for name, case in bar(iterable=pairs_in(root, args.rough)[1], total=n, unit="picture"):
+            if not isinstance(case, UnreadableCase):
+                files |= case_files(name, case, scores)
+        write_files({args.out / name: data for name, data in files.items()})
+        print(f"written to {args.out}: {', '.join(files)}")
     lost = {score.case for score in scores} - {score.case for score in scores if not score.trial.failed}
     return 1 if lost else 0
-
-
-def _leave(args: argparse.Namespace, root: Path, scores: Sequence) -> None:  # type: ignore[type-arg]
-    from algorithms.files.atomic_write import write_files
-    from app.cli.progress_bar import bar
-    from app.evaluation.comparison_files import case_files, contest_files
-    from app.evaluation.method_comparison import UnreadableCase, defaults_of, pairs_in
-
-    files = contest_files(scores, defaults_of(args.methods), args.seed)
-    n, pairs = pairs_in(root, args.rough)
-    for name, case in bar(iterable=pairs, total=n, unit="picture"):
-        if not isinstance(case, UnreadableCase):
-            files |= case_files(name, case, scores)
-    write_files({args.out / name: data for name, data in files.items()})
-    print(f"written to {args.out}: {', '.join(files)}")
-
-
-def _methods(text: str) -> tuple[str, ...]:
-    from algorithms.methods.registry import METHODS
-
-    names = tuple(dict.fromkeys(name.strip() for name in text.split(",")))
-    for name in names:
-        if name not in METHODS:
-            near = did_you_mean(name, METHODS) or f"; known are {', '.join(METHODS)}"
-            raise argparse.ArgumentTypeError(f"there is no method {name or 'without a name'}{near}")
-    return names

@@ -5,13 +5,21 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from app.cli.argument_parser import Parser, did_you_mean
-
-if TYPE_CHECKING:
-    from app.model.merge_inputs import MergeInputs
+from algorithms.files.atomic_write import check_file, write_file
+from algorithms.files.case_folder import read_case
+from algorithms.files.observation_file import read_observations
+from algorithms.methods import registry as methods
+from app.cli.argument_parser import Parser
+from app.cli.map_arguments import add_reading, case_folder, read_inputs
+from app.cli.progress_bar import with_bar
+from app.cli.setting_flags import add_method, config_from
+from app.model.merge_inputs import MergeInputs
+from app.report.replay.html_page import replay_html
+from app.report.replay.metadata import ReplayMetadata
+from app.report.replay.recorder import record
 
 USAGE = "{CASE | MAP1 MAP2 --observation FILE} --out FILE.html [options]"
 DESCRIPTION = """\
@@ -34,10 +42,6 @@ HTML_SUFFIXES = (".html", ".htm")
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    """Tell the parser what the command takes; flags of the settings depend on the method in ``words``."""
-    from app.cli.commands.merge import add_reading
-    from app.cli.setting_flags import add_method
-
     parser.add_argument("first", metavar="CASE|MAP1", help="a sample's name or a case folder; or a map")
     parser.add_argument("map2", type=Path, metavar="MAP2", nargs="?", help="map of robot 2, the observed")
     parser.add_argument(
@@ -50,14 +54,6 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, record, write; the exit status."""
-    from algorithms.files.atomic_write import check_file, write_file
-    from algorithms.methods import registry as methods
-    from app.cli.progress_bar import with_bar
-    from app.cli.setting_flags import config_from
-    from app.report.replay.html_page import replay_html
-    from app.report.replay.metadata import ReplayMetadata
-    from app.report.replay.recorder import record
-
     if args.out.suffix.lower() not in HTML_SUFFIXES:
         parser.error(f"--out is {args.out}; let its name end in .html, or no browser will open it")
     if args.map2 is not None and args.observation is None:
@@ -81,26 +77,11 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
 
 def _inputs(args: argparse.Namespace, parser: Parser) -> MergeInputs:
     """What the command line names: two maps, a sample by its name, or the folder of a case."""
-    from dataclasses import replace
-
-    from algorithms.files.case_folder import read_case
-    from algorithms.files.observation_file import read_observations
-    from app.cli.commands.merge import read_inputs
-    from app.model.merge_inputs import MergeInputs
-    from app.system.data_paths import samples
-
     if args.map2 is not None:
         args.map1 = Path(args.first)
         ref, mov, observations = read_inputs(args)
         return MergeInputs.pair(ref, mov, observations, f"{args.map1.stem} + {args.map2.stem}")
-    known, folder = samples(), Path(args.first)
-    if not folder.is_dir():
-        if args.first not in known:
-            parser.error(
-                f"{args.first} is neither a folder nor a sample{did_you_mean(args.first, known)}; "
-                "for two maps give MAP1, MAP2 and --observation FILE"
-            )
-        folder = known[args.first]
+    folder = case_folder(args.first, parser, "; for two maps give MAP1, MAP2 and --observation FILE")
     inputs = MergeInputs.of(read_case(folder))
     if args.observation is None:
         return inputs

@@ -26,7 +26,6 @@ Examples:
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    """Tell the parser what the command takes."""
     parser.add_argument("folder", type=Path, metavar="DIR", help="where the folders go; made where missing")
     parser.add_argument(
         "--building",

@@ -12,7 +12,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.argument_parser import Parser
+from app.cli.argument_parser import Parser, whole_number
+from app.cli.map_arguments import add_reading, read_inputs
 from app.web.security.access_control import TOKEN_VARIABLE, Access, access_for, is_local, numeric
 
 if TYPE_CHECKING:
@@ -42,15 +43,13 @@ can be read on the network, the token with it. SECURITY.md tells more. Ctrl-C en
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    """Tell the parser what the command takes."""
-    from app.cli.commands.merge import add_reading
-
     parser.add_argument("map1", type=Path, metavar="MAP1", nargs="?", help="map of robot 1, the observer")
     parser.add_argument("map2", type=Path, metavar="MAP2", nargs="?", help="map of robot 2, the observed")
     parser.add_argument("--observation", type=Path, metavar="FILE", help="what robot 1 saw")
     add_reading(parser)
     parser.add_argument("--host", default=LOCAL, help=f"address to listen at (default: {LOCAL})")
-    parser.add_argument("--port", type=_port, default=PORT, help=f"0 for any free one (default: {PORT})")
+    port = whole_number(0, 65535, "is no port; give a number in [0, 65535]")
+    parser.add_argument("--port", type=port, default=PORT, help=f"0 for any free one (default: {PORT})")
     parser.add_argument("--token-file", type=Path, metavar="FILE", help="holds the token to enter with")
     parser.add_argument("--certfile", type=Path, metavar="FILE", help="PEM certificate: the page is https")
     parser.add_argument("--keyfile", type=Path, metavar="FILE", help="its PEM key, if not in the same file")
@@ -146,7 +145,6 @@ def _check_lesson(folder: Path) -> None:
 def _case(args: argparse.Namespace) -> Case | None:
     """What the page opens with: the maps that were named, else a sample; None if none is installed."""
     from algorithms.files.case_folder import Case, read_case
-    from app.cli.commands.merge import read_inputs
     from app.system.data_paths import samples
 
     if args.map1 is not None:
@@ -163,13 +161,3 @@ def _has_display() -> bool:
     if sys.platform in ("darwin", "win32"):
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
-
-
-def _port(text: str) -> int:
-    try:
-        port = int(text)
-    except ValueError:
-        port = -1
-    if not 0 <= port <= 65535:
-        raise argparse.ArgumentTypeError(f"{text} is no port; give a number in [0, 65535]")
-    return port

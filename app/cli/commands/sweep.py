@@ -5,13 +5,20 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from app.cli.argument_parser import Parser
-
-if TYPE_CHECKING:
-    from algorithms.files.case_folder import Case
-    from app.evaluation.parameter_sweep import SweepPlan, SweepPoint
+from algorithms.files.atomic_write import check_folder, write_files
+from algorithms.files.case_folder import Case, read_case
+from app.cli.argument_parser import Parser, whole_number
+from app.cli.executor_flags import add_workers, executor_for
+from app.cli.map_arguments import case_folder
+from app.cli.progress_bar import bar
+from app.cli.setting_flags import add_method, config_from
+from app.evaluation import sweep_axes as axes
+from app.evaluation.checkpoint import Checkpoint
+from app.evaluation.parameter_sweep import SweepPlan, SweepPoint, done_before, outdated, sweep
+from app.evaluation.sweep_files import JOURNAL_FILE, name_of, sweep_files
+from app.model.settings import with_value
 
 SWARM = "spectra-swarm"  # the paper's method, whose settings the paper sweeps
 SEEDS = 10
@@ -41,17 +48,17 @@ Exit status: 0 done, 1 some point could not be run, 2 bad input, 130 interrupted
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    """Tell the parser what the command takes; flags of the settings depend on the method in ``words``."""
-    from app.cli.executor_flags import add_workers
-    from app.cli.setting_flags import add_method
-
     parser.add_argument("case", metavar="CASE", help="a sample's name, or the folder of a case")
     parser.add_argument("--x", metavar="RANGE", help="the setting that is swept")
     parser.add_argument("--y", metavar="RANGE", help="a second one: all of its values with all of the first")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where the files go (default: sweep_CASE)")
     parser.add_argument("--rough", action="store_true", help="take the case's observation_rough.yaml")
     parser.add_argument(
-        "--seeds", type=_count, default=SEEDS, metavar="N", help=f"merges per point (default: {SEEDS})"
+        "--seeds",
+        type=whole_number(1, 1000),
+        default=SEEDS,
+        metavar="N",
+        help=f"merges per point (default: {SEEDS})",
     )
     add_workers(parser, None)
     add_method(parser, words, SWARM)
@@ -59,16 +66,9 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Sweep, write, tell; the exit status."""
-    from algorithms.files.atomic_write import check_folder, write_files
-    from app.cli.executor_flags import executor_for
-    from app.cli.progress_bar import bar
-    from app.evaluation.checkpoint import Checkpoint
-    from app.evaluation.parameter_sweep import done_before, sweep
-    from app.evaluation.sweep_files import JOURNAL_FILE, name_of, sweep_files
-
     if args.y is not None and args.x is None:
         parser.error("--y is a second setting; give --x, too")
-    case = _case(args, parser)
+    case = read_case(case_folder(args.case, parser), args.rough)
     out = args.out or Path(f"sweep_{case.name}")
     check_folder(out)
     plans = _plans(args, case)
@@ -81,6 +81,9 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         total, done = len(plan.places()), done_before(case, plan, journal)
         if done:
             print(f"{name_of(plan)}: {done} of {total} points are known from before")
+        why = outdated(case, plan, journal)
+        if why:
+            print(f"{name_of(plan)}: {why}")
         try:
             with bar(total=total, initial=done, unit="point") as shown:
                 for point in sweep(case, plan, executor, journal):
@@ -100,19 +103,8 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     return 1 if failed else 0
 
 
-def _case(args: argparse.Namespace, parser: Parser) -> Case:
-    from algorithms.files.case_folder import read_case
-    from app.cli.setting_flags import case_folder
-
-    return read_case(case_folder(args.case, parser), args.rough)
-
-
 def _plans(args: argparse.Namespace, case: Case) -> list[SweepPlan]:
     """What is asked for; the paper's two unless told otherwise."""
-    from app.cli.setting_flags import config_from
-    from app.evaluation import sweep_axes as axes
-    from app.evaluation.parameter_sweep import SweepPlan
-
     config, seeds = config_from(args), tuple(range(args.seed, args.seed + args.seeds))
     if args.x is not None:
         x = axes.axis_from(args.x, config)
@@ -130,12 +122,9 @@ def _plans(args: argparse.Namespace, case: Case) -> list[SweepPlan]:
 
 def _fixed(args: argparse.Namespace, config: Any, paper: dict[tuple[str, ...], Any]) -> Any:
     """The settings with the paper's values, where the command line names no others."""
-    from app.evaluation.sweep_axes import setting_named
-    from app.model.settings import with_value
-
     for path, value in paper.items():
         name = ".".join(path)
-        setting_named(name, config)  # a method without it says so
+        axes.setting_named(name, config)  # a method without it says so
         if getattr(args, name) is None:
             config = with_value(config, path, value)
     return config
@@ -143,32 +132,21 @@ def _fixed(args: argparse.Namespace, config: Any, paper: dict[tuple[str, ...], A
 
 def _summary(plan: SweepPlan, points: Sequence[SweepPoint]) -> list[str]:
     """What a person wants to know first: where it is best, and what went wrong."""
-    from app.evaluation.sweep_files import name_of
-
-    told = [point for point in points if point.index is not None]
+    found = [(point.index, point) for point in points if point.index is not None]
     lines = [f"{name_of(plan)}: {len(points)} points of {len(plan.seeds)} seeds"]
-    if told:
-        best = max(told, key=lambda point: point.index.mean if point.index else 0.0)
-        worst = min(told, key=lambda point: point.index.mean if point.index else 0.0)
-        for word, point in (("most", best), ("least", worst)):
-            assert point.index is not None
-            judged = "" if point.right is None else f", {point.right} of {len(point.trials)} right"
-            lines.append(
-                f"  {word:>5} agreement, eq. (23): {point.index.mean:.4f} ± {point.index.deviation:.4f} "
-                f"at {_place(plan, point)}{judged}, {point.seconds.median:.2f} s a merge"
-            )
+    for word, pick in (("most", max), ("least", min)) if found else ():
+        index, point = pick(found, key=lambda each: each[0].mean)
+        judged = "" if point.right is None else f", {point.right} of {len(point.trials)} right"
+        lines.append(
+            f"  {word:>5} agreement, eq. (23): {index.mean:.4f} ± {index.deviation:.4f} "
+            f"at {_place(plan, point)}{judged}, {point.seconds.median:.2f} s a merge"
+        )
     reasons = dict.fromkeys(point.failed for point in points if point.failed)
     return [*lines, *(f"  could not be run: {reason}" for reason in reasons)]
 
 
 def _place(plan: SweepPlan, point: SweepPoint) -> str:
-    at = [f"{plan.x.name} {point.x:g}" if isinstance(point.x, float) else f"{plan.x.name} {point.x}"]
-    if plan.y is not None:
-        at.append(f"{plan.y.name} {point.y:g}" if isinstance(point.y, float) else f"{plan.y.name} {point.y}")
-    return ", ".join(at)
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal() or not 1 <= int(text) <= 1000:
-        raise argparse.ArgumentTypeError(f"{text} is no whole number from 1 to 1000")
-    return int(text)
+    values = zip(plan.swept, (point.x, point.y), strict=False)
+    return ", ".join(
+        f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}" for name, value in values
+    )

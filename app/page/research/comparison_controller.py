@@ -11,7 +11,7 @@ import numpy as np
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from app.drawing.png import png_base64
 from app.drawing.svg.thumbnail import thumbnail
-from app.evaluation.evaluation_archive import contest_archive
+from app.evaluation.comparison_files import contest_archive
 from app.evaluation.method_comparison import ComparedRun, compare_methods
 from app.jobs.background_job import BackgroundJob, beside_the_page
 from app.jobs.executor import Executor

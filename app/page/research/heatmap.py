@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -42,14 +43,14 @@ def heat_svg(
     sheet.rect(left, TOP, wide, high, None, "currentColor", 0.35)
     for n, point in points.items():
         row, column = divmod(n, columns)
-        told = reading(point, measure)
+        found = reading(point, measure)
         x, y = left + column * cell[0], TOP + high - (row + 1) * cell[1]
         at = f"{_at(plan, plan.x, column)}, {_at(plan, plan.y, row)}"
-        words = point.failed if told is None else text_of(told.middle, measure)
+        words = f"{at}: {point.failed if found is None else text_of(found.middle, measure)}"
         ring = f' stroke="{css(palette.best)}" stroke-width="2.5"' if n == here else ""
         sheet.parts.append(
             f'<rect data-mm-point="{n}" x="{x:.1f}" y="{y:.1f}" width="{cell[0]:.1f}" height="{cell[1]:.1f}"'
-            f' fill="#000" fill-opacity="0"{ring}><title>{_escaped(f"{at}: {words}")}</title></rect>'
+            f' fill="#000" fill-opacity="0"{ring}><title>{escape(words, quote=False)}</title></rect>'
         )
     _ticks(sheet, plan, cell, left, high)
     _scale(sheet, left, TOP + high + 52, wide, text_of(low, measure), text_of(top, measure))
@@ -68,10 +69,6 @@ def _short(plan: SweepPlan, value: Any) -> str:
     assert plan.y is not None
     word = word_of(plan, plan.y, value)
     return word if len(word) <= LONGEST else f"{word[: LONGEST - 1]}…"
-
-
-def _escaped(words: str) -> str:
-    return words.replace("&", "&amp;").replace("<", "&lt;")
 
 
 def _ticks(sheet: SvgCanvas, plan: SweepPlan, cell: tuple[float, float], left: float, high: float) -> None:

@@ -26,14 +26,14 @@ class RunSummary:
 
 
 def outcome_of(trial: MethodRun) -> RunSummary:
-    """What became of a trial."""
     if trial.failed:
         return RunSummary("Could not be run.", sentence(trial.reason), "", "plain")
     seconds = f"{trial.seconds:.2f} s"
     if trial.T_ref_mov is None:
         return RunSummary("No transform found.", sentence(trial.reason), seconds, "plain")
     index = "" if trial.index is None else f"eq. (23) {trial.index:.1%} · "
-    return RunSummary(_judgement(trial), trial.reason, f"{index}{seconds}", _mood(trial))
+    judged: dict[bool | None, Mood] = {True: "accepted", False: "refused", None: verdict_mood(trial)}
+    return RunSummary(_judgement(trial), trial.reason, f"{index}{seconds}", judged[trial.right])
 
 
 def _judgement(trial: MethodRun) -> str:
@@ -45,12 +45,6 @@ def _judgement(trial: MethodRun) -> str:
     metres, turn = trial.distance, degrees(trial.angle)
     off = f"{metres:.{1 if metres >= 10 else 2}f} m, {turn:.{0 if turn >= 10 else 1}f}°"
     return f"✓ Right to {off}" if trial.right else f"✗ Wrong by {off}"
-
-
-def _mood(trial: MethodRun) -> Mood:
-    if trial.right is not None:
-        return "accepted" if trial.right else "refused"
-    return verdict_mood(trial)
 
 
 def verdict_mood(trial: MethodRun) -> Mood:

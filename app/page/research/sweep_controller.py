@@ -11,8 +11,8 @@ from algorithms.methods.registry import METHODS
 from app.drawing.browser_messages import BrowserMessages
 from app.evaluation import sweep_axes as axes
 from app.evaluation.checkpoint import Checkpoint
-from app.evaluation.evaluation_archive import sweep_archive
 from app.evaluation.parameter_sweep import SweepPlan, SweepPoint, done_before, sweep
+from app.evaluation.sweep_files import sweep_archive
 from app.jobs.background_job import BackgroundJob, beside_the_page
 from app.jobs.executor import Executor
 from app.model.merge_inputs import MergeInputs

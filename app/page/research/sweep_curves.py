@@ -64,35 +64,24 @@ def reading(point: SweepPoint, measure: str) -> MeasuredValue | None:
 
 
 def text_of(value: float, measure: str) -> str:
-    """A number of a measure."""
     return {AGREEMENT: f"{value:.1%}", TIME: f"{value:.2f} s"}.get(measure, f"{value:.0f}")
 
 
 # ---- where points stand
 
 
-def is_number(axis: SweepAxis) -> bool:
-    """Whether the setting is a number; a choice has its values side by side."""
-    return all(isinstance(value, int | float) and not isinstance(value, bool) for value in axis.values)
-
-
 def by_factor(axis: SweepAxis) -> bool:
     """Whether the axis is logarithmic."""
-    if len(axis.values) < 2 or not is_number(axis) or min(axis.values) <= 0:
+    if len(axis.values) < 2 or not axis.numeric or min(axis.values) <= 0:
         return False
     factors = [b / a for a, b in pairwise(sorted(axis.values))]
     even = len(factors) > 1 and min(factors) > 1.3 and max(factors) < 1.15 * min(factors)
     return even or looks_even_by_factor(axis.values)
 
 
-def place_of(axis: SweepAxis, value: Any) -> float:
-    """Where a value stands on its axis."""
-    return float(value) if is_number(axis) else float(axis.values.index(value))
-
-
 def reach(axis: SweepAxis) -> tuple[float, float]:
     """Both ends of an axis, a little beyond its values."""
-    places = [place_of(axis, value) for value in axis.values]
+    places = [axis.place(value) for value in axis.values]
     low, high = min(places), max(places)
     if by_factor(axis):
         more = (high / low) ** 0.06
@@ -104,7 +93,7 @@ def reach(axis: SweepAxis) -> tuple[float, float]:
 def share_of(axis: SweepAxis, value: Any) -> float:
     """How far along the axis a value stands, 0 … 1."""
     low, high = reach(axis)
-    at = place_of(axis, value)
+    at = axis.place(value)
     if by_factor(axis):
         low, high, at = log10(low), log10(high), log10(at)
     return (at - low) / (high - low)
@@ -128,7 +117,7 @@ def word_of(plan: SweepPlan, axis: SweepAxis, value: Any) -> str:
 def ticks(plan: SweepPlan, most: int = MOST_TICKS) -> tuple[tuple[float, str], ...]:
     """Places along the x axis that are named: where points stand, some of many of them."""
     values = plan.x.values[:: max(1, -(-len(plan.x.values) // most))]
-    return tuple((place_of(plan.x, value), word_of(plan, plan.x, value)) for value in values)
+    return tuple((plan.x.place(value), word_of(plan, plan.x, value)) for value in values)
 
 
 # ---- a curve
@@ -142,10 +131,10 @@ def columns(plan: SweepPlan, points: Points, measure: str, here: int | None) -> 
     places = plan.places()
     rows = []
     for n, point in points.items():
-        told = reading(point, measure)
-        if told is not None:
-            mark = told.middle if n == here else np.nan
-            rows.append((place_of(plan.x, places[n][0]), told.high, told.low, told.middle, mark))
+        value = reading(point, measure)
+        if value is not None:
+            mark = value.middle if n == here else np.nan
+            rows.append((plan.x.place(places[n][0]), value.high, value.low, value.middle, mark))
     if not rows:
         return np.array(reach(plan.x)), *(np.full(2, np.nan) for _ in range(4))
     return tuple(np.array(column, dtype=np.float64) for column in zip(*sorted(rows), strict=True))
@@ -153,10 +142,13 @@ def columns(plan: SweepPlan, points: Points, measure: str, here: int | None) -> 
 
 def height(plan: SweepPlan, points: Points, measure: str) -> tuple[float, float]:
     """Lower and upper end of the y axis, in whole steps, so that it seldom changes while a curve grows."""
-    told = [found for point in points.values() if (found := reading(point, measure)) is not None]
+    values = [value for point in points.values() if (value := reading(point, measure)) is not None]
     if measure in (RIGHT, ACCEPTED):
         return -0.04 * len(plan.seeds), 1.04 * len(plan.seeds)
-    low, high = min((each.low for each in told), default=0.0), max((each.high for each in told), default=1.0)
+    low, high = (
+        min((each.low for each in values), default=0.0),
+        max((each.high for each in values), default=1.0),
+    )
     if measure == TIME:
         step = 10.0 ** floor(log10(max(high, 1e-3)))
         return 0.0, step * ceil(1.05 * high / step)
@@ -172,9 +164,9 @@ def field(plan: SweepPlan, points: Points, measure: str) -> Numbers:
     assert plan.y is not None
     cells = np.full(len(plan.y.values) * len(plan.x.values), np.nan)
     for n, point in points.items():
-        told = reading(point, measure)
-        if told is not None:
-            cells[n] = told.middle
+        value = reading(point, measure)
+        if value is not None:
+            cells[n] = value.middle
     return cells.reshape(len(plan.y.values), len(plan.x.values))
 
 

@@ -1,6 +1,6 @@
 """Who gets in: which names the page answers to, which pages may connect, and the token.
 
-Pure rules on what a request says; guard.py hangs them into the server.
+Pure rules on what a request says; viser_server applies them.
 """
 
 from __future__ import annotations
@@ -36,7 +36,11 @@ PAGE_POLICY = (
     "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src data:; "
     "connect-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
-ASKING_POLICY = "default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; frame-ancestors 'none'"
+TOKEN_PAGE_HEADERS = {
+    "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; "
+    "frame-ancestors 'none'",
+    "Cache-Control": "no-store",
+}
 HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -54,13 +58,13 @@ class HttpRequest:
 
     @classmethod
     def of(cls, path: str, headers: Iterable[tuple[str, str]]) -> HttpRequest:
-        """From its headers one by one; one that is said twice is a list, as anywhere, and so is no host."""
-        said: dict[str, str] = {}
+        """From its headers one by one; one that comes twice is a list, as anywhere, and so is no host."""
+        joined: dict[str, str] = {}
         for key, value in headers:
             name = key.lower()
             between = "; " if name == "cookie" else ", "
-            said[name] = f"{said[name]}{between}{value}" if name in said else value
-        return cls(path, said)
+            joined[name] = f"{joined[name]}{between}{value}" if name in joined else value
+        return cls(path, joined)
 
     @property
     def upgrade(self) -> bool:
@@ -98,25 +102,24 @@ class Access:
         """Name of the cookie: browsers send those of one port to the other ones of a host, too."""
         return f"mapmeld_{sha256(self.token.encode()).hexdigest()[:8]}"
 
-    def answer(self, asked: HttpRequest) -> HttpReply | None:
+    def answer(self, request: HttpRequest) -> HttpReply | None:
         """What is said instead of what was asked for; None: come in."""
-        host = asked.headers.get("host", "")
+        host = request.headers.get("host", "")
         if self.names is not None and _name(host) not in self.names:
             return HttpReply(421, "this page does not answer to that name")
-        if asked.upgrade and not _same(asked.headers.get("origin"), host):
+        if request.upgrade and not _same(request.headers.get("origin"), host):
             return HttpReply(403, "only the page itself may connect")
-        path, _, query = asked.path.partition("?")
-        if self.token and not self._known(asked.headers.get("cookie", "")):
+        path, _, query = request.path.partition("?")
+        if self.token and not self._known(request.headers.get("cookie", "")):
             given = urllib.parse.parse_qs(query).get("token", [""])[0]
-            if asked.upgrade or path != "/" or not same(given, self.token):
-                return _asking(wrong=bool(given))
-            secure = self.tls is not None or asked.headers.get("x-forwarded-proto") == "https"
+            if request.upgrade or path != "/" or not same(given, self.token):
+                return _token_page(wrong=bool(given))
+            secure = self.tls is not None or request.headers.get("x-forwarded-proto") == "https"
             # No path: it is then that of the page, which behind a proxy may lie in a folder.
             # No redirection either: whoever follows a link from elsewhere would come without the cookie.
-            kept = f"{self.cookie}={self.token}; HttpOnly; SameSite=Strict{'; Secure' if secure else ''}"
-            told = {"Set-Cookie": kept, "Cache-Control": "no-store", "Content-Security-Policy": ASKING_POLICY}
-            return HttpReply(200, _GO_ON, told)
-        if query and not asked.upgrade:
+            cookie = f"{self.cookie}={self.token}; HttpOnly; SameSite=Strict{'; Secure' if secure else ''}"
+            return HttpReply(200, _ENTER_PAGE, {"Set-Cookie": cookie, **TOKEN_PAGE_HEADERS})
+        if query and not request.upgrade:
             # viser's page would connect to, or play, whatever another address in the query names
             return HttpReply(303, headers={"Location": "./"})
         return None
@@ -254,11 +257,11 @@ def _same(origin: str | None, host: str) -> bool:
     return bool(usual and name) and (name, port or usual) == (asked_name, asked_port or usual)
 
 
-_GO_ON = """<!doctype html><html lang="en"><meta charset="utf-8"><title>mapmeld</title>
+_ENTER_PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>mapmeld</title>
 <meta http-equiv="refresh" content="0;url=./"><p><a href="./">Go on</a></html>"""
 
 
-def _asking(wrong: bool) -> HttpReply:
+def _token_page(wrong: bool) -> HttpReply:
     """The page of those who have no token yet."""
     says = "That is not the token." if wrong else "This page is not open to everyone."
     body = f"""<!doctype html><html lang="en"><meta charset="utf-8"><title>mapmeld</title>
@@ -271,5 +274,4 @@ or give the token from it.</p>
 <form action="./">
 <input name="token" type="password" autocomplete="off" required aria-label="Token" autofocus>
 <button>Open</button></form></html>"""
-    headers = {"Content-Security-Policy": ASKING_POLICY, "Cache-Control": "no-store"}
-    return HttpReply(401, body, headers)
+    return HttpReply(401, body, TOKEN_PAGE_HEADERS)

@@ -14,7 +14,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ProtocolError
 from websockets.frames import OP_BINARY, OP_CONT, OP_TEXT, Frame
 
-from app.web.security.message_filter import MessageFilter
+from app.web.security.message_filter import MessageFilter, RateLimit
 
 MOST = 2048  # frames of one message; a browser cuts a megabyte into a hundred at most
 RATE, BURST = 100.0, 1000.0  # further frames and pings a second, and at once
@@ -25,8 +25,7 @@ class FrameLimit:
     """Counts the frames of one connection."""
 
     def __init__(self, clock: Callable[[], float] = monotonic) -> None:
-        self._clock = clock
-        self._left, self._at = BURST, clock()
+        self._limit = RateLimit(RATE, BURST, clock)
         self._parts = 0  # of the message that is coming
 
     def bears(self, frame: Frame) -> bool:
@@ -36,10 +35,8 @@ class FrameLimit:
             self._parts = 1
         elif frame.opcode is OP_CONT:
             self._parts += 1
-        now = self._clock()
-        earned = (now - self._at) * RATE + len(frame.data) / EARNS
-        self._left, self._at = min(BURST, self._left + earned) - (not first), now
-        return self._left >= 0 and self._parts <= MOST
+        early = self._limit.take(not first, earned=len(frame.data) / EARNS)
+        return early <= 0 and self._parts <= MOST
 
 
 def bounded(gate: MessageFilter) -> type[ServerConnection]:

@@ -24,7 +24,7 @@ PATIENCE = 60.0  # seconds until a browser that reads nothing is given up
 RATE, BURST = 200.0, 400.0  # messages a second, and at once; a tab that is dragged over sends about 60
 WEIGHT = 32 * 1024  # bytes that count as one more: 6 MB a second
 
-TOLD_AT = frozenset(10**power for power in range(3, 10))  # how many things dropped make a line of the log
+LOGGED_AT = frozenset(10**power for power in range(3, 10))  # how many things dropped make a line of the log
 
 _unseen: set[str] = set()  # fields that are listened to though they lie on no panel
 
@@ -48,7 +48,7 @@ class MessageFilter:
         """Count something that was not let through; who keeps trying is told of, seldom."""
         self.dropped[why] += 1
         log.debug("dropped: %s", why)
-        if self.dropped[why] in TOLD_AT:
+        if self.dropped[why] in LOGGED_AT:
             log.warning("dropped %d times by now: %s", self.dropped[why], why)
 
     def guard(self, connection: Any) -> None:
@@ -56,13 +56,13 @@ class MessageFilter:
 
         And ``send`` gives up a browser that takes nothing any more: what waits for it fills the memory.
         """
-        hear = connection.recv
-        bucket = RateLimit(self._clock)
+        receive = connection.recv
+        limit = RateLimit(RATE, BURST, self._clock)
 
-        async def recv(*how: Any, **more: Any) -> Any:
+        async def recv(*args: Any, **kwargs: Any) -> Any:
             while True:
-                raw = await hear(*how, **more)
-                wait = bucket.take(1 + len(raw) // WEIGHT)
+                raw = await receive(*args, **kwargs)
+                wait = limit.take(1 + len(raw) // WEIGHT)
                 if wait > 0:  # nothing is lost: whoever sends too fast waits for us
                     self.dropped["slowed"] += 1
                     await asyncio.sleep(wait)
@@ -75,14 +75,14 @@ class MessageFilter:
 
         send = connection.send
 
-        async def patiently(*what: Any, **more: Any) -> None:
+        async def send_in_time(*args: Any, **kwargs: Any) -> None:
             try:
-                await asyncio.wait_for(send(*what, **more), PATIENCE)
+                await asyncio.wait_for(send(*args, **kwargs), PATIENCE)
             except asyncio.TimeoutError:
                 self.drop("does not read")
                 connection.transport.abort()  # nothing that is still to be sent would ever arrive
 
-        connection.recv, connection.send = recv, patiently
+        connection.recv, connection.send = recv, send_in_time
 
     def takes(self, gui: Any, message: messages.GuiUpdateMessage) -> bool:
         """Whether a control may take what a browser says it holds now."""
@@ -101,17 +101,24 @@ class MessageFilter:
 
 
 class RateLimit:
-    """Counts messages against a rate."""
+    """So many of something a second, and more at once after a while of silence.
 
-    def __init__(self, clock: Callable[[], float]) -> None:
-        self._clock, self._left, self._at = clock, BURST, clock()
+    rate, burst : a second, and at once
+    """
 
-    def take(self, weight: int) -> float:
-        """One more, that counts as so many; the seconds it has to wait."""
+    def __init__(self, rate: float, burst: float, clock: Callable[[], float] = monotonic) -> None:
+        self._rate, self._burst, self._clock = rate, burst, clock
+        self._left, self._at = burst, clock()
+
+    def take(self, weight: float, earned: float = 0.0) -> float:
+        """Take one that counts as so many; seconds that it comes too early.
+
+        earned : how many more than by the time that has passed
+        """
         now = self._clock()
-        self._left = min(BURST, self._left + (now - self._at) * RATE) - weight
+        self._left = min(self._burst, self._left + (now - self._at) * self._rate + earned) - weight
         self._at = now
-        return max(0.0, -self._left / RATE)
+        return max(0.0, -self._left / self._rate)
 
 
 def usable(gui: Any, handle: Any) -> bool:

@@ -73,7 +73,7 @@ class _Kind(msgspec.Struct):
 
 
 # All that the page's own script ever sends
-HEARD: dict[str, type[Message]] = {
+MESSAGES: dict[str, type[Message]] = {
     kind.__name__: kind for kind in (GuiUpdateMessage, ViewerCameraMessage, ScenePointerMessage)
 }
 
@@ -87,12 +87,12 @@ def fault(raw: Any) -> str:
         kind = msgspec.msgpack.decode(raw, type=_Kind).type if isinstance(raw, bytes) else None
         if kind is None:
             return "garbage"
-        if kind not in HEARD:
+        if kind not in MESSAGES:
             return "unasked"
         if len(raw) > MAX_WORDS:
             return "too long"
         try:
-            msgspec.msgpack.decode(raw, type=HEARD[kind])
+            msgspec.msgpack.decode(raw, type=MESSAGES[kind])
         except msgspec.ValidationError:
             return "malformed"
     except (msgspec.DecodeError, RecursionError, ValueError):  # ValueError: a text that is no UTF-8

@@ -11,7 +11,8 @@ from algorithms.common.errors import NoAnswerError
 from algorithms.methods import registry as methods
 from app.cli.main import main
 from app.evaluation import dataset_evaluation as evaluate
-from app.evaluation.dataset_evaluation import EvaluationTask, run_case, totals_of
+from app.evaluation.dataset_evaluation import EvaluatedCase, EvaluationTask, run_case, totals_of
+from app.evaluation.method_run import Judgement
 from app.jobs.executor import SerialExecutor
 from app.jobs.process_executor import ProcessExecutor
 
@@ -24,9 +25,9 @@ def order(root, **more):
 
 
 def entry(name, accepted=True, right=True, fine=False, seconds=1.0, judged=True):
-    truth = {"distance": 0.0, "angle": 0.0, "right": right, "fine": fine} if judged else None
+    truth = Judgement(0.0, 0.0, right, fine, "merge") if judged else None
     report = {"verdict": {"accepted": accepted}}
-    return {"case": name, "observation": "o", "report": report, "seconds": seconds, "truth": truth}
+    return EvaluatedCase(name, "o", report, truth=truth, seconds=seconds)
 
 
 def test_totals_count_each_group_by_the_name_up_to_its_first_underscore():
@@ -37,7 +38,7 @@ def test_totals_count_each_group_by_the_name_up_to_its_first_underscore():
             entry("a_3", right=False, accepted=False, seconds=8.0),
             entry("b_1", judged=False),
             entry("b_2", accepted=False),
-            {"case": "b_3", "observation": "o", "error": "bad", "seconds": 0.0, "truth": None},
+            EvaluatedCase("b_3", "o", error="bad"),
         ]
     )
     assert list(totals) == ["a", "b", "overall"]
@@ -71,9 +72,8 @@ def test_an_accepted_case_without_a_truth_is_not_called_wrong():
 
 
 def likely(name, probability, right, expected="merge"):
-    truth = {"distance": 0.0, "angle": 0.0, "right": right, "fine": False, "expected": expected}
     report = {"verdict": {"accepted": probability > 0.5, "probability": probability}}
-    return {"case": name, "observation": "o", "report": report, "seconds": 1.0, "truth": truth}
+    return EvaluatedCase(name, "o", report, truth=Judgement(0.0, 0.0, right, False, expected))
 
 
 def test_probabilities_that_say_what_happens_have_no_calibration_error():
@@ -133,11 +133,12 @@ def test_evaluate_runs_every_case_and_goes_on_after_a_broken_one(cases, tmp_path
     assert said.splitlines()[0].split()[:2] == ["group", "n"]
 
 
-def without_times(entries):
-    for case in entries:
+def without_times(cases):
+    told = [case.plain() for case in cases]
+    for case in told:
         case.pop("seconds")
         case.get("report", {}).pop("timings_s", None)
-    return sorted(entries, key=lambda case: case["case"])
+    return sorted(told, key=lambda case: case["case"])
 
 
 def test_the_answers_do_not_depend_on_how_many_processes_work(cases):
@@ -148,9 +149,9 @@ def test_the_answers_do_not_depend_on_how_many_processes_work(cases):
 
 def test_rough_takes_the_badly_measured_observation(cases):
     told = run_case(cases / "flat_1", order(cases, rough=True))
-    assert told["observation"] == "observation_rough.yaml"
+    assert told.observation == "observation_rough.yaml"
     fine = run_case(cases / "flat_1", order(cases))
-    assert told["report"]["verdict"]["deviation"] != fine["report"]["verdict"]["deviation"]
+    assert told.report["verdict"]["deviation"] != fine.report["verdict"]["deviation"]
 
 
 def test_both_runs_every_case_with_either_observation_and_prints_a_table_for_each(cases, tmp_path, capsys):
@@ -183,24 +184,24 @@ def test_rough_and_both_exclude_each_other(cases, capsys):
 
 
 def test_a_bug_in_one_case_is_told_as_one(cases, monkeypatch):
-    monkeypatch.setattr(methods, "merge", lambda *_args: 1 / 0)
+    monkeypatch.setattr(methods, "run", lambda *_args: 1 / 0)
     told = run_case(cases / "flat_1", order(cases))
-    assert told["error"] == "bug: ZeroDivisionError: division by zero"
+    assert told.error == "bug: ZeroDivisionError: division by zero"
 
 
 def die(_, given):
     """Stands for what works on a case: one of them takes its process down."""
-    folder, _order = given
+    folder, _order, _read = given
     if folder.name == "neg_1":
         os._exit(1)
-    return {"case": folder.name}
+    return EvaluatedCase(folder.name, "o")
 
 
 def test_a_case_that_kills_its_process_costs_no_other(cases, monkeypatch):
     monkeypatch.setattr(evaluate, "_work", die)
     told = list(evaluate.evaluate(order(cases), ProcessExecutor(2)))
-    assert {case["case"] for case in told} == {"bad_1", "flat_1", "flat_2", "flat_3", "neg_1"}
-    assert [case["case"] for case in told if "error" in case] == ["neg_1"]
+    assert {case.case for case in told} == {"bad_1", "flat_1", "flat_2", "flat_3", "neg_1"}
+    assert [case.case for case in told if case.error] == ["neg_1"]
 
 
 def test_a_folder_without_cases_ends_with_2(tmp_path, capsys):
@@ -239,9 +240,9 @@ def unanswering(monkeypatch):
 
 def test_a_case_without_an_answer_is_refused_not_failed(unanswering, case_folder):
     told = run_case(case_folder, order(case_folder))
-    assert told["no_answer"] == "Refused: nothing in these maps is like anything else."
-    assert not told.keys() & {"report", "error"}
-    assert (told["truth"]["right"], told["truth"]["distance"]) == (False, None)
+    assert told.no_answer == "Refused: nothing in these maps is like anything else."
+    assert not told.plain().keys() & {"report", "error"}
+    assert (told.truth.right, told.truth.distance) == (False, None)
     totals = totals_of([told])["overall"]
     assert (totals["refused"], totals["errors"], totals["right"]) == (1, 0, 0)
     assert (totals["judged"], totals["wrong_accepted"]) == (1, 0)
@@ -249,14 +250,14 @@ def test_a_case_without_an_answer_is_refused_not_failed(unanswering, case_folder
 
 def test_where_refusing_is_right_no_answer_is_right(unanswering, strangers_folder):
     told = run_case(strangers_folder, order(strangers_folder))
-    assert told["truth"]["right"]
+    assert told.truth.right
     assert totals_of([told])["overall"]["right"] == 1
 
 
 def test_without_a_truth_no_answer_is_not_judged(unanswering, small_case, case_maker):
     folder = case_maker(replace(small_case, truth=None), "x_1")
     told = run_case(folder, order(folder.parent))
-    assert told["truth"] is None
+    assert told.truth is None
     assert totals_of([told])["overall"]["refused"] == 1
 
 

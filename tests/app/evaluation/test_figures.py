@@ -9,6 +9,7 @@ from dataclasses import replace
 import cv2
 import numpy as np
 import pytest
+from app.evaluation.reliability_figure import reliability_figure
 from repository import ROOT
 
 from algorithms.methods.registry import METHODS
@@ -18,7 +19,6 @@ from app.evaluation.figure_style import COLOURS
 from app.evaluation.method_comparison import ComparedRun
 from app.evaluation.method_run import MethodRun
 from app.evaluation.parameter_sweep import SweepPlan, SweepPoint
-from app.evaluation.reliability_figure import reliability_figure
 from app.evaluation.sweep_axes import axis_from
 from app.evaluation.sweep_figure import sweep_figure
 

@@ -240,8 +240,8 @@ def test_a_closed_session_ends_its_thread(start, ear):
     session.request(job(pace=100.0))
     assert ear.shown.wait(PATIENCE)
     session.close()
-    session._worker.join(PATIENCE)
-    assert not session._worker.is_alive()
+    session._requests.thread.join(PATIENCE)
+    assert not session._requests.thread.is_alive()
     assert session.runner.closed
 
 

@@ -403,7 +403,7 @@ def slowly(*what):
     return pid
 
 util.spawnv_passfds = slowly
-threading.Thread(target=workers.COMMON.seat(object()).start, daemon=True).start()
+threading.Thread(target=workers.COMMON.assign(object()).start, daemon=True).start()
 half.wait()
 """
 

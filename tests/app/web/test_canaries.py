@@ -21,7 +21,7 @@ from viser import _gui_handles, _messages
 from viser._gui_api import GuiApi, _FileUploadState
 from wire import until
 
-from app.web.security.message_schema import HEARD
+from app.web.security.message_schema import MESSAGES
 
 GUI = Path(inspect.getfile(GuiApi)).read_text(encoding="utf-8")  # as it is there: ours may stand in its place
 CLIENT = Path(viser.__file__).parent / "client" / "src"
@@ -258,10 +258,10 @@ def test_a_server_of_ours_hears_whatever_visers_does_but_of_the_tunnel(stock, ou
 # --- that nothing is left out ------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("kind", HEARD)
+@pytest.mark.parametrize("kind", MESSAGES)
 def test_a_message_has_the_fields_that_the_gate_asks_for(kind):
     theirs = {field.name for field in fields(getattr(_messages, kind)) if field.init}
-    assert set(HEARD[kind].__struct_fields__) == {"type"} | theirs
+    assert set(MESSAGES[kind].__struct_fields__) == {"type"} | theirs
 
 
 def private(name: str) -> bool:

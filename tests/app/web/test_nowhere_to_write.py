@@ -60,9 +60,9 @@ COMMANDS = {
 }
 WORK = (
     "algorithms.methods.registry.run",
-    "app.evaluation.method_comparison.compare_methods",
-    "app.evaluation.parameter_sweep.sweep",
-    "app.evaluation.dataset_evaluation.evaluate",
+    "app.cli.commands.compare.compare_methods",
+    "app.cli.commands.sweep.sweep",
+    "app.cli.commands.evaluate.evaluate",
     "algorithms.simulator.samples.generate_cases",
     "algorithms.simulator.samples.regenerate",
 )

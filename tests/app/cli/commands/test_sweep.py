@@ -47,6 +47,58 @@ def test_a_sweep_that_is_killed_and_started_again_ends_with_the_same_files(case_
     assert len(table(whole / f"{name}.runs.csv")) == 60
 
 
+# a line of journal.jsonl as a sweep of the first version left it, before a point said what it was made of
+OLD_LINE = (
+    '{"key": "c2367e9712205e145c087b5130828dd1", "record": {"x": 1.0, "y": null, "trials": [{"T_ref_mov": '
+    '[-10.28, 5.51, -1.06], "accepted": true, "reason": "Merged: the maps agree on 99% of the 202 m of wall '
+    'that both robots should have seen.", "index": 0.95, "distance": 0.05, "angle": 0.005, "right": true, '
+    '"fine": true, "seconds": 0.17, "failed": false}]}}\n'
+)
+
+
+def test_points_of_an_earlier_version_are_read_and_said_to_be_merged_anew(case_folder, tmp_path, capsys):
+    journal = tmp_path / "journal.jsonl"
+    journal.write_text(OLD_LINE)
+    words = ["sweep", str(case_folder), "--x", "augment.spread=1,2", *SMALL, "--out", str(tmp_path)]
+    assert main([*words, "--jobs", "1"]) == 0
+    said = capsys.readouterr()
+    assert said.err == ""
+    assert [line for line in said.out.splitlines() if "the journal" in line] == [
+        "augment.spread: 1 of 2 points are in the journal, but were made by another version of mapmeld, or "
+        "with other maps, observations, truth, method, seeds, versions, settings: they are merged anew, as "
+        "answers may differ"
+    ]
+    assert "known from before" not in said.out
+    lines = journal.read_text().splitlines()
+    assert f"{lines[0]}\n" == OLD_LINE  # what is there stays
+    assert len(lines) == 3
+    assert -10.28 not in {float(row["x_m"]) for row in table(tmp_path / "augment.spread.runs.csv")}
+    assert main([*words, "--jobs", "1"]) == 0
+    said = capsys.readouterr().out
+    assert "2 of 2 points are known from before" in said
+    assert "the journal" not in said
+
+
+def test_what_is_merged_anew_is_said_with_what_has_changed(case_folder, tmp_path, capsys, monkeypatch):
+    words = ["sweep", str(case_folder), "--x", "augment.spread=1,2", *SMALL, "--jobs", "1", "--out"]
+    assert main([*words, str(tmp_path)]) == 0
+    assert "the journal" not in capsys.readouterr().out
+    other = ["sweep", str(case_folder), "--x", "augment.intensity=1,2", *SMALL, "--jobs", "1", "--out"]
+    assert main([*other, str(tmp_path)]) == 0  # another sweep in the same folder
+    assert "the journal" not in capsys.readouterr().out
+    assert main([*words, str(tmp_path), "--swarm.omega", "0.5"]) == 0
+    assert (
+        "2 of 2 points are in the journal, but were made with other settings: they are"
+        in capsys.readouterr().out
+    )
+    monkeypatch.setattr("app.evaluation.parameter_sweep.code", lambda _: "changed")
+    assert main([*words, str(tmp_path), "--swarm.omega", "0.5"]) == 0
+    assert (
+        "2 of 2 points are in the journal, but were made with other versions: they are"
+        in capsys.readouterr().out
+    )
+
+
 def test_an_interrupted_sweep_says_how_far_it_came(case_folder, tmp_path, monkeypatch, capsys):
     from app.evaluation import parameter_sweep as sweeping
 

@@ -18,12 +18,13 @@ from algorithms.common.setting_bounds import Bounds
 from algorithms.methods.registry import METHODS
 from app.drawing.palette import DARK, LIGHT
 from app.drawing.svg.thumbnail import thumbnail
-from app.evaluation.evaluation_archive import contest_archive
+from app.evaluation.comparison_files import contest_archive
 from app.evaluation.method_run import MethodRun
 from app.evaluation.parameter_sweep import SweepAxis, SweepPlan, SweepPoint
 from app.jobs import background_job as background
 from app.jobs.background_job import BackgroundJob, beside_the_page
 from app.jobs.executor import Task
+from app.jobs.fair_semaphore import FairSemaphore
 from app.model.run_state import RunState
 from app.model.settings import settings_of, with_value
 from app.page.research import sweep_curves as curves
@@ -115,14 +116,13 @@ def test_nothing_is_told_once_work_was_stopped_and_it_is_left_at_once(work):
 
 def test_only_so_many_work_at_once_and_one_that_waits_can_be_stopped(work, monkeypatch):
     found, heard = work
-    turns = background.BoundedSemaphore(1)
+    turns = FairSemaphore(1, patience=0.0)
     monkeypatch.setattr(background, "_turns", turns)
-    assert turns.acquire(blocking=False)
-    found.start(lambda _: (n for n in (1,)))
-    settled(lambda: heard == ["Waits"], "the word that it waits")
-    found.stop()
-    found.start(lambda _: (n for n in (2,)))
-    turns.release()
+    with turns.get():
+        found.start(lambda _: (n for n in (1,)))
+        settled(lambda: heard == ["Waits"], "the word that it waits")
+        found.stop()
+        found.start(lambda _: (n for n in (2,)))
     settled(lambda: not found.busy, "its end")
     assert heard[-3:] == ["Starting.", 2, ("over", "")]
 

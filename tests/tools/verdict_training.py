@@ -18,12 +18,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from reliability_figure import reliability_figure
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.files.atomic_write import write_files
-from algorithms.files.case_folder import Case, case_folders, group_of, name_in, read_case
-from algorithms.files.observation_file import ROUGH_OBSERVATION_FILE
+from algorithms.files.case_folder import case_folders, group_of, name_in
 from algorithms.files.truth_file import Truth
 from algorithms.methods import registry as methods
 from algorithms.methods.merge_result import MergeResult
@@ -34,9 +34,9 @@ from algorithms.verdict.model_fit import Example, Told, cross_validated, fit, mo
 from algorithms.verdict.probability_model import MODEL_FILE, VerdictModel
 from app.cli.executor_flags import executor_for
 from app.cli.progress_bar import bar
-from app.evaluation.crossed_pairs import Crossing, building_of, crossed_case, crossings
-from app.evaluation.csv_tables import aligned, markdown
-from app.evaluation.reliability_figure import reliability_figure
+from app.evaluation.crossed_pairs import Crossing, Pair, building_of, crossings, read_pair
+from app.evaluation.dataset_evaluation import rough_folders
+from app.evaluation.table_files import aligned, markdown
 from app.jobs.executor import Executor, LostTask, Task
 from app.system import data_paths
 
@@ -214,36 +214,30 @@ def _simulated(_: None, seed: int) -> list[Labelled]:
 
 def _cases(root: Path, wrong_pairs: int, executor: Executor) -> Iterator[Labelled]:
     """The cases of a folder with either observation, and wrong pairs of them."""
-    tasks = [Task((root, folder, rough)) for folder in case_folders(root) for rough in (False, True)]
-    tasks += [
-        Task((root, crossing, bool(number % 2)))
-        for number, crossing in enumerate(crossings(root, wrong_pairs) if wrong_pairs else [])
+    both = set(rough_folders(root))
+    pairs: list[tuple[Pair, bool]] = [
+        (folder, rough) for folder in case_folders(root) for rough in (False, True)[: 1 + (folder in both)]
     ]
-    yield from _all(executor, _real, tasks, "case")
+    wrong = crossings(root, wrong_pairs) if wrong_pairs else []
+    pairs += [(crossing, bool(number % 2)) for number, crossing in enumerate(wrong)]
+    yield from _all(executor, _real, [Task((root, *pair)) for pair in pairs], "case")
 
 
-def _real(_: None, given: tuple[Path, Path | Crossing, bool]) -> list[Labelled]:
-    root, what, rough = given
-    if isinstance(what, Crossing):
-        a, b = read_case(what.observer, rough), read_case(what.observed, rough)
-        case = crossed_case(a, b)
-        buildings = (_building(root, what.observer, a), _building(root, what.observed, b))
-        kind = "wrong pair"
+def _real(_: None, given: tuple[Path, Pair, bool]) -> list[Labelled]:
+    root, pair, rough = given
+    case = read_pair(pair, rough)
+    if case.truth is None:
+        return []
+    buildings: tuple[str, ...]
+    if isinstance(pair, Crossing):
+        buildings = pair.buildings
     else:
-        if rough and not (what / ROUGH_OBSERVATION_FILE).exists():
-            return []
-        case = read_case(what, rough)
-        if case.truth is None:
-            return []
-        buildings = (_building(root, what, case),)
-        kind = "wrong pair" if case.truth.expected == "refuse" else "rough" if rough else "fine"
-    truth = case.truth if case.truth is not None and case.truth.expected == "merge" else None
+        buildings = (building_of(group_of(name_in(root, pair)), case.truth),)
+    shared = case.truth.expected == "merge"
+    kind = "wrong pair" if not shared else "rough" if rough else "fine"
+    truth = case.truth if shared else None
     example = _example(case.ref, case.mov, case.observations, truth, buildings)
     return [] if example is None else [Labelled(example, kind)]
-
-
-def _building(root: Path, folder: Path, case: Case) -> str:
-    return building_of(group_of(name_in(root, folder)), case.truth)
 
 
 def _example(

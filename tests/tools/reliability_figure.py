@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from algorithms.verdict.calibration import Bin, calibration_error, reliability
 from algorithms.verdict.model_fit import Told
-from app.drawing.palette import LIGHT
-from app.evaluation.figure_style import COLOURS, MARKERS, colour, figure_files
+from app.drawing.palette import LIGHT, css
+from app.evaluation.figure_style import COLOURS, MARKERS, figure_files
 
 NEAR = 0.08  # bins nearer than that share a number's place
 
@@ -26,7 +26,7 @@ def reliability_figure(told: Mapping[str, Told]) -> dict[str, bytes]:
     def draw(figure: Figure) -> None:
         figure.suptitle("How likely a merge is said to be right, and how many are", x=0.01, ha="left")
         axes = figure.subplots()
-        axes.plot([0, 1], [0, 1], color=colour(LIGHT.margin), linewidth=1, linestyle="--")
+        axes.plot([0, 1], [0, 1], color=css(LIGHT.margin), linewidth=1, linestyle="--")
         for number, (name, each) in enumerate(told.items()):
             bins = [one for one in reliability(each.probabilities, each.right) if one.n]
             ece = calibration_error(each.probabilities, each.right)
