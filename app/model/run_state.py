@@ -10,6 +10,7 @@ from algorithms.common.pose import Pose2
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import (
     AnswersDetail,
+    CandidatesDetail,
     Detail,
     ProofDetail,
     ProvenDetail,
@@ -18,6 +19,7 @@ from algorithms.methods.steps import (
     Step,
     WeighedDetail,
 )
+from algorithms.spectra.candidates import Candidate
 from app.model.objective_label import ObjectiveLabel, measure_of
 
 D = TypeVar("D")
@@ -66,6 +68,12 @@ class RunState:
     def reached(self, kind: type) -> bool:
         """Whether the run has come to this kind of step."""
         return kind in self._newest
+
+    @property
+    def at_hand(self) -> Candidate | None:
+        """The candidate to look at: the one that is tried; after the search the best one."""
+        found = self.get(CandidatesDetail)
+        return found.candidates[0] if found else self.shifts[-1].candidate if self.shifts else None
 
     @property
     def measure(self) -> ObjectiveLabel:

@@ -17,8 +17,9 @@ from algorithms.methods.merge_result import MergeResult
 from algorithms.observations.observation import Encounter, Observation
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.verdict.contradictions import Contradictions
-from app.drawing.palette import LIGHT, Rgb, css
+from app.drawing.palette import LIGHT, Rgb
 from app.drawing.scene_layout import Rect, known_corners, rect_of
+from app.drawing.svg.chart_plot import draw_chart
 from app.drawing.svg.map_plot import robot, scale_bar, scene
 from app.drawing.svg.map_raster import Pixels, RasterView, draw_map
 from app.drawing.svg.svg_canvas import SvgCanvas, SvgPlot, ticks
@@ -125,19 +126,13 @@ def difference(result: MergeResult, found: Contradictions) -> str:
 def proof(state: ProofState, measure: ObjectiveLabel) -> str:
     """What is known of every turn of the circle: no transform at that turn is better than its ceiling."""
     finite = state.ceilings[np.isfinite(state.ceilings)]
-    low, high = charts.proof_range(state, float(finite.max()) if len(finite) else 0.0)
-    x, ceiling, met, floor, best, rivals = charts.proof(state, high)
+    chart = charts.proof(state, float(finite.max()) if len(finite) else 0.0, measure)
+    assert chart.up is not None
     sheet = SvgCanvas(252, FULL)
-    plot = SvgPlot(sheet, 50, 8, FULL - 66, 180, (-180.0, 180.0), (low, high))
-    plot.curve(x, ceiling, css(LIGHT.margin), 1.5, fill=True)
-    plot.curve(x, met, css(LIGHT.particle), 1, fill=True)
-    plot.curve(x, floor, css(LIGHT.rival), 1.2, dash="3 4")
-    for n in np.flatnonzero(np.isfinite(rivals)):
-        sheet.dot(*plot.one(float(x[n]), float(rivals[n])), 4.5, LIGHT.rival, "#fff", width=1)
-    for n in np.flatnonzero(np.isfinite(best)):
-        sheet.star(*plot.one(float(x[n]), float(best[n])), 8, LIGHT.answer, LIGHT.rim)
+    plot = SvgPlot(sheet, 50, 8, FULL - 66, 180, (-180.0, 180.0), chart.up)
+    draw_chart(plot, chart, LIGHT)
     plot.axes(
-        "turn of map 2 (°), the whole circle", measure.row, (-180, -90, 0, 90, 180), ticks(low, high, 4)
+        "turn of map 2 (°), the whole circle", measure.row, (-180, -90, 0, 90, 180), ticks(*chart.up, 4)
     )
     entries = [
         ("ceiling: nothing is better", LIGHT.margin, "line"),

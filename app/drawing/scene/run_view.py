@@ -84,10 +84,9 @@ class RunView:
         self._windows(story, self._maps.layout.view())
 
     def _windows(self, story: RunState, view: Rect) -> None:
-        window, found = story.get(WindowDetail), story.get(CandidatesDetail)
+        window, at_hand = story.get(WindowDetail), story.at_hand
         if window is None or self._maps.inputs.at is None:
             return
-        at_hand = found.candidates[0] if found else story.shifts[-1].candidate if story.shifts else None
         turn = at_hand.T_ref_mov.theta if at_hand else 0.0
         drawn = signs.windows(window, turn, self._maps.layout, self._maps.palette, view)
         self._stage.layer("window", drawn)

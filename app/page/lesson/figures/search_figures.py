@@ -14,6 +14,7 @@ from algorithms.optimisation.objective import PAD, Objective
 from algorithms.optimisation.optimiser import SearchState
 from app.drawing.draw_items import ellipse
 from app.drawing.palette import Palette, css, viridis
+from app.drawing.svg.chart_plot import draw_chart
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, ticks
 from app.model import chart_data as charts
 from app.model.objective_label import AGREEMENT, GAMMA, ObjectiveLabel, measure_of
@@ -252,24 +253,15 @@ def proof(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         sheet.image(np.ascontiguousarray(pixels[::-1]), 96.0 * k, 18, 90, 90)
         sheet.text(96.0 * k + 45, 121, f"{size} cell{'s' if size > 1 else ''}", 10, "middle")
     state = detail.state
-    low, high = charts.proof_range(state, study.story(ProofDetail).ceiling)
-    x, ceiling, met, floor, best, rivals = charts.proof(state, high)
-    plot = SvgPlot(sheet, 42, 150, 324, 118, (-180, 180), (low, high))
     measure = measure_of(study.config)
+    chart = charts.proof(state, study.story(ProofDetail).ceiling, measure)
+    assert chart.up is not None
+    plot = SvgPlot(sheet, 42, 150, 324, 118, (-180, 180), chart.up)
     left = "proven" if state.proven else f"nothing above {measure.text(state.ceiling)} is left"
     sheet.text(0, 143, f"{state.nodes:,} blocks looked at: {left}", 11, bold=True)
-    plot.curve(x, ceiling, css(palette.margin), 1.5, fill=True)
-    plot.curve(x, met, css(palette.particle), 1, fill=True)
-    plot.curve(x, floor, css(palette.rival), 1, dash="3 4")
-    for column, star in ((rivals, False), (best, True)):
-        for n in np.flatnonzero(np.isfinite(column)):
-            px, py = plot.one(float(x[n]), float(column[n]))
-            if star:
-                sheet.star(px, py, 7, palette.answer, palette.rim)
-            else:
-                sheet.dot(px, py, 4, palette.rival, "#fff", width=1)
+    draw_chart(plot, chart, palette)
     unit = f" ({measure.unit})" if measure.unit else ""
-    plot.axes("turn Δθ (°)", f"best{unit}", (-180, -90, 0, 90, 180), ticks(low, high, 4))
+    plot.axes("turn Δθ (°)", f"best{unit}", (-180, -90, 0, 90, 180), ticks(*chart.up, 4))
     after = sheet.chip(42, 313, palette.margin, "ceiling", "line")
     after = sheet.chip(after, 313, palette.particle, "best met", "line")
     after = sheet.chip(after, 313, palette.answer, "best", "dot")

@@ -8,7 +8,7 @@ from math import degrees
 import numpy as np
 import scipy  # its parts are loaded where they are first used
 
-from algorithms.common.pose import FloatArray, Pose2, rotation, wrap_angle
+from algorithms.common.pose import FloatArray, rotation, wrap_angle
 from algorithms.methods.steps import AugmentDetail, HoughDetail, ShiftDetail, WindowDetail
 from app.drawing.draw_items import ellipse, rectangle
 from app.drawing.palette import Palette, viridis
@@ -16,6 +16,7 @@ from app.drawing.scene_layout import known_corners
 from app.drawing.svg.map_plot import scale_bar, scene
 from app.drawing.svg.map_raster import RasterView, around, draw_map, walls
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number, turn_label, worded
+from app.model.chart_data import to_one
 from app.page.lesson.lesson_run import LessonRun
 
 DEGREES = (0, 30, 60, 90, 120, 150, 180)
@@ -142,11 +143,6 @@ def correlation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Correlation of the two Hough spectra")
 
 
-def _to_one(values: FloatArray) -> FloatArray:
-    top = float(values.max(initial=0.0))
-    return np.asarray(values / top if top > 0 else values)
-
-
 def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both maps at a candidate's turn and shift with their sums beside them, and the correlations."""
     told, lifted = study.all(ShiftDetail), study.get(AugmentDetail)
@@ -175,9 +171,9 @@ def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
             palette.mov,
         ),
     ):
-        below.curve(places[0], _to_one(curves[0]), colour, 1.6)
+        below.curve(places[0], to_one(curves[0]), colour, 1.6)
         inside = (places[1] >= y0) & (places[1] <= y1)
-        points = beside.at(np.column_stack([_to_one(curves[1])[inside], places[1][inside]]))
+        points = beside.at(np.column_stack([to_one(curves[1])[inside], places[1][inside]]))
         sheet.path(points, colour, 1.6)
     for frame in (below, beside):
         sheet.rect(frame.x, frame.y, frame.wide, frame.high, None, INK, 0.35)
@@ -267,9 +263,3 @@ def line_through(theta: float, rho: float, x_hat: FloatArray, reach: float) -> F
     normal = np.array([np.cos(theta), np.sin(theta)])
     along = np.array([-normal[1], normal[0]])
     return np.array([x_hat + rho * normal - reach * along, x_hat + rho * normal + reach * along])
-
-
-def candidate_place(study: LessonRun, k: int) -> Pose2:
-    """T of a candidate, in the order they were tried."""
-    told = study.all(ShiftDetail)
-    return told[min(k, len(told) - 1)].candidate.T_ref_mov
