@@ -8,12 +8,14 @@ from math import cos, degrees, pi, sin
 import numpy as np
 
 from algorithms.common.pose import Pose2
-from algorithms.maps.grid_map import FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, CellArray
+from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN, CellArray
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import AugmentDetail, HoughDetail
 from algorithms.observations.observation import Encounter
 from app.drawing.draw_items import ellipse
+from app.drawing.grid_pixels import is_free, upright, wall_masks
+from app.drawing.grid_pixels import sheet as painted
 from app.drawing.palette import VIRIDIS, Palette
 from app.drawing.svg.map_plot import robot, scale_bar, scene, view_of
 from app.drawing.svg.map_raster import draw_levels, draw_map, under
@@ -133,10 +135,7 @@ def dual(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     r0, c0 = max(0, low[1]), max(0, low[0])
     r1, c1 = min(grid.height, low[1] + across), min(grid.width, low[0] + across)
     patch[r0 - low[1] : r1 - low[1], c0 - low[0] : c1 - low[0]] = grid.cells[r0:r1, c0:c1]
-    pixels = np.full((across, across, 3), palette.unknown, dtype=np.uint8)
-    pixels[(patch >= 0) & (patch <= FREE_UP_TO)] = palette.free
-    pixels[patch >= OCCUPIED_FROM] = palette.ref
-    plot.image(np.ascontiguousarray(pixels[::-1]))
+    plot.image(upright(painted(patch, palette.ref, palette).pixels))
     for k in range(across + 1):
         at_ = k / across * side
         sheet.path([(at_, 18), (at_, 18 + side)], palette.margin, 0.5, alpha=0.5)
@@ -191,7 +190,7 @@ def turned(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
 
 def _class(cells: CellArray) -> np.ndarray:
     """0 wall, 1 free, 2 unknown, of every cell."""
-    return np.where(cells >= OCCUPIED_FROM, 0, np.where((cells >= 0) & (cells <= FREE_UP_TO), 1, 2))
+    return np.where(cells >= OCCUPIED_FROM, 0, np.where(is_free(cells), 1, 2))
 
 
 def merged(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
@@ -205,13 +204,8 @@ def merged(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     sheet.text(0, 11, "around the meeting place", 11, bold=True)
     pixels = view.blank(palette)
     a, b = (under(part, fusion.merged, view, None, 2) for part in (first, second))
-    for mask, colour in (
-        ((a == 1) | (b == 1), palette.free),
-        (a == 0, palette.ref),
-        (b == 0, palette.mov),
-        ((a == 0) & (b == 0), palette.agreed),
-        ((a == 0) & (b == 1) | (a == 1) & (b == 0), palette.conflict),
-    ):
+    pixels[(a == 1) | (b == 1)] = palette.free
+    for mask, colour in wall_masks((a == 0, b == 0), (a == 1, b == 1), palette):
         pixels[mask] = colour
     plot.image(pixels)
     sheet.rect(0, 18, HALF, HALF, None, INK, 0.35)
