@@ -23,8 +23,8 @@ from app.model.view_modes import HEIGHTS, MAP, SWARM
 from app.page.panels.html_widgets import box
 from app.page.panels.result_panel import result_html
 from app.page.part import Part
-from app.report.export import ResultFiles
 from app.report.replay.make_replay import replay_of
+from app.report.result_files import ResultFiles
 from app.web import callback_errors as mishap
 
 

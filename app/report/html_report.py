@@ -20,7 +20,7 @@ from app.model import verdict_text
 from app.model.contradiction_text import MOST_PLACES, signed, summary, whose
 from app.model.merge_inputs import MergeInputs
 from app.model.objective_label import measure_of
-from app.model.settings import Setting, settings_of, value_at, word_for
+from app.model.settings import Setting, settings_of, text_for, value_at
 from app.model.status_text import typeset
 from app.report import report_figures as outcome
 from app.report.result_rows import STAGES, numbers
@@ -213,14 +213,9 @@ def _settings(result: MergeResult, config: Any, report: Mapping[str, Any]) -> li
 
 
 def _setting(setting: Setting, standard: Any) -> Row:
-    def shown(value: Any) -> str:
-        if setting.choices is not None:
-            return word_for(setting, value)
-        return ("yes" if value else "no") if isinstance(value, bool) else f"{value:g}"
-
     usual = value_at(standard, setting.path)
-    changed = "" if usual == setting.default else f" (usually {shown(usual)})"
-    return setting.label, f"{shown(setting.default)}{changed}"
+    shown, instead = (text_for(setting, value, "yes", "no") for value in (setting.default, usual))
+    return setting.label, shown if usual == setting.default else f"{shown} (usually {instead})"
 
 
 def _use(result: MergeResult) -> list[str]:
