@@ -98,14 +98,13 @@ class RunState:
     @property
     def answer(self) -> Pose2 | None:
         """The best transform as far as the run has come; None before the search is done."""
-        answers, proof = self.get(AnswersDetail), self.get(ProofDetail)
-        result, proven, weighed = self.get(MergeResult), self.get(ProvenDetail), self.get(WeighedDetail)
-        if result is not None:
+        if (result := self.get(MergeResult)) is not None:
             return result.T_ref_mov
-        if weighed is not None:
+        if (weighed := self.get(WeighedDetail)) is not None:
             return weighed.answers[0].T_ref_mov
-        if proven is not None:
+        if (proven := self.get(ProvenDetail)) is not None:
             return proven.peak.T_ref_mov
-        if proof is not None and proof.state.best is not None:
+        if (proof := self.get(ProofDetail)) is not None and proof.state.best is not None:
             return Pose2.from_array(proof.state.best)
+        answers = self.get(AnswersDetail)
         return answers.answers[0].T_ref_mov if answers is not None else None

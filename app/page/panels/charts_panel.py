@@ -8,16 +8,14 @@ from typing import Any
 import viser
 
 from algorithms.maps.map_fusion import Fusion
-from algorithms.methods import steps
-from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import CandidatesDetail, HoughDetail, ProofDetail, RefineDetail, TurnsDetail
 from app.model import chart_data as charts
 from app.model import status_text as words
 from app.model.run_state import RunState
+from app.model.step_table import PROOF, RESULT, SHIFT, SWARM, TURN, row_of
 from app.page.panels.chart_widgets import add_chart, fill, nothing
 from app.page.panels.html_widgets import box, put, table
 
-TURN, SHIFT, SWARM, PROOF, RESULT = "Turn", "Shift", "Swarm", "Proof", "Result"
 WIDTH = 316
 # name of a chart -> its page, how it looks, its height
 CHARTS = {
@@ -30,21 +28,6 @@ CHARTS = {
     "y": (SHIFT, charts.SHIFT_Y, 140),
     "climb": (SWARM, charts.CLIMB, 230),
     "proof": (PROOF, charts.PROOF, 250),
-}
-# type of a step -> the page that a run turns to
-PAGES: dict[type, str] = {
-    steps.AugmentDetail: TURN,
-    HoughDetail: TURN,
-    TurnsDetail: TURN,
-    steps.WindowDetail: SHIFT,
-    steps.ShiftDetail: SHIFT,
-    CandidatesDetail: SHIFT,
-    RefineDetail: SWARM,
-    steps.AnswersDetail: SWARM,
-    ProofDetail: PROOF,
-    steps.ProvenDetail: PROOF,
-    steps.MatchesDetail: RESULT,
-    MergeResult: RESULT,
 }
 # what a page says while there is nothing on it
 HINTS = {
@@ -173,7 +156,7 @@ class ChartsPanel:
         elif story.reached(Fusion):  # of an earlier run; this method proves nothing
             self._forget("proof")
         if follow and not self._chosen:
-            self.page = PAGES.get(type(detail), self.page)
+            self.page = row_of(detail).page or self.page
         self._show_page()
 
     def _forget(self, *names: str) -> None:
