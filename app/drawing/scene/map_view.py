@@ -35,7 +35,7 @@ class MapView:
         self._mov_at = Pose2()
         self.mode: Mode = "overlay"
         self.boxed: object = None  # the box that is drawn and looked at
-        self.layout = SceneLayout(np.zeros(2), np.zeros(2), None, None, Pose2())
+        self.layout = SceneLayout((np.zeros(2), np.zeros(2)))
 
     # --- what was loaded --------------------------------------------------------------------------
 
@@ -168,7 +168,7 @@ class MapView:
         """Put map 2 at a place of the scene, gliding for so long."""
         if at != self._mov_at or milliseconds == 0:
             self._mov_at = at
-            self._stage.place_mov(at, milliseconds)
+            self._stage.place_map(2, at, milliseconds)
 
     def clear(self, *names: str) -> None:
         """Take what these layers show away."""

@@ -36,11 +36,11 @@ def robots(
     if mov and seen:
         known = o.observed_heading is not None
         shape, how = ("robot", {"a": o.observed_heading, "r": 9}) if known else ("dot", {"r": 6})
-        items.append(mark(shape, ZERO, colours.mov, "mov", t="robot 2", **how, **far))
+        items.append(mark(shape, ZERO, colours.mov, "map2", t="robot 2", **how, **far))
     if not together:
         items.append(mark("ring", ZERO, colours.conflict, r=7, t="x̂₁ seen here", size=11, **far))
         if mov:
-            items.append(mark("ring", ZERO, colours.conflict, "mov", r=13))
+            items.append(mark("ring", ZERO, colours.conflict, "map2", r=13))
     return items
 
 
@@ -96,7 +96,7 @@ def further(
             known = o.observed_heading is not None
             shape, how = ("robot", {"a": o.observed_heading, "r": 6}) if known else ("dot", {"r": 4})
             there = at.x_mov - layout.anchor_mov
-            items.append(mark(shape, there, colours.mov, "mov", alpha=QUIET, **how, **name))
+            items.append(mark(shape, there, colours.mov, "map2", alpha=QUIET, **how, **name))
     return items
 
 
@@ -137,13 +137,13 @@ def _draft(draft: ObservationDraft, layout: SceneLayout, colours: Palette, alpha
         name = {"t": "robot 2", **_beside(draft.heading or 0.0)} if chosen else {}
         if draft.heading is None:
             if chosen:  # nobody knows which way it looked: the knob can tell
-                knob = mark("ring", there, colours.mov, "mov", alpha=QUIET, a=0.0, r=5, arm=KNOB_ARM)
+                knob = mark("ring", there, colours.mov, "map2", alpha=QUIET, a=0.0, r=5, arm=KNOB_ARM)
                 items.append(knob)
-            items.append(mark("dot", there, colours.mov, "mov", alpha=alpha, r=7, **name))
+            items.append(mark("dot", there, colours.mov, "map2", alpha=alpha, r=7, **name))
         else:
             if chosen:
-                items.append(mark("dot", there, colours.mov, "mov", a=draft.heading, r=5, arm=KNOB_ARM))
-            shape = mark("robot", there, colours.mov, "mov", alpha=alpha, a=draft.heading, r=9, **name)
+                items.append(mark("dot", there, colours.mov, "map2", a=draft.heading, r=5, arm=KNOB_ARM))
+            shape = mark("robot", there, colours.mov, "map2", alpha=alpha, a=draft.heading, r=9, **name)
             items.append(shape)
     return items
 
@@ -156,6 +156,6 @@ def _beside(heading: float) -> dict[str, Any]:
 def grip(hull: FloatArray, colours: Palette) -> list[Item]:
     """What map 2 is held by: its outline, and a knob to turn it about its anchor; in its own frame."""
     return [
-        path(hull, colours.mov, "mov", w=1.4, close=True, d=[7, 5], halo=True),
-        mark("dot", ZERO, colours.mov, "mov", r=8, a=0.0, arm=TURN_ARM, t="turn"),
+        path(hull, colours.mov, "map2", w=1.4, close=True, d=[7, 5], halo=True),
+        mark("dot", ZERO, colours.mov, "map2", r=8, a=0.0, arm=TURN_ARM, t="turn"),
     ]

@@ -29,7 +29,7 @@ def rings(covariance: FloatArray, colours: Palette, both: bool) -> list[Item]:
         how = {"close": True, "w": 1.2, "d": [3, 4], "halo": True}
         items.append(path(points, colours.margin, **how, **label))
         if both:
-            items.append(path(points, colours.margin, "mov", **how))
+            items.append(path(points, colours.margin, "map2", **how))
     return items
 
 

@@ -205,7 +205,7 @@ class MapDragController:
         T = self._maps.layout.transform(at)
         with self._drawing:
             if glide is not None:
-                self._stage.place_mov(at, glide)
+                self._stage.place_map(2, at, glide)
             if look and self._host.follows:
                 self._stage.look_down(self._maps.extent(), need=True)
             self._stage.flush()

@@ -11,8 +11,6 @@ from typing import Any
 from app.drawing.grid_pixels import Pixels
 from app.drawing.png import data_uri
 
-FRAMES = {"ref": "scene", "mov": "mov", "ghost": "ghost"}  # of the scene's tree -> of the player
-
 
 class PictureHandle:
     """A picture that lies in the scene; where it lies in the end is what is recorded."""
@@ -82,7 +80,7 @@ class PictureScene:
         """A picture with its middle at ``position`` of its frame; metres."""
         self._pictures.append(
             {
-                "frame": FRAMES[name.split("/")[2]],
+                "frame": name.split("/")[2],
                 "data": data_uri(pixels),
                 "size": [round(wide, 4), round(high, 4)],
                 "thin": "free" not in name,

@@ -118,7 +118,7 @@ def _lines(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> l
     first, second, step = study.votes
     for votes, lifted, anchor, frame in (
         (first, detail.ref, layout.anchor_ref, "scene"),
-        (second, detail.mov, layout.anchor_mov, "mov"),
+        (second, detail.mov, layout.anchor_mov, "map2"),
     ):
         for k, (theta, rho) in enumerate(spectra.strongest(votes, step)):
             ends = spectra.line_through(theta, rho, lifted.x_hat, reach) - anchor
