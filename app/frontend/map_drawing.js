@@ -21,7 +21,7 @@ const mapmeldInk = (() => {
   function toScene(pose, point) { const [x, y] = turn(point, pose.theta); return [x + pose.x, y + pose.y]; }
   const toFrame = (pose, [x, y]) => turn([x - pose.x, y - pose.y], -pose.theta); // a point of the scene in it
   // A way from pose to pose that begins at a time, in to.ms; and where on it one is.
-  const way = (from, to, began) => ({ from: to.ms ? from : to, to, turn: to.ms ? wrap(to.theta - from.theta) : 0, began, ms: to.ms });
+  const way = (from, to, began) => ({ from: to.ms ? from : to, to, turn: to.ms ? wrap(to.theta - from.theta) : 0, began, ms: to.ms || 0 });
   function along(w, time) {
     const s = smooth(Math.min(1, (time - w.began) / Math.max(1, w.ms)));
     return { x: lerp(w.from.x, w.to.x, s), y: lerp(w.from.y, w.to.y, s), theta: w.from.theta + w.turn * s };

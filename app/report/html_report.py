@@ -109,28 +109,21 @@ def _bare(reason: str) -> str:
 
 
 def _pictures(result: MergeResult, inputs: MergeInputs, found: Contradictions, check: Check) -> str:
-    figures = []
     check(0.3)
+    figures = []
     if inputs.ref is not None and inputs.mov is not None:
         drawn = outcome.sources(inputs.ref, inputs.mov, inputs.observations, result.encounters)
-        figures.append(
-            _figure(drawn, "The maps as they came, each in its own frame, and what robot 1 saw of robot 2.")
-        )
+        said = "The maps as they came, each in its own frame, and what robot 1 saw of robot 2."
+        figures.append(_figure(drawn, said))
     check(0.45)
-    figures.append(
-        _figure(
-            outcome.overlay(result, inputs.observations),
-            "Map 2 on map 1 under the transform. A contradiction is a wall of one map on the other's free "
-            "floor; a cell's breadth of it along a wall means nothing.",
-        )
+    said = (
+        "Map 2 on map 1 under the transform. A contradiction is a wall of one map on the other's free floor; "
+        "a cell's breadth of it along a wall means nothing."
     )
+    figures.append(_figure(outcome.overlay(result, inputs.observations), said))
     check(0.65)
-    figures.append(
-        _figure(
-            outcome.difference(result, found),
-            "Only what contradicts by more than the breadth of a wall. The numbers are those of the table.",
-        )
-    )
+    said = "Only what contradicts by more than the breadth of a wall. The numbers are those of the table."
+    figures.append(_figure(outcome.difference(result, found), said))
     check(0.85)
     return _section("Pictures", *figures)
 
