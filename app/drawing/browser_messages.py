@@ -114,7 +114,6 @@ class BrowserMessages(ABC):
             self._pending["key"] = key
 
     def flush(self) -> None:
-        """Send what has gathered."""
         with self._lock:
             if not self._pending:
                 return

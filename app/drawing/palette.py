@@ -74,7 +74,6 @@ VIRIDIS: NDArray[np.uint8] = np.ascontiguousarray(
 
 
 def css(colour: Rgb, alpha: float = 1.0) -> str:
-    """A colour as a style sheet writes it."""
     red, green, blue = colour
     return f"rgba({red},{green},{blue},{alpha:g})" if alpha < 1 else f"#{red:02x}{green:02x}{blue:02x}"
 

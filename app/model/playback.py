@@ -57,7 +57,6 @@ class InterruptibleWait:
                 self._condition.wait_for(lambda: self._cuts != mark, seconds)
 
     def cut(self) -> None:
-        """End every wait."""
         with self._condition:
             self._cuts += 1
             self._condition.notify_all()

@@ -77,7 +77,6 @@ class RunState:
 
     @property
     def measure(self) -> ObjectiveLabel:
-        """What is maximised."""
         return measure_of(self.config)
 
     @property

@@ -172,7 +172,6 @@ def overlay(fusion: Fusion, most: int = render.MOST_PIXELS) -> render.Pixels:
 
 
 def overlay_png(result: MergeResult) -> bytes:
-    """That picture as a file."""
     done, png = cv2.imencode(".png", overlay(result.fusion)[..., ::-1])  # OpenCV keeps blue first
     assert done
     return png.tobytes()
@@ -232,7 +231,6 @@ class ResultFiles:
         return self._made
 
     def archive(self) -> bytes:
-        """A zip with all files."""
         packed = io.BytesIO()
         with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as target:
             for name, content in self.files.items():

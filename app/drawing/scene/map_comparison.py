@@ -47,7 +47,6 @@ class MapComparison:
         self.recolour(palette)
 
     def recolour(self, palette: Palette) -> None:
-        """Draw in the colours of this palette."""
         colours = {f"map{number}": css(colour) for number, colour in enumerate(palette.maps, 1)}
         self._stage.compare(colours={**colours, "conflict": css(palette.conflict)})
 

@@ -108,7 +108,6 @@ class MapLayers:
         self.show(self.which)
 
     def merge(self, fusion: Fusion) -> None:
-        """Show this merged map."""
         if fusion is not self._fused and self._layout is not None and self._palette is not None:
             if self._fused is not None:
                 self._conflicts = None  # they were of the other one

@@ -98,7 +98,6 @@ class MapView:
         self._mov_at = at
 
     def touch(self, walls: tuple[WallLookup, WallLookup], told: tuple[CellAgreement, CellAgreement]) -> None:
-        """Show which walls coincide and which are denied; see ``MapLayers.touch``."""
         self.ground.touch(walls, told)
 
     def let_go(self) -> None:
@@ -171,7 +170,6 @@ class MapView:
             self._stage.place_map(2, at, milliseconds)
 
     def clear(self, *names: str) -> None:
-        """Take what these layers show away."""
         for name in names:
             self._stage.layer(name, None)
         if "rival" in names:

@@ -78,7 +78,6 @@ def observation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
 
 
 def level_scale(sheet: SvgCanvas, x: float, y: float, wide: float, peak: float, words: str) -> None:
-    """The colour scale of the levels, from nothing to the peak."""
     sheet.image(np.ascontiguousarray(VIRIDIS[None]), x, y, wide, 9, smooth=True)
     sheet.rect(x, y, wide, 9, None, INK, 0.35)
     for share in (0.0, 0.5, 1.0):
