@@ -119,7 +119,7 @@ def test_large_maps_are_loaded_stopped_looked_at_and_dragged(tab, tmp_path, monk
     tab.press("Move map 2 by hand")
     settle(lambda: tab.page.evaluate("() => !!window.mapmeld.hand?.mov"), "map 2 in the hand")
     before = tab.page.evaluate("() => window.mapmeld.maps[2].x")
-    x, y = tab.page.evaluate("(p) => window.mapmeld.pixel(p, 'mov')", centre(*PILLAR).tolist())
+    x, y = tab.page.evaluate("(p) => window.mapmeld.pixel(p, 'map2')", centre(*PILLAR).tolist())
     tab.page.mouse.move(x + 40, y + 40)
     tab.page.mouse.down()
     tab.page.mouse.move(x + 140, y + 60, steps=8)

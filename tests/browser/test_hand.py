@@ -124,7 +124,7 @@ def drag(tab, start: list[float], by: tuple[float, float]) -> None:
 def at_mov(tab, point: tuple[float, float]) -> list[float]:
     """Where a point of map 2, from its anchor, is in the window."""
     tab.at_rest()
-    return tab.page.evaluate("(p) => mapmeld.pixel(p, 'mov')", list(point))
+    return tab.page.evaluate("(p) => mapmeld.pixel(p, 'map2')", list(point))
 
 
 def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(tab, tmp_path):
@@ -176,7 +176,7 @@ def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(ta
     far.press("Enter")
     settle(lambda: lies()[0] == pytest.approx(right[0] + 60, abs=0.02), "the number")
     settle(
-        lambda: ink["x"] < tab.page.evaluate("() => mapmeld.pixel([0, 0], 'mov')[0]") < ink["x"] + width,
+        lambda: ink["x"] < tab.page.evaluate("() => mapmeld.pixel([0, 0], 'map2')[0]") < ink["x"] + width,
         "the camera to take in a map that was typed out of the picture",
     )
     for label, value in (("T: Δx (m)", x), ("T: Δy (m)", y)):
