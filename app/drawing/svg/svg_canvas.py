@@ -98,13 +98,12 @@ class SvgCanvas:
 
     def rect(
         self, x: float, y: float, wide: float, high: float, fill: Colour | None = None,
-        colour: Colour | None = None, alpha: float = 1.0, width: float = 1.0, dash: str = "",
+        colour: Colour | None = None, alpha: float = 1.0, width: float = 1.0,
     ) -> None:  # fmt: skip
-        dashes = f' stroke-dasharray="{dash}"' if dash else ""
         self.parts.append(
             f'<rect x="{x:.1f}" y="{y:.1f}" width="{max(0, wide):.1f}" height="{max(0, high):.1f}" '
             f'fill="{_css(fill)}" stroke="{_css(colour)}" stroke-width="{width:g}" '
-            f'opacity="{alpha:g}"{dashes}/>'
+            f'opacity="{alpha:g}"/>'
         )
 
     def dot(
