@@ -163,6 +163,7 @@ EXERCISED_BY = {
     },
     "app/model/test_status_text.py": {
         "app.model.objective_label",
+        "app.model.step_table",
         "app.model.run_state",
     },
     "app/page/lesson/figures/test_figure_registry.py": {
@@ -170,6 +171,7 @@ EXERCISED_BY = {
         "app.page.lesson.figures.search_figures",
         "app.page.lesson.figures.spectra_figures",
         "app.page.lesson.figures.verdict_figure",
+        "app.drawing.svg.chart_plot",
         "app.drawing.svg.map_raster",
         "app.drawing.svg.svg_canvas",
     },
@@ -217,7 +219,6 @@ EXERCISED_BY = {
     "app/report/test_html_report.py": {
         "app.drawing.svg.map_plot",
         "app.drawing.svg.verdict_bars",
-        "app.report.export",
         "app.report.report_figures",
         "app.report.ros_transform",
     },

@@ -24,7 +24,7 @@ class BrowserMessages(ABC):
     def __init__(self) -> None:
         self._pending: dict[str, Any] = {}
         self._hud: dict[str, Any] = {}
-        self.placed = 0  # how often map 2 was put anywhere
+        self.placed = 0  # how often a map was put anywhere
         self._lock = RLock()  # widgets call from many threads; what gathers while one sends is not lost
 
     @abstractmethod
@@ -54,17 +54,12 @@ class BrowserMessages(ABC):
         """What the words above the map are coloured by."""
         return str(self._hud.get("mood", "idle"))
 
-    def place_mov(self, at: Pose2, milliseconds: float = 0) -> None:
-        """Turn and slide map 2's anchor to a pose of the scene, in this time."""
+    def place_map(self, number: int, at: Pose2, milliseconds: float = 0) -> None:
+        """Turn and slide a map's anchor to a pose of the scene, in this time."""
         with self._lock:
             self.placed += 1
-            self._pending["mov"] = {
-                "x": at.x,
-                "y": at.y,
-                "theta": at.theta,
-                "ms": milliseconds,
-                "number": self.placed,
-            }
+            pose = {"x": at.x, "y": at.y, "theta": at.theta}
+            self._pending.setdefault("maps", {})[number] = {**pose, "ms": milliseconds, "placed": self.placed}
 
     def look_down(self, rect: Rect, follow: bool = False, need: bool = False) -> None:
         """Show a rectangle of the map from above, north up.
@@ -119,7 +114,6 @@ class BrowserMessages(ABC):
             self._pending["key"] = key
 
     def flush(self) -> None:
-        """Send what has gathered."""
         with self._lock:
             if not self._pending:
                 return

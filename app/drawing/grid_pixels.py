@@ -96,7 +96,7 @@ def sheet(cells: CellArray, colour: Rgb, palette: Palette, most: int = MOST_PIXE
     pooled = pool(cells, factor)
     pixels = np.full((*pooled.shape, 4), 255, dtype=np.uint8)
     pixels[..., :3] = palette.unknown
-    pixels[(pooled >= FREE) & (pooled <= FREE_UP_TO), :3] = palette.free
+    pixels[is_free(pooled), :3] = palette.free
     pixels[pooled >= OCCUPIED_FROM, :3] = colour
     return GridPixels(pixels, factor)
 
@@ -140,6 +140,32 @@ def levels(
     return GridPixels(pixels, factor)
 
 
+def is_free(cells: CellArray) -> BoolArray:
+    """Where cells are known to be free."""
+    return np.asarray((cells >= FREE) & (cells <= FREE_UP_TO))
+
+
+def wall_masks(
+    walls: tuple[BoolArray, BoolArray],
+    free: tuple[BoolArray, BoolArray],
+    palette: Palette,
+    near: tuple[BoolArray, BoolArray] | None = None,
+) -> tuple[tuple[BoolArray, Rgb], ...]:
+    """Whose wall it is, where both maps have one, and where one denies the other's, each mask with its
+    colour; to be painted in this order.
+
+    walls, free : of map 1 and of map 2, on one raster
+    near        : where a wall of the other map is the same wall; None: on it
+    """
+    (ref, mov), (ref_free, mov_free), (by_ref, by_mov) = walls, free, near or walls
+    return (
+        (ref, palette.ref),
+        (mov, palette.mov),
+        ((ref & by_mov) | (mov & by_ref), palette.agreed),
+        ((ref & mov_free) | (mov & ref_free), palette.conflict),
+    )
+
+
 def merged_floor(
     fusion: Fusion, palette: Palette, most: int = MOST_PIXELS, part: CellRegion = WHOLE
 ) -> GridPixels:
@@ -153,16 +179,9 @@ def merged_walls(
     """Whose wall it is, where both agree on a wall, and where they contradict; the rest transparent."""
     factor = pooling(fusion.merged.cells[part].shape, most)
     ref, mov = pool(fusion.ref_cells[part], factor), pool(fusion.mov_cells[part], factor)
-    ref_wall, mov_wall = ref >= OCCUPIED_FROM, mov >= OCCUPIED_FROM
-    ref_free = (ref != UNKNOWN) & (ref <= FREE_UP_TO)
-    mov_free = (mov != UNKNOWN) & (mov <= FREE_UP_TO)
-    pixels = _tinted(ref_wall | mov_wall, palette.margin)
-    for mask, colour in (
-        (ref_wall, palette.ref),
-        (mov_wall, palette.mov),
-        (ref_wall & mov_wall, palette.agreed),
-        ((ref_wall & mov_free) | (ref_free & mov_wall), palette.conflict),
-    ):
+    walls, free = (ref >= OCCUPIED_FROM, mov >= OCCUPIED_FROM), (is_free(ref), is_free(mov))
+    pixels = _tinted(walls[0] | walls[1], palette.margin)
+    for mask, colour in wall_masks(walls, free, palette):
         pixels[mask, :3] = colour
     return GridPixels(pixels, factor)
 

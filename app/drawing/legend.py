@@ -5,18 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from algorithms.maps.map_fusion import Fusion
+from algorithms.methods import steps
 from algorithms.methods.merge_result import MergeResult
-from algorithms.methods.steps import (
-    AugmentDetail,
-    CandidatesDetail,
-    HoughDetail,
-    MatchesDetail,
-    ProofDetail,
-    ProvenDetail,
-    RefineDetail,
-    ShiftDetail,
-    WindowDetail,
-)
+from algorithms.methods.steps import AugmentDetail, CandidatesDetail, ProvenDetail
 from app.drawing.palette import VIRIDIS, Palette, Rgb, css
 from app.model.run_state import RunState
 
@@ -28,6 +19,10 @@ def _chip(shape: str, colour: Rgb, text: str) -> Entry:
     return {"s": shape, "c": css(colour), "t": text}
 
 
+def _maps(palette: Palette) -> list[Entry]:
+    return [_chip("square", colour, f"map {number}") for number, colour in enumerate(palette.maps, 1)]
+
+
 def level_scale(detail: AugmentDetail) -> Entry:
     """The colour scale of the levels, from nothing to the peak."""
     stops = [css(tuple(int(part) for part in VIRIDIS[k])) for k in range(0, 256, 51)]  # type: ignore[arg-type]
@@ -35,13 +30,9 @@ def level_scale(detail: AugmentDetail) -> Entry:
 
 
 def in_hand(palette: Palette) -> list[Entry]:
-    """Entries for the map while map 2 is in a person's hand."""
-    return [
-        _chip("square", palette.ref, "map 1"),
-        _chip("square", palette.mov, "map 2"),
-        _chip("square", palette.agreed, "both"),
-        _chip("square", palette.conflict, "contradiction"),
-    ]
+    """Entries for maps that lie over each other."""
+    both, against = (palette.agreed, "both"), (palette.conflict, "contradiction")
+    return [*_maps(palette), *(_chip("square", *entry) for entry in (both, against))]
 
 
 def legend(
@@ -54,55 +45,40 @@ def legend(
     """
     detail = story.last.detail if story.last else None
     augmented = story.get(AugmentDetail)
-    maps = [_chip("square", palette.ref, "map 1"), _chip("square", palette.mov, "map 2")]
-    particle = _chip("dot", palette.particle, "particle")
-    best = _chip("diamond", palette.best, "swarm best")
-    if preview and augmented and view == "Map":
-        return [level_scale(augmented), _chip("line", palette.margin, "Σ_aug, windows, box")]
+    scale = [level_scale(augmented)] if augmented else []
+    maps = _maps(palette)
+    margin, best, particle = palette.margin, palette.best, palette.particle
+    swarm = [_chip("dot", particle, "particle"), _chip("diamond", best, "swarm best")]
+    star, rival = _chip("star", palette.answer, "proven optimum"), _chip("dot", palette.rival, "rival")
     if view == "Heights":
-        return [level_scale(augmented)] if augmented else []
-    if view == "Map" and mode in ("blink", "curtain"):
-        return maps
-    if view == "Map" and mode == "difference":
-        return [
-            _chip("square", palette.ref, "map 1 alone"),
-            _chip("square", palette.mov, "map 2 alone"),
-            _chip("square", _FAINT, "other walls"),
-        ]
-    star = _chip("star", palette.answer, "proven optimum")
-    rival = _chip("dot", palette.rival, "rival")
+        return scale
     if view == "Swarm space":
-        return [particle, best, *([star] if story.reached(ProvenDetail) else [])]
+        return [*swarm, star] if story.reached(ProvenDetail) else swarm
+    if preview and scale:
+        return [*scale, _chip("line", margin, "Σ_aug, windows, box")]
+    if mode in ("blink", "curtain"):
+        return maps
+    if mode == "difference":
+        alone = [entry | {"t": f"{entry['t']} alone"} for entry in maps]
+        return [*alone, _chip("square", _FAINT, "other walls")]
     if story.reached(Fusion):
         result = story.get(MergeResult)
         in_doubt = result is not None and result.verdict.rival is not None
-        return [
-            *maps,
-            _chip("square", palette.agreed, "both"),
-            _chip("square", palette.conflict, "contradiction"),
-            _chip("star", palette.answer, "robot 2"),
-            *([rival] if in_doubt else []),
-        ]
-    if isinstance(detail, (ProofDetail, ProvenDetail)):
-        best_yet = star if detail.state.proven else _chip("star", palette.answer, "best so far")
+        return [*in_hand(palette), _chip("star", palette.answer, "robot 2"), *([rival] if in_doubt else [])]
+    if isinstance(detail, (steps.ProofDetail, ProvenDetail)):
+        if not detail.state.proven:
+            star["t"] = "best so far"
         rivals = [rival] if len(detail.state.rivals) else []
-        return [*maps, best_yet, *rivals, _chip("line", palette.margin, "coupled window")]
-    if isinstance(detail, MatchesDetail):
-        agree = _chip("line", palette.best, "matches that agree")
-        others = _chip("line", palette.margin, "other matches")
-        return (
-            [*maps, agree, others]
-            if detail.inliers.any()
-            else [*maps, _chip("line", palette.particle, "match")]
-        )
-    if isinstance(detail, RefineDetail):
-        return [*maps, particle, best, _chip("line", palette.margin, "box")]
-    if isinstance(detail, (WindowDetail, ShiftDetail)):
-        return [*maps, _chip("diamond", palette.particle, "robot 2 under a candidate")]
-    if isinstance(detail, (AugmentDetail, HoughDetail, CandidatesDetail)) and augmented:
-        first = _chip("diamond", palette.best, "robot 2 under the best candidate")
-        if not isinstance(detail, CandidatesDetail):
-            return [level_scale(augmented)]
-        others = [_chip("diamond", palette.particle, "under another")] if len(detail.candidates) > 1 else []
-        return [*maps, first, *others]
-    return maps
+        return [*maps, star, *rivals, _chip("line", margin, "coupled window")]
+    if isinstance(detail, steps.MatchesDetail):
+        if not detail.inliers.any():
+            return [*maps, _chip("line", particle, "match")]
+        return [*maps, _chip("line", best, "matches that agree"), _chip("line", margin, "other matches")]
+    if isinstance(detail, steps.RefineDetail):
+        return [*maps, *swarm, _chip("line", margin, "box")]
+    if isinstance(detail, (steps.WindowDetail, steps.ShiftDetail)):
+        return [*maps, _chip("diamond", particle, "robot 2 under a candidate")]
+    if isinstance(detail, CandidatesDetail) and augmented:
+        others = [_chip("diamond", particle, "under another")] if len(detail.candidates) > 1 else []
+        return [*maps, _chip("diamond", best, "robot 2 under the best candidate"), *others]
+    return scale if scale and isinstance(detail, (AugmentDetail, steps.HoughDetail)) else maps

@@ -16,8 +16,7 @@ class Palette:
     """What is drawn in which colour; sRGB, 0 … 255."""
 
     dark: bool
-    ref: Rgb  # walls of map 1
-    mov: Rgb  # walls of map 2
+    maps: tuple[Rgb, ...]  # walls of each map
     agreed: Rgb  # wall on wall
     conflict: Rgb  # wall on free
     particle: Rgb
@@ -30,11 +29,20 @@ class Palette:
     unknown: Rgb
     text: Rgb
 
+    @property
+    def ref(self) -> Rgb:
+        """Walls of map 1."""
+        return self.maps[0]
+
+    @property
+    def mov(self) -> Rgb:
+        """Walls of map 2."""
+        return self.maps[1]
+
 
 LIGHT = Palette(
     dark=False,
-    ref=(0x00, 0x72, 0xB2),
-    mov=(0x00, 0x9E, 0x73),
+    maps=((0x00, 0x72, 0xB2), (0x00, 0x9E, 0x73)),
     agreed=(0x11, 0x18, 0x27),
     conflict=(0xD5, 0x5E, 0x00),
     particle=(0xE6, 0x9F, 0x00),
@@ -66,7 +74,6 @@ VIRIDIS: NDArray[np.uint8] = np.ascontiguousarray(
 
 
 def css(colour: Rgb, alpha: float = 1.0) -> str:
-    """A colour as a style sheet writes it."""
     red, green, blue = colour
     return f"rgba({red},{green},{blue},{alpha:g})" if alpha < 1 else f"#{red:02x}{green:02x}{blue:02x}"
 

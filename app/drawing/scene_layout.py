@@ -56,26 +56,35 @@ def union(*rects: Rect) -> Rect:
 class SceneLayout:
     """The scene's coordinates: metres, map 1's axes, the meeting place (or map 1's middle) at zero.
 
-    anchor_ref : (2,) point of the ref frame that lies at the scene's origin
-    anchor_mov : (2,) point of the mov frame that map 2 is turned about
-    ref_corners, mov_corners : (4, 2) what is known of each map, relative to its anchor; or None
-    apart      : where anchor_mov lies while the maps are side by side, and map 2's turn there (none)
+    anchors : of each map the (2,) point of its frame that lies at the scene's origin; map 2 turns about it
+    corners : (4, 2) what is known of each map, relative to its anchor; or None
+    beside  : where each anchor lies while the maps are side by side, and the map's turn there (none)
     """
 
-    anchor_ref: FloatArray
-    anchor_mov: FloatArray
-    ref_corners: FloatArray | None
-    mov_corners: FloatArray | None
-    apart: Pose2
+    anchors: tuple[FloatArray, ...]
+    corners: tuple[FloatArray | None, ...] = (None, None)
+    beside: tuple[Pose2, ...] = (Pose2(), Pose2())
+
+    @property
+    def anchor_ref(self) -> FloatArray:
+        """(2,) anchor of map 1; metres, its frame."""
+        return self.anchors[0]
+
+    @property
+    def anchor_mov(self) -> FloatArray:
+        """(2,) anchor of map 2; metres, its frame."""
+        return self.anchors[1]
+
+    @property
+    def apart(self) -> Pose2:
+        """Where map 2's anchor lies while the maps are side by side."""
+        return self.beside[1]
 
     def frames(self) -> list[list[float] | None]:
         """Of each map its anchor and the rectangle around what is known of it, relative to the anchor."""
         return [
             None if corners is None else [*anchor.tolist(), *rect_of(corners)]
-            for anchor, corners in (
-                (self.anchor_ref, self.ref_corners),
-                (self.anchor_mov, self.mov_corners),
-            )
+            for anchor, corners in zip(self.anchors, self.corners, strict=True)
         ]
 
     def placed(self, T_ref_mov: Pose2) -> Pose2:
@@ -91,20 +100,16 @@ class SceneLayout:
 
     def view(self, mov_at: Pose2 | None = None) -> Rect:
         """Rectangle that holds map 1 and map 2 with its anchor at ``mov_at`` (apart if None)."""
-        points = []
-        if self.ref_corners is not None:
-            points.append(self.ref_corners)
-        if self.mov_corners is not None:
-            points.append((self.apart if mov_at is None else mov_at).apply(self.mov_corners))
-        if not points:
-            return -5.0, -5.0, 5.0, 5.0
-        return rect_of(np.concatenate(points))
+        places = (self.beside[0], self.apart if mov_at is None else mov_at)
+        points = [at.apply(c) for at, c in zip(places, self.corners, strict=True) if c is not None]
+        return rect_of(np.concatenate(points)) if points else (-5.0, -5.0, 5.0, 5.0)
 
     def swept(self) -> Rect:
         """Rectangle that holds map 1 and map 2 at any turn about the meeting place."""
-        rects = [rect_of(self.ref_corners)] if self.ref_corners is not None else []
-        if self.mov_corners is not None:
-            reach = float(np.hypot(*self.mov_corners.T).max())
+        ref, mov = self.corners
+        rects = [rect_of(ref)] if ref is not None else []
+        if mov is not None:
+            reach = float(np.hypot(*mov.T).max())
             rects.append((-reach, -reach, reach, reach))
         return union(*rects) if rects else self.view()
 
@@ -117,15 +122,13 @@ def lay_out(
     aspect : width over height of the free part of the page; the maps lie side by side or one above
              the other, whichever shows them larger
     """
-    ref_corners = known_corners(ref) if ref else None
-    mov_corners = known_corners(mov) if mov else None
-    anchor_ref = _anchor(at.x_ref if at else None, ref_corners)
-    anchor_mov = _anchor(at.x_mov if at else None, mov_corners)
-    ref_corners = ref_corners - anchor_ref if ref_corners is not None else None
-    mov_corners = mov_corners - anchor_mov if mov_corners is not None else None
+    seen = (at.x_ref, at.x_mov) if at else (None, None)
+    known = [known_corners(grid) if grid else None for grid in (ref, mov)]
+    anchors = tuple(_anchor(x_hat, corners) for x_hat, corners in zip(seen, known, strict=True))
+    corners = tuple(c - anchor if c is not None else None for c, anchor in zip(known, anchors, strict=True))
     apart = Pose2()
-    if ref_corners is not None and mov_corners is not None:
-        r, m = rect_of(ref_corners), rect_of(mov_corners)
+    if corners[0] is not None and corners[1] is not None:
+        r, m = rect_of(corners[0]), rect_of(corners[1])
         (rw, rh), (mw, mh) = (r[2] - r[0], r[3] - r[1]), (m[2] - m[0], m[3] - m[1])
         beside = max((rw + mw) * (1 + GAP) / aspect, max(rh, mh))  # height of page needed
         below = max(max(rw, mw) / aspect, (rh + mh) * (1 + GAP))
@@ -135,7 +138,7 @@ def lay_out(
         else:
             y = r[1] - GAP * (rh + mh) - m[3]
             apart = Pose2((r[0] + r[2]) / 2 - (m[0] + m[2]) / 2, y)
-    return SceneLayout(anchor_ref, anchor_mov, ref_corners, mov_corners, apart)
+    return SceneLayout(anchors, corners, (Pose2(), apart))
 
 
 def _anchor(x_hat: FloatArray | None, corners: FloatArray | None) -> FloatArray:

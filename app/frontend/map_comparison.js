@@ -13,7 +13,7 @@
     difference: "Only walls that the other map denies stand out.",
   };
   const TURN = 1200; // ms that each map is seen while they take turns: slow enough to look
-  const PICTURES = { ref: ["/world/ref/free", "/world/ref/walls"], mov: ["/world/mov/free", "/world/mov/walls"] };
+  const PICTURES = { 1: ["/world/map1/free", "/world/map1/walls"], 2: ["/world/map2/free", "/world/map2/walls"] };
   const ALL = 1e6, NONE = -1e6; // a plane that far away cuts nothing, or everything
   const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
 
@@ -42,16 +42,16 @@
   function cut(camera) {
     if (!planes) {
       const normal = (x) => new camera.position.constructor(x, 0, 0);
-      planes = { ref: { normal: normal(-1), constant: 0 }, mov: { normal: normal(1), constant: 0 } };
-      planes.cuts = { ref: [planes.ref], mov: [planes.mov] };
+      planes = { 1: { normal: normal(-1), constant: 0 }, 2: { normal: normal(1), constant: 0 } };
+      planes.cuts = { 1: [planes[1]], 2: [planes[2]] };
     }
     const mode = active();
     if (mode === "curtain") {
       const x = camera.position.x + (C.at - 0.5) * S.kit.canvas().clientWidth / metre(camera);
-      planes.ref.constant = x; planes.mov.constant = -x;
+      planes[1].constant = x; planes[2].constant = -x;
     } else {
-      planes.ref.constant = mode === "blink" && C.shown === 1 ? NONE : ALL;
-      planes.mov.constant = mode === "blink" && C.shown === 0 ? NONE : ALL;
+      planes[1].constant = mode === "blink" && C.shown === 1 ? NONE : ALL;
+      planes[2].constant = mode === "blink" && C.shown === 0 ? NONE : ALL;
     }
   }
   function before(renderer, scene, camera) {
@@ -143,7 +143,7 @@
     turns.hidden = mode !== "blink";
     below();
     for (const element of [curtain, turns]) {
-      element.style.setProperty("--c1", C.colours.ref || "#0072b2"); element.style.setProperty("--c2", C.colours.mov || "#009e73");
+      element.style.setProperty("--c1", C.colours.map1 || "#0072b2"); element.style.setProperty("--c2", C.colours.map2 || "#009e73");
     }
     const [one, two, pause] = turns.children;
     one.setAttribute("aria-pressed", C.shown === 0); two.setAttribute("aria-pressed", C.shown === 1);

@@ -2,8 +2,8 @@
 // saved replay (replay/player.js) draw with it alike. Text is drawn, never parsed as HTML.
 //
 // Whoever draws says in a view where a point of the scene is:
-//   project(frame, p)  css px of a point, [x, y]; metres of the scene, or of map 2's own frame
-//   mov                where map 2 lies in the scene: x, y, theta
+//   project(frame, p)  css px of a point, [x, y]; metres of the scene, or of a map's own frame: "map1", "map2" …
+//   maps               by number, where each map lies in the scene: x, y, theta
 //   metre              px per metre, seen from above
 //   wide, high         px
 //   dark               light ink on a dark ground
@@ -13,6 +13,19 @@ const mapmeldInk = (() => {
   const lerp = (a, b, u) => a + (b - a) * u;
   const smooth = (u) => u * u * (3 - 2 * u);
   const wrap = (a) => a - 2 * Math.PI * Math.round(a / (2 * Math.PI));
+
+  // --- poses: x, y, theta; metres, radians ------------------------------------------------------------
+  const STILL = { x: 0, y: 0, theta: 0 };
+  const poseOf = (maps, frame) => (frame && maps[frame.slice(3)]) || STILL; // where a frame lies in the scene
+  const turn = ([x, y], a) => [Math.cos(a) * x - Math.sin(a) * y, Math.sin(a) * x + Math.cos(a) * y];
+  function toScene(pose, point) { const [x, y] = turn(point, pose.theta); return [x + pose.x, y + pose.y]; }
+  const toFrame = (pose, [x, y]) => turn([x - pose.x, y - pose.y], -pose.theta); // a point of the scene in it
+  // A way from pose to pose that begins at a time, in to.ms; and where on it one is.
+  const way = (from, to, began) => ({ from: to.ms ? from : to, to, turn: to.ms ? wrap(to.theta - from.theta) : 0, began, ms: to.ms || 0 });
+  function along(w, time) {
+    const s = smooth(Math.min(1, (time - w.began) / Math.max(1, w.ms)));
+    return { x: lerp(w.from.x, w.to.x, s), y: lerp(w.from.y, w.to.y, s), theta: w.from.theta + w.turn * s };
+  }
 
   function words(g, view, text, x, y, colour, size, align) {
     g.font = `${size || 12}px system-ui, "Segoe UI", sans-serif`;
@@ -29,7 +42,7 @@ const mapmeldInk = (() => {
   };
   function mark(g, view, item) {
     let [x, y] = view.project(item.f, item.p);
-    const r = item.r || 8, turn = item.a === undefined ? 0 : item.a + (item.f === "mov" ? view.mov.theta : 0);
+    const r = item.r || 8, turn = item.a === undefined ? 0 : item.a + poseOf(view.maps, item.f).theta;
     if (item.arm) { // so many px off its point, the way it looks: a knob
       const end = [x + item.arm * Math.cos(turn), y - item.arm * Math.sin(turn)];
       g.beginPath(); g.moveTo(x, y); g.lineTo(...end); g.setLineDash([]); g.lineWidth = 1.5; g.strokeStyle = item.c; g.stroke();
@@ -82,6 +95,13 @@ const mapmeldInk = (() => {
     g.globalAlpha = 1;
     return u < 1;
   }
+  // Layers with some of them replaced; a cloud takes over from the one that was drawn before.
+  function replace(all, news, now) {
+    for (const [name, items] of Object.entries(news || {})) {
+      (items || []).forEach((item, i) => glide(item, (all[name] || [])[i], now));
+      if (items) all[name] = items; else delete all[name];
+    }
+  }
   // Take over from the cloud that was drawn before, if it is the same one at an earlier time.
   function glide(item, before, now) {
     if (item.k !== "cloud") return;
@@ -118,5 +138,15 @@ const mapmeldInk = (() => {
     words(g, view, "N", nx, y - 24, colour, 11, "center");
     return colour;
   }
-  return { lerp, smooth, wrap, words, glide, layers, scaleBar };
+  // The entries of the legend as elements; how they look is up to the page.
+  const legend = (entries, prefix, colour = (c) => c) => (entries || []).map((entry) => {
+    const chip = document.createElement("span"), swatch = document.createElement("i");
+    swatch.className = prefix + entry.s;
+    if (entry.s === "scale") {
+      swatch.style.background = `linear-gradient(90deg, ${entry.c.join(", ")})`;
+      chip.append(entry.low + " ", swatch, " " + entry.high + "  " + entry.t);
+    } else { swatch.style.setProperty("--c", colour(entry.c)); chip.append(swatch, entry.t); }
+    return chip;
+  });
+  return { STILL, lerp, wrap, poseOf, toScene, toFrame, way, along, words, replace, layers, scaleBar, legend };
 })();

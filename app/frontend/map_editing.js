@@ -44,10 +44,8 @@
   // by which of its own words on where map 2 lies the browser went.
   const REACH = 15, ARM = 34, EVERY = 66; // px to a sign, px from it to its knob, ms between two words
   let hold = null, said = 0, late = null;
-  const wrap = (a) => a - 2 * Math.PI * Math.round(a / (2 * Math.PI));
-  const turn = ([x, y], a) => [Math.cos(a) * x - Math.sin(a) * y, Math.sin(a) * x + Math.cos(a) * y];
-  const inMov = ([x, y]) => turn([x - S.mov.x, y - S.mov.y], -S.mov.theta);
-  const inFrame = (f, point) => (f === "mov" ? inMov(point) : point);
+  const { wrap, poseOf, toFrame } = mapmeldInk;
+  const inFrame = (f, point) => toFrame(poseOf(S.maps, f), point);
   const inside = (point, hull) => {
     let within = false;
     for (let i = 0, j = hull.length - 1; i < hull.length; j = i++) {
@@ -57,7 +55,7 @@
     return within;
   };
   function knobOf(grip, arm) { // where the heading of a sign is turned, px of the window
-    const at = S.pixel(grip.p, grip.f), a = grip.a + (grip.f === "mov" ? S.mov.theta : 0);
+    const at = S.pixel(grip.p, grip.f), a = grip.a + poseOf(S.maps, grip.f).theta;
     return [at[0] + arm * Math.cos(a), at[1] - arm * Math.sin(a)];
   }
   function under(x, y) { // what would be taken hold of at a place of the window
@@ -72,8 +70,8 @@
       if (body < reach) { best = { kind: "body", ...grip }; reach = body; }
     }
     if (best) return best;
-    if (h.mov && near(knobOf({ f: "mov", p: [0, 0], a: 0 }, h.mov.arm)) < REACH) return { kind: "turn" };
-    return h.mov && inside(inMov(S.ground(x, y)), h.mov.hull) ? { kind: "carry" } : null;
+    if (h.mov && near(knobOf({ f: "map2", p: [0, 0], a: 0 }, h.mov.arm)) < REACH) return { kind: "turn" };
+    return h.mov && inside(inFrame("map2", S.ground(x, y)), h.mov.hull) ? { kind: "carry" } : null;
   }
   const angleAt = (point, centre) => Math.atan2(point[1] - centre[1], point[0] - centre[0]);
   function sketch() { // the sign that is held, where it is held
@@ -89,7 +87,7 @@
     if (!last && now - said < EVERY) { late = setTimeout(() => report(false), EVERY - (now - said)); return; }
     said = now;
     if (hold.kind === "carry" || hold.kind === "turn") {
-      const at = { x: round(S.mov.x), y: round(S.mov.y), theta: round(wrap(S.mov.theta)) };
+      const { x, y, theta } = S.maps[2], at = { x: round(x), y: round(y), theta: round(wrap(theta)) };
       if (last) S.tell("put", { ...at, knew: S.placed }); else S.tell("carry", at);
     } else {
       const known = hold.a !== null && hold.a !== undefined && !(hold.vague && hold.kind === "body");
@@ -105,7 +103,7 @@
     stop(e);
     document.activeElement?.blur?.(); // keys belong to the map now
     const at = S.ground(e.clientX, e.clientY);
-    hold = { ...found, pointer: e.pointerId, from: at, mov: { ...S.mov }, moved: false, start: [e.clientX, e.clientY] };
+    hold = { ...found, pointer: e.pointerId, from: at, mov: S.maps[2], moved: false, start: [e.clientX, e.clientY] };
     if (hold.kind === "carry" && (e.shiftKey || e.altKey)) hold.kind = "turn";
     if (hold.kind === "place") { hold.p = inFrame(hold.f, at); hold.a = null; sketch(); }
     S.held = true;
@@ -161,7 +159,7 @@
     const step = STEPS[e.key], way = TURNS[e.key];
     if (!step && !way) return;
     stop(e);
-    const at = S.tween ? S.tween.to : S.mov; // on its way it is stepped from where it is going
+    const at = S.ways[2] ? S.ways[2].to : S.maps[2]; // on its way it is stepped from where it is going
     const cell = S.hand.mov.cell, length = e.shiftKey ? Math.min(0.01, cell) : cell, degrees = e.shiftKey ? 0.1 : 0.5;
     const by = { x: step ? step[0] * length : 0, y: step ? step[1] * length : 0, theta: way ? way * degrees * Math.PI / 180 : 0 };
     S.carry({ x: at.x + by.x, y: at.y + by.y, theta: at.theta + by.theta });

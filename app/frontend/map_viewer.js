@@ -8,11 +8,11 @@
   if (window.mapmeld) { window.mapmeld.reset(); return; }
   const viewer = () => window.__viserMutable;
   const FOV = 4 * Math.PI / 180; // far and narrow: as good as parallel
-  const { lerp, smooth, wrap, words, glide, layers, scaleBar } = mapmeldInk;
+  const { STILL, poseOf, toScene, toFrame, way, along, words, replace, layers, scaleBar, legend } = mapmeldInk;
 
   const blank = () => ({
     layers: {}, view: "map", follow: true, look: null, dark: false, hud: {}, dirty: true,
-    mov: { x: 0, y: 0, theta: 0 }, tween: null, placed: 0, applied: 0,
+    maps: { 1: STILL, 2: STILL }, ways: {}, placed: 0, applied: 0, // by number: where each map lies, and where it goes
   });
   const S = blank();
   let hooked = null, canvas = null, ink = null, hud = null, pointer = null, seen = "", painted = "";
@@ -81,27 +81,23 @@
   }
 
   // --- where things are -------------------------------------------------------------------------
-  function movNow(time) {
-    const t = S.tween;
-    if (!t) return S.mov;
-    const u = Math.min(1, (time - t.began) / Math.max(1, t.ms)), s = smooth(u);
-    S.mov = { x: lerp(t.from.x, t.to.x, s), y: lerp(t.from.y, t.to.y, s), theta: t.from.theta + t.turn * s };
-    if (u >= 1) S.tween = null;
-    S.dirty = true;
-    return S.mov;
+  function move(time) { // the maps that are on their way
+    for (const [number, way] of Object.entries(S.ways)) {
+      S.maps[number] = along(way, time);
+      if (time - way.began >= way.ms) delete S.ways[number];
+      S.moved = S.dirty = true;
+    }
   }
-  function placeMov() {
-    const node = viewer().nodeRefFromName["/world/mov"];
-    if (!node) return;
-    node.position.set(S.mov.x, S.mov.y, node.position.z);
-    node.quaternion.set(0, 0, Math.sin(S.mov.theta / 2), Math.cos(S.mov.theta / 2));
+  function placeMaps() {
+    for (const [number, { x, y, theta }] of Object.entries(S.maps)) {
+      const node = viewer().nodeRefFromName[`/world/map${number}`];
+      if (!node) continue;
+      node.position.set(x, y, node.position.z);
+      node.quaternion.set(0, 0, Math.sin(theta / 2), Math.cos(theta / 2));
+    }
   }
   function project(camera, frame, p) { // metres -> css px of the canvas
-    let x = p[0], y = p[1], z = p.length > 2 ? p[2] : 0;
-    if (frame === "mov") {
-      const c = Math.cos(S.mov.theta), s = Math.sin(S.mov.theta);
-      [x, y] = [c * x - s * y + S.mov.x, s * x + c * y + S.mov.y];
-    }
+    const [x, y] = toScene(poseOf(S.maps, frame), p), z = p.length > 2 ? p[2] : 0;
     const v = new camera.position.constructor(x, y, z).project(camera);
     return [(v.x + 1) / 2 * ink.clientWidth, (1 - v.y) / 2 * ink.clientHeight, v.z];
   }
@@ -110,7 +106,7 @@
   // --- ink: how it is drawn is in map_drawing.js ----------------------------------------------------------
   const viewOf = (camera) => ({
     project: (frame, p) => project(camera, frame, p),
-    mov: S.mov, metre: metre(camera), wide: ink.clientWidth, high: ink.clientHeight, dark: S.dark,
+    maps: S.maps, metre: metre(camera), wide: ink.clientWidth, high: ink.clientHeight, dark: S.dark,
   });
   const mapped = () => (S.hud.frames || []).some(Boolean); // an empty page has nothing to measure or to explain
   function readings(g, view, camera, colour) { // what a click and the pointer read off the map
@@ -118,11 +114,10 @@
     if (S.hud.readout) words(g, view, S.hud.readout, x, y - 62, colour, 12);
     if (pointer && S.hud.frames) {
       const at = [(pointer[0] - view.wide / 2) / view.metre + camera.position.x, (view.high / 2 - pointer[1]) / view.metre + camera.position.y];
-      const dx = at[0] - S.mov.x, dy = at[1] - S.mov.y, c = Math.cos(S.mov.theta), s = Math.sin(S.mov.theta);
-      const places = [at, [c * dx + s * dy, c * dy - s * dx]]; // the same place in both maps
+      const places = Object.values(S.maps).map((pose) => toFrame(pose, at)); // the same place in every map
       const within = (k) => S.hud.frames[k] && places[k][0] >= S.hud.frames[k][2] && places[k][1] >= S.hud.frames[k][3]
         && places[k][0] <= S.hud.frames[k][4] && places[k][1] <= S.hud.frames[k][5];
-      const k = !within(0) && within(1) ? 1 : 0, frame = S.hud.frames[k];
+      const k = Math.max(0, places.findIndex((_, n) => within(n))), frame = S.hud.frames[k];
       if (frame) words(g, view, `x ${(places[k][0] + frame[0]).toFixed(2)} m   y ${(places[k][1] + frame[1]).toFixed(2)} m   in map ${k + 1}`.replaceAll("-", "−"), x, y - 42, colour, 11);
     }
   }
@@ -137,7 +132,7 @@
     }
     const camera = m.cameraControl.camera; // the one that draws; viser's own "camera" is another
     clip(camera);
-    movNow(time);
+    move(time);
     each("frame", time);
     const frame = canvas.getBoundingClientRect(), size = [frame.width, frame.height].join();
     if (size !== seen) {
@@ -152,7 +147,7 @@
     harden(); // before a new picture is seen: never blurred, and neither built nor sent to the card twice
     if (!S.dirty && eye === painted) return;
     painted = eye; S.dirty = false;
-    if (S.tween || S.moved) { placeMov(); m.requestRender(); S.moved = !!S.tween; if (S.tween) S.dirty = true; }
+    if (S.moved) { placeMaps(); m.requestRender(); S.moved = S.dirty = Object.keys(S.ways).length > 0; }
     const g = ink.getContext("2d");
     g.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     g.clearRect(0, 0, ink.clientWidth, ink.clientHeight);
@@ -191,21 +186,10 @@
     bar.style.visibility = h.progress === null || h.progress === undefined ? "hidden" : "visible";
     bar.firstChild.style.width = `${100 * (h.progress || 0)}%`;
     const entries = (mapped() && h.legend) || [], key = JSON.stringify([entries, S.dark]);
-    const legend = hud.querySelector(".mm-legend");
-    if (legend.dataset.key === key) return;
-    legend.dataset.key = key;
-    legend.replaceChildren(...entries.map((entry) => {
-      const chip = document.createElement("span"), swatch = document.createElement("i");
-      swatch.className = "mm-" + entry.s;
-      if (entry.s === "scale") {
-        swatch.style.background = `linear-gradient(90deg, ${entry.c.join(", ")})`;
-        chip.append(entry.low + " ", swatch, " " + entry.high + "  " + entry.t);
-      } else {
-        swatch.style.setProperty("--c", entry.c);
-        chip.append(swatch, entry.t);
-      }
-      return chip;
-    }));
+    const shown = hud.querySelector(".mm-legend");
+    if (shown.dataset.key === key) return;
+    shown.dataset.key = key;
+    shown.replaceChildren(...legend(entries, "mm-"));
   }
   const style = document.createElement("style");
   style.textContent = `
@@ -287,21 +271,16 @@
     const box = canvas.getBoundingClientRect(), camera = hooked.camera, px = metre(camera);
     return [(x - box.left - box.width / 2) / px + camera.position.x, (box.height / 2 - y + box.top) / px + camera.position.y];
   };
-  S.carry = (mov) => { S.tween = null; S.mov = mov; S.moved = S.dirty = true; }; // put map 2 there, at once
+  S.carry = (pose) => { delete S.ways[2]; S.maps[2] = pose; S.moved = S.dirty = true; }; // put map 2 there, at once
   S.surface = () => canvas;
   S.apply = (message) => {
     const now = performance.now();
-    for (const [name, items] of Object.entries(message.layers || {})) {
-      const old = S.layers[name];
-      for (const [i, item] of (items || []).entries()) glide(item, old && old[i], now);
-      if (items) S.layers[name] = items; else delete S.layers[name];
-    }
-    if (message.mov && !S.held) { // what a person holds is where they hold it
-      const from = { ...movNow(now) }, to = message.mov;
-      S.tween = message.mov.ms ? { from, to, turn: wrap(to.theta - from.theta), began: now, ms: to.ms } : null;
-      if (!S.tween) S.mov = { x: to.x, y: to.y, theta: to.theta };
-      S.placed = to.number;
-      S.moved = true;
+    replace(S.layers, message.layers, now);
+    if (!S.held) for (const [number, to] of Object.entries(message.maps || {})) { // what a person holds is where they hold it
+      move(now);
+      S.ways[number] = way(S.maps[number], to, now);
+      S.placed = to.placed;
+      move(now);
     }
     if (message.dark !== undefined) S.dark = message.dark;
     if (message.hud) Object.assign(S.hud, message.hud);

@@ -17,9 +17,8 @@
     if (S.view !== "map" || !S.channel || !camera || !canvas) return;
     const px = metre(camera), { x, y } = camera.position;
     const w = canvas.clientWidth / 2 / px, h = canvas.clientHeight / 2 / px;
-    const box = [x - w, y - h, x + w, y + h], { x: mx, y: my, theta } = S.mov;
-    const c = Math.cos(theta), s = Math.sin(theta);
-    const inMov = [[box[0], box[1]], [box[2], box[3]]].flatMap(([u, v]) => [c * (u - mx) + s * (v - my), c * (v - my) - s * (u - mx)]);
+    const box = [x - w, y - h, x + w, y + h], { x: mx, y: my, theta } = S.maps[2];
+    const inMov = [[box[0], box[1]], [box[2], box[3]]].flatMap((corner) => mapmeldInk.toFrame(S.maps[2], corner));
     const now = [...box, ...inMov];
     if (!seen || now.some((value, k) => Math.abs(value - seen[k]) > 1 / px)) { seen = now; since = time; news = true; }
     if (!news || (time - since < STILL && time - told < EVERY)) return;

@@ -1,8 +1,11 @@
-"""The numbers behind the curves: aligned arrays for one x axis, no widgets."""
+"""The charts of a run as data: the curves, their axes and how each is drawn; no widgets."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from math import degrees
+from typing import Literal
 
 import numpy as np
 
@@ -14,18 +17,88 @@ from algorithms.spectra.hough_spectra import HoughMatch, ShiftMatch
 from app.model.objective_label import ObjectiveLabel
 
 Columns = tuple[FloatArray, ...]
-
-# title, and what the x axis is; {} stands for what is maximised
-HOUGH = ("Hough spectra, eq. (11)", "direction (°)")
-TURNS = ("Their correlation, eq. (12)", "turn Δθ (°), or that + 180°")
-SHIFT_X = ("Correlation, window shaded", "Δx (m)")
-SHIFT_Y = ("Correlation, window shaded", "Δy (m)")
-CLIMB = ("Best {} so far", "iteration")
-CIRCLE = ("Best {} at every turn", "turn Δθ (°)")
-PROOF = ("Best {} at every turn", "turn Δθ (°), the whole circle")
+Range = tuple[float, float]
 
 
-def _to_one(values: FloatArray) -> FloatArray:
+@dataclass(frozen=True)
+class Curve:
+    """One curve of a chart.
+
+    colour : a name of the palette
+    kind   : a band is an area without a line
+    size   : width of a line or diameter of a dot; pixels
+    """
+
+    name: str
+    colour: str
+    kind: Literal["line", "area", "band", "dash", "dots"] = "line"
+    size: float = 1.5
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """Curves over one axis; without columns it says how a chart of its kind looks.
+
+    axis       : label of the x axis
+    across, up : both axes; None: as far as the curves go
+    columns    : x, then a column per curve; NaN where there is nothing
+    """
+
+    title: str
+    axis: str
+    curves: tuple[Curve, ...]
+    across: Range | None = None
+    up: Range | None = None
+    columns: Columns = ()
+
+
+_MAPS = (Curve("map 1", "ref"), Curve("map 2", "mov"))
+_SHIFT = (Curve("window", "margin", "band"), Curve("C", "margin"), Curve("shift", "best", "dots", 9))
+HOUGH = Chart("Hough spectra, eq. (11)", "direction (°)", _MAPS, (0.0, 180.0), (0.0, 1.1))
+TURNS = Chart(
+    "Their correlation, eq. (12)",
+    "turn Δθ (°), or that + 180°",
+    (Curve("CC", "margin"), Curve("candidates", "particle", "dots", 8), Curve("at hand", "best", "dots", 10)),
+    (0.0, 180.0),
+    (0.0, 1.1),
+)
+CIRCLE = Chart(
+    "Best agreement at every turn",
+    "turn Δθ (°)",
+    (Curve("agreement", "margin"), Curve("best", "best", "dots", 10)),
+    (-180.0, 180.0),
+)
+X_SPECTRA = Chart("X spectra, eq. (13); map 2 turned and shifted", "x (m)", _MAPS, up=(0.0, 1.1))
+Y_SPECTRA = Chart("Y spectra, eq. (14); map 2 turned and shifted", "y (m)", _MAPS, up=(0.0, 1.1))
+SHIFT_X = Chart("Correlation, window shaded", "Δx (m)", _SHIFT, up=(0.0, 1.1))
+SHIFT_Y = replace(SHIFT_X, axis="Δy (m)")
+CLIMB = Chart(
+    "Best value so far",
+    "iteration",
+    (
+        Curve("1", "best", size=2.2),
+        Curve("2", "particle", size=1.3),
+        Curve("3", "ref", size=1.3),
+        Curve("4", "margin", size=1.3),
+    ),
+)
+PROOF = Chart(
+    "Best value at every turn",
+    "turn Δθ (°), the whole circle",
+    (
+        Curve("ceiling", "margin", "area"),
+        Curve("best met", "particle", "area", 1),
+        Curve("floor", "rival", "dash", 1),
+        Curve("optimum", "answer", "dots", 11),
+        Curve("rivals", "rival", "dots", 9),
+    ),
+    (-180.0, 180.0),
+    (0.0, 1.1),
+)
+
+
+def to_one(values: FloatArray) -> FloatArray:
+    """The values with 1 as the highest."""
     top = float(values.max(initial=0.0))
     return np.asarray(values / top if top > 0 else values, dtype=np.float64)
 
@@ -38,13 +111,16 @@ def _marked(x: FloatArray, at: FloatArray, height: FloatArray) -> FloatArray:
     return marks
 
 
-def hough_spectra(match: HoughMatch) -> Columns:
+def hough_spectra(match: HoughMatch) -> Chart:
     """Direction in degrees, spectrum of map 1, of map 2; highest value 1."""
-    return np.degrees(match.angles), _to_one(match.ref), _to_one(match.mov)
+    return replace(HOUGH, columns=(np.degrees(match.angles), to_one(match.ref), to_one(match.mov)))
 
 
-def turn_correlation(match: HoughMatch, chosen: float | None) -> Columns:
-    """Turn in degrees, correlation, candidates, and the chosen one (radians, any twin)."""
+def turn_correlation(match: HoughMatch, chosen: float | None) -> Chart:
+    """Turn in degrees, correlation, candidates, and the chosen one (radians, any twin).
+
+    Every direction has some lines: drawn from zero the peaks would be ripples.
+    """
     x = np.degrees(match.angles)
     turns = np.mod(np.degrees(np.array(match.turns)), 180.0)
     marks = _marked(x, turns, np.array(match.strengths))
@@ -52,50 +128,41 @@ def turn_correlation(match: HoughMatch, chosen: float | None) -> Columns:
     if chosen is not None and len(x):
         k = int(np.abs(np.mod(x - degrees(chosen) + 90, 180) - 90).argmin())
         best[k] = match.correlation[k]
-    return x, match.correlation, marks, best
+    low = float(match.correlation.min())
+    up = (low - 0.05 * (1 - low), 1 + 0.1 * (1 - low)) if low < 0.99 else (0.0, 1.1)
+    return replace(TURNS, up=up, columns=(x, match.correlation, marks, best))
 
 
-def circle(detail: TurnsDetail) -> Columns:
+def circle(detail: TurnsDetail, measure: str = "agreement") -> Chart:
     """Turn in degrees, how well the maps agree, and the best turn; turns that are not tried yet lie where
-    the worst of the others does.
+    the worst of the others does. The y axis goes from the worst to the best, and a little more.
     """
-    x, y = np.degrees(detail.turns), np.asarray(detail.scores, dtype=np.float64)
-    y = np.where(np.isfinite(y), y, float(y[np.isfinite(y)].min(initial=np.inf)))
-    y = np.where(np.isfinite(y), y, 0.0)
+    x, scores = np.degrees(detail.turns), np.asarray(detail.scores, dtype=np.float64)
+    tried = scores[np.isfinite(scores)]
+    low, high = (float(tried.min()), float(tried.max())) if len(tried) else (0.0, 1.0)
+    y = np.where(np.isfinite(scores), scores, low)
     best = np.full(len(x), np.nan)
     turn = detail.turns[y.argmax()] if detail.best is None else detail.best
     k = int(np.abs(np.mod(x - degrees(turn) + 180, 360) - 180).argmin())
     best[k] = y[k]
-    return x, y, best
-
-
-def circle_range(detail: TurnsDetail) -> tuple[float, float]:
-    """Axis of the agreement: from the worst of the turns to the best, and a little more."""
-    y = detail.scores[np.isfinite(detail.scores)]
-    low, high = (float(y.min()), float(y.max())) if len(y) else (0.0, 1.0)
     room = 0.08 * max(high - low, 1e-3)
-    return low - room, high + room
+    title = f"Best {measure} at every turn"
+    return replace(CIRCLE, title=title, up=(low - room, high + room), columns=(x, y, best))
 
 
-def turn_range(match: HoughMatch) -> tuple[float, float]:
-    """Axis of the correlation: every direction has some lines, drawn from zero the peaks would be ripples."""
-    low = float(match.correlation.min())
-    return (low - 0.05 * (1 - low), 1 + 0.1 * (1 - low)) if low < 0.99 else (0.0, 1.1)
-
-
-def shift_spectra(match: ShiftMatch) -> Columns:
+def shift_spectra(match: ShiftMatch, form: Chart = X_SPECTRA) -> Chart:
     """Position in metres, spectrum of map 1, of map 2 turned and shifted by the best shift."""
     step = float(match.ref_at[1] - match.ref_at[0]) if len(match.ref_at) > 1 else 1.0
     moved = np.round((match.mov_at + match.shift) / step).astype(int)
     fixed = np.round(match.ref_at / step).astype(int)
     first, last = min(fixed[0], moved[0]), max(fixed[-1], moved[-1])
     columns = np.zeros((2, last - first + 1))
-    columns[0, fixed - first] = _to_one(match.ref)
-    columns[1, moved - first] = _to_one(match.mov)
-    return np.arange(first, last + 1) * step, columns[0], columns[1]
+    columns[0, fixed - first] = to_one(match.ref)
+    columns[1, moved - first] = to_one(match.mov)
+    return replace(form, columns=(np.arange(first, last + 1) * step, columns[0], columns[1]))
 
 
-def shift_correlation(match: ShiftMatch) -> Columns:
+def shift_correlation(match: ShiftMatch, form: Chart = SHIFT_X) -> Chart:
     """Shift in metres, the allowed window as a bar of height 1.05, correlation, the chosen shift.
 
     The axis reaches over the window and some metres beyond, so that both its edges are seen.
@@ -114,38 +181,36 @@ def shift_correlation(match: ShiftMatch) -> Columns:
     x, y = x[order], y[order]
     window = np.where((x >= match.low) & (x <= match.high), 1.05, 0.0)
     top = float(np.interp(match.shift, shifts, correlation))
-    return x, window, y, _marked(x, np.array([match.shift]), np.array([top]))
+    return replace(form, columns=(x, window, y, _marked(x, np.array([match.shift]), np.array([top]))))
 
 
-def courses(told: list[list[float]], lines: int) -> Columns:
+def climb(courses: Sequence[Sequence[float]], measure: ObjectiveLabel) -> Chart:
     """Iteration, then best value so far for each refined candidate; one that has ended stays where it was,
     one that has not begun, or has met nothing in the window yet, lies on the axis (NaN would keep the
     chart from finding its own scale).
     """
-    longest = max(2, max((len(course) for course in told), default=0))
-    table = np.zeros((lines, longest))
-    for row, course in zip(table, told, strict=False):
+    longest = max([2, *map(len, courses)])
+    table = np.zeros((len(CLIMB.curves), longest))
+    for row, course in zip(table, courses, strict=False):
         if course:
             row[: len(course)], row[len(course) :] = course, course[-1]
     table[~np.isfinite(table)] = 0.0
-    return (np.arange(1, longest + 1, dtype=float), *table)
+    x = np.arange(1, longest + 1, dtype=float)
+    return replace(CLIMB, title=f"Best {measure.row} so far", columns=(x, *table))
 
 
-def proof_range(state: ProofState, ceiling: float) -> tuple[float, float]:
-    """Lower and upper end of the axis on which a proof is drawn.
-
-    ceiling : the bound that it began with, so that the axis stands still while the bounds come down
-    """
-    top = max(value if np.isfinite(value) else 0.0 for value in (ceiling, state.ceiling, state.best_value))
-    return 0.0, 1.06 * top if top > 0 else 1.0
-
-
-def proof(state: ProofState, top: float) -> Columns:
+def proof(state: ProofState, ceiling: float, measure: ObjectiveLabel) -> Chart:
     """Turn in degrees over the whole circle, the ceiling of each sector as a stair, the best value met in
     it, the floor under which no rival is looked for, the optimum, the rivals.
 
-    What lies outside of 0 … top, −inf included, is drawn on that border.
+    What lies outside of the y axis, −inf included, is drawn on its border.
+
+    ceiling : the bound that it began with, so that the axis stands still while the bounds come down
     """
+    highest = max(
+        value if np.isfinite(value) else 0.0 for value in (ceiling, state.ceiling, state.best_value)
+    )
+    top = 1.06 * highest if highest > 0 else 1.0
     turns = np.degrees(state.turns)
     order = np.argsort(turns)
     width = 360.0 / max(1, len(turns))
@@ -169,11 +234,9 @@ def proof(state: ProofState, top: float) -> Columns:
         marks[0 if k == 0 else 1, len(x) - len(at) + k] = value
     order = np.argsort(x, kind="stable")
     columns = [state.ceilings[sector], state.found[sector], np.full(len(x), state.floor), *marks]
-    return (x[order], *(np.clip(_bounded(column, top)[order], 0.0, top) for column in columns))
-
-
-def _bounded(values: FloatArray, top: float) -> FloatArray:
-    return np.nan_to_num(values, nan=np.nan, posinf=top, neginf=0.0)
+    clipped = (np.clip(column[order], 0.0, top) for column in columns)
+    title = f"Best {measure.row} at every turn"
+    return replace(PROOF, title=title, up=(0.0, top), columns=(x[order], *clipped))
 
 
 def proof_rows(result: ProofState, measure: ObjectiveLabel) -> list[tuple[str, ...]]:

@@ -32,7 +32,6 @@ class ObjectiveLabel:
         return (f"{value:.1f}" if self.unit else f"{value:.4g}").replace("-", "−")
 
     def text(self, value: float) -> str:
-        """The value with its unit."""
         number = self.number(value)
         return f"{number} {self.unit}" if self.unit and number != "–" else number
 

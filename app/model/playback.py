@@ -5,43 +5,14 @@ from __future__ import annotations
 from math import exp
 from threading import Condition
 
-from algorithms.maps.map_fusion import Fusion
-from algorithms.methods.steps import (
-    AnswersDetail,
-    AugmentDetail,
-    CandidatesDetail,
-    HoughDetail,
-    MatchesDetail,
-    ObservationDetail,
-    ProofDetail,
-    ProvenDetail,
-    RefineDetail,
-    ShiftDetail,
-    Step,
-    TurnsDetail,
-    WeighedDetail,
-    WindowDetail,
-)
+from algorithms.methods.steps import ProofDetail, RefineDetail, Step
+from app.model.step_table import row_of
 
 FRAME = 1 / 15  # seconds between two pictures; a browser without a graphics card follows just so
 
-# name of the speed -> how many times the dwell below a step stays; 0: as fast as it is computed
+# name of the speed -> how many times as long a step stays; 0: as fast as it is computed
 PACES = {"Slow": 2.5, "Normal": 1.0, "Fast": 0.35, "Instant": 0.0}
 
-DWELL: dict[type, float] = {
-    ObservationDetail: 0.5,
-    AugmentDetail: 1.2,
-    HoughDetail: 1.2,
-    WindowDetail: 0.4,
-    ShiftDetail: 0.42,
-    CandidatesDetail: 0.6,
-    MatchesDetail: 1.4,
-    TurnsDetail: 0.15,
-    AnswersDetail: 0.4,
-    ProvenDetail: 0.9,
-    WeighedDetail: 0.6,
-    Fusion: 0.9,
-}
 FIRST_SWARM = 0.03  # per iteration of the best candidate's swarm
 FIRST_MOVES = 0.17  # more than that on its first iterations, where most of it happens
 CALM_AFTER = 5.0  # iterations in which that extra time falls to a third
@@ -64,7 +35,7 @@ def dwell(step: Step, pace: float, again: bool) -> float:
         return pace * (FIRST_SWARM + FIRST_MOVES * exp(-step.detail.state.iteration / CALM_AFTER))
     if isinstance(step.detail, ProofDetail):
         return pace * PROOF / (1 + step.detail.state.nodes / PROOF_CALM)
-    return pace * DWELL.get(type(step.detail), 0.0)
+    return pace * row_of(step.detail).stay
 
 
 class InterruptibleWait:
@@ -86,7 +57,6 @@ class InterruptibleWait:
                 self._condition.wait_for(lambda: self._cuts != mark, seconds)
 
     def cut(self) -> None:
-        """End every wait."""
         with self._condition:
             self._cuts += 1
             self._condition.notify_all()

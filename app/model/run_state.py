@@ -10,6 +10,7 @@ from algorithms.common.pose import Pose2
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import (
     AnswersDetail,
+    CandidatesDetail,
     Detail,
     ProofDetail,
     ProvenDetail,
@@ -18,6 +19,7 @@ from algorithms.methods.steps import (
     Step,
     WeighedDetail,
 )
+from algorithms.spectra.candidates import Candidate
 from app.model.objective_label import ObjectiveLabel, measure_of
 
 D = TypeVar("D")
@@ -68,8 +70,13 @@ class RunState:
         return kind in self._newest
 
     @property
+    def at_hand(self) -> Candidate | None:
+        """The candidate to look at: the one that is tried; after the search the best one."""
+        found = self.get(CandidatesDetail)
+        return found.candidates[0] if found else self.shifts[-1].candidate if self.shifts else None
+
+    @property
     def measure(self) -> ObjectiveLabel:
-        """What is maximised."""
         return measure_of(self.config)
 
     @property
@@ -90,14 +97,13 @@ class RunState:
     @property
     def answer(self) -> Pose2 | None:
         """The best transform as far as the run has come; None before the search is done."""
-        answers, proof = self.get(AnswersDetail), self.get(ProofDetail)
-        result, proven, weighed = self.get(MergeResult), self.get(ProvenDetail), self.get(WeighedDetail)
-        if result is not None:
+        if (result := self.get(MergeResult)) is not None:
             return result.T_ref_mov
-        if weighed is not None:
+        if (weighed := self.get(WeighedDetail)) is not None:
             return weighed.answers[0].T_ref_mov
-        if proven is not None:
+        if (proven := self.get(ProvenDetail)) is not None:
             return proven.peak.T_ref_mov
-        if proof is not None and proof.state.best is not None:
+        if (proof := self.get(ProofDetail)) is not None and proof.state.best is not None:
             return Pose2.from_array(proof.state.best)
+        answers = self.get(AnswersDetail)
         return answers.answers[0].T_ref_mov if answers is not None else None

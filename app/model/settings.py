@@ -127,7 +127,6 @@ def _word(option: str) -> str:
 
 
 def value_at(config: Any, path: Path) -> Any:
-    """The value of a field."""
     for name in path:
         config = getattr(config, name)
     return config
@@ -141,7 +140,6 @@ def with_value(config: Any, path: Path, value: Any) -> Any:
 
 
 def word_for(setting: Setting, value: Any) -> str:
-    """The word that a choice is shown as."""
     assert setting.choices is not None
     return next(word for word, option in setting.choices.items() if option == value)
 

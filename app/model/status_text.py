@@ -3,53 +3,23 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from math import degrees, isfinite
+from typing import Any
 
 import numpy as np
 
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.maps.map_fusion import Fusion
+from algorithms.methods import steps
 from algorithms.methods.merge_result import MergeResult
-from algorithms.methods.steps import (
-    AnswersDetail,
-    AugmentDetail,
-    CandidatesDetail,
-    HoughDetail,
-    MatchesDetail,
-    ObservationDetail,
-    ProofDetail,
-    ProvenDetail,
-    RefineDetail,
-    ShiftDetail,
-    TriedDetail,
-    TurnsDetail,
-    WeighedDetail,
-    WindowDetail,
-)
+from algorithms.methods.steps import AnswersDetail, ObservationDetail, ProvenDetail
 from algorithms.optimisation.branch_and_bound import ProofState
 from app.model.objective_label import ObjectiveLabel
 from app.model.run_state import RunState
+from app.model.step_table import row_of
 from app.model.verdict_text import fits_nowhere
 
-# Share of the work done when a stage begins; refining and proving take what lies before the next.
-_SHARE: dict[type, float] = {
-    ObservationDetail: 0.02,
-    AugmentDetail: 0.06,
-    HoughDetail: 0.14,
-    WindowDetail: 0.2,
-    ShiftDetail: 0.2,
-    CandidatesDetail: 0.4,
-    RefineDetail: 0.4,
-    MatchesDetail: 0.4,
-    TurnsDetail: 0.1,
-    AnswersDetail: 0.8,
-    ProofDetail: 0.8,
-    ProvenDetail: 0.95,
-    WeighedDetail: 0.97,
-    Fusion: 0.98,
-    TriedDetail: 0.99,
-    MergeResult: 1.0,
-}
 _MANY_BLOCKS = 20_000  # a proof has seldom more; nobody knows before its end how many there will be
 
 READY = "Ready. Press Merge."
@@ -71,50 +41,32 @@ def typeset(text: str) -> str:
 
 def sentence(story: RunState) -> str:
     """What a run is doing right now."""
-    detail, measure = story.last.detail if story.last else None, story.measure
-    if isinstance(detail, ObservationDetail):
-        times = len(detail.encounters)
-        if times > 1:
-            return f"Robot 1 saw robot 2 at {times} places: they are in both maps."
-        return "Robot 1 saw robot 2: this place is in both maps."
-    if isinstance(detail, AugmentDetail):
-        return "Augmenting: walls near the meeting place are lifted."
-    if isinstance(detail, HoughDetail):
-        return f"Turning: {len(detail.match.turns)} turns where the Hough spectra coincide."
-    if isinstance(detail, WindowDetail):
-        return "Shifting: the observation leaves this window."
-    if isinstance(detail, ShiftDetail):
-        turn = f"{degrees(detail.candidate.T_ref_mov.theta):.1f}".replace("-", "−")
-        return f"Shifting candidate {detail.index + 1} of {detail.total}: map 2 turned by {turn}°."
-    if isinstance(detail, CandidatesDetail):
-        return f"{len(detail.candidates)} candidates, ranked by {measure.name}."
-    if isinstance(detail, RefineDetail):
-        state = detail.state
-        where = f"candidate {detail.index + 1} of {detail.total}, iteration {state.iteration + 1}"
-        value = f"{measure.name} {measure.text(state.best_value)}"
-        return f"Searching: {where}, {value if isfinite(state.best_value) else 'outside the window'}."
-    if isinstance(detail, MatchesDetail):
-        return _matching(detail)
-    if isinstance(detail, TurnsDetail):
-        return _turning(detail)
-    if isinstance(detail, AnswersDetail):
-        return f"The search is done: {detail.answers[0].stopped}."
-    if isinstance(detail, ProofDetail):
-        return _proving(detail.state, measure)
-    if isinstance(detail, ProvenDetail):
-        return found_it(story)
-    if isinstance(detail, WeighedDetail):
-        return _weighing(detail)
-    if isinstance(detail, Fusion):
-        return "Merging the cells: what agrees, what contradicts."
-    if isinstance(detail, TriedDetail):
-        return f"Refused. Why? {detail.index + 1} of {detail.total}: {detail.clause}?"
-    if isinstance(detail, MergeResult):
-        return typeset(detail.verdict.reason)
-    return "Starting."
+    detail = story.last.detail if story.last else None
+    says = _SAYS.get(type(detail))
+    return says(detail, story) if says else "Starting."
 
 
-def _matching(detail: MatchesDetail) -> str:
+def _observing(detail: steps.ObservationDetail, _: RunState) -> str:
+    times = len(detail.encounters)
+    if times > 1:
+        return f"Robot 1 saw robot 2 at {times} places: they are in both maps."
+    return "Robot 1 saw robot 2: this place is in both maps."
+
+
+def _searching(detail: steps.RefineDetail, story: RunState) -> str:
+    state, measure = detail.state, story.measure
+    where = f"candidate {detail.index + 1} of {detail.total}, iteration {state.iteration + 1}"
+    value = f"{measure.name} {measure.text(state.best_value)}"
+    return f"Searching: {where}, {value if isfinite(state.best_value) else 'outside the window'}."
+
+
+def _shifting(detail: steps.ShiftDetail, _: RunState) -> str:
+    turn = degrees(detail.candidate.T_ref_mov.theta)
+    of = f"{detail.index + 1} of {detail.total}"
+    return typeset(f"Shifting candidate {of}: map 2 turned by {turn:.1f}°.")
+
+
+def _matching(detail: steps.MatchesDetail, _: RunState) -> str:
     agreeing, all_of_them = int(detail.inliers.sum()), len(detail.ref)
     if agreeing:
         return f"{agreeing} of {all_of_them} matched features agree on one transform."
@@ -122,14 +74,14 @@ def _matching(detail: MatchesDetail) -> str:
     return f"{found}: {all_of_them} look alike."
 
 
-def _turning(detail: TurnsDetail) -> str:
+def _turning(detail: steps.TurnsDetail, _: RunState) -> str:
     tried = int(np.isfinite(detail.scores).sum())
     if detail.best is not None:
         return typeset(f"Best of {tried} turns: map 2 turned by {degrees(detail.best):.1f}°.")
     return f"Turning: {tried} of {len(detail.turns)} turns tried."
 
 
-def _weighing(detail: WeighedDetail) -> str:
+def _weighing(detail: steps.WeighedDetail, _: RunState) -> str:
     best, places = detail.answers[0], len(detail.answers)
     named = (
         "The whole maps speak for this place" if places == 1 else f"Of {places} places one is the likeliest"
@@ -140,7 +92,8 @@ def _weighing(detail: WeighedDetail) -> str:
     return f"{named}, {off} from where the search had ended."
 
 
-def _proving(state: ProofState, measure: ObjectiveLabel) -> str:
+def _proving(detail: steps.ProofDetail, story: RunState) -> str:
+    state, measure = detail.state, story.measure
     blocks = f"{state.nodes:,} blocks bounded"
     if state.empty:
         return f"Proving: {blocks}, none of them agrees with every sighting."
@@ -201,16 +154,42 @@ def apart_by(distance: float, turn: float) -> str:
     return f"{distance:.1f} m and {degrees(turn):.0f}°"
 
 
+_SAYS: dict[type, Callable[[Any, RunState], str]] = {
+    steps.ObservationDetail: _observing,
+    steps.AugmentDetail: lambda _, __: "Augmenting: walls near the meeting place are lifted.",
+    steps.HoughDetail: lambda detail, _: (
+        f"Turning: {len(detail.match.turns)} turns where the Hough spectra coincide."
+    ),
+    steps.WindowDetail: lambda _, __: "Shifting: the observation leaves this window.",
+    steps.ShiftDetail: _shifting,
+    steps.CandidatesDetail: lambda detail, story: (
+        f"{len(detail.candidates)} candidates, ranked by {story.measure.name}."
+    ),
+    steps.RefineDetail: _searching,
+    steps.MatchesDetail: _matching,
+    steps.TurnsDetail: _turning,
+    steps.AnswersDetail: lambda detail, _: f"The search is done: {detail.answers[0].stopped}.",
+    steps.ProofDetail: _proving,
+    steps.ProvenDetail: lambda _, story: found_it(story),
+    steps.WeighedDetail: _weighing,
+    Fusion: lambda _, __: "Merging the cells: what agrees, what contradicts.",
+    steps.TriedDetail: lambda detail, _: (
+        f"Refused. Why? {detail.index + 1} of {detail.total}: {detail.clause}?"
+    ),
+    MergeResult: lambda detail, _: typeset(detail.verdict.reason),
+}
+
+
 def progress(story: RunState) -> float:
     """Share of the run that is done, 0 … 1."""
     detail = story.last.detail if story.last else None
-    share = _SHARE.get(type(detail), 0.0)
-    if isinstance(detail, ShiftDetail):
+    share = row_of(detail).share
+    if isinstance(detail, steps.ShiftDetail):
         share += 0.2 * (detail.index + 1) / max(1, detail.total)
-    if isinstance(detail, RefineDetail):
+    if isinstance(detail, steps.RefineDetail):
         share += 0.4 * detail.index / max(1, detail.total)
-    if isinstance(detail, TurnsDetail):
+    if isinstance(detail, steps.TurnsDetail):
         share += 0.7 * float(np.isfinite(detail.scores).mean())
-    if isinstance(detail, ProofDetail):
+    if isinstance(detail, steps.ProofDetail):
         share += 0.15 * detail.state.nodes / (detail.state.nodes + _MANY_BLOCKS)
     return share

@@ -26,7 +26,7 @@ from app.page.page_state import PageState
 from app.page.panel_set import Panels
 from app.page.panels.html_widgets import box
 from app.page.panels.result_panel import result_html
-from app.report.export import ResultFiles
+from app.report.result_files import ResultFiles
 
 LARGE = 2_000_000  # cells of a map that takes a while to draw
 

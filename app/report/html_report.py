@@ -20,7 +20,7 @@ from app.model import verdict_text
 from app.model.contradiction_text import MOST_PLACES, signed, summary, whose
 from app.model.merge_inputs import MergeInputs
 from app.model.objective_label import measure_of
-from app.model.settings import Setting, settings_of, value_at, word_for
+from app.model.settings import Setting, settings_of, text_for, value_at
 from app.model.status_text import typeset
 from app.report import report_figures as outcome
 from app.report.result_rows import STAGES, numbers
@@ -109,28 +109,21 @@ def _bare(reason: str) -> str:
 
 
 def _pictures(result: MergeResult, inputs: MergeInputs, found: Contradictions, check: Check) -> str:
-    figures = []
     check(0.3)
+    figures = []
     if inputs.ref is not None and inputs.mov is not None:
         drawn = outcome.sources(inputs.ref, inputs.mov, inputs.observations, result.encounters)
-        figures.append(
-            _figure(drawn, "The maps as they came, each in its own frame, and what robot 1 saw of robot 2.")
-        )
+        said = "The maps as they came, each in its own frame, and what robot 1 saw of robot 2."
+        figures.append(_figure(drawn, said))
     check(0.45)
-    figures.append(
-        _figure(
-            outcome.overlay(result, inputs.observations),
-            "Map 2 on map 1 under the transform. A contradiction is a wall of one map on the other's free "
-            "floor; a cell's breadth of it along a wall means nothing.",
-        )
+    said = (
+        "Map 2 on map 1 under the transform. A contradiction is a wall of one map on the other's free floor; "
+        "a cell's breadth of it along a wall means nothing."
     )
+    figures.append(_figure(outcome.overlay(result, inputs.observations), said))
     check(0.65)
-    figures.append(
-        _figure(
-            outcome.difference(result, found),
-            "Only what contradicts by more than the breadth of a wall. The numbers are those of the table.",
-        )
-    )
+    said = "Only what contradicts by more than the breadth of a wall. The numbers are those of the table."
+    figures.append(_figure(outcome.difference(result, found), said))
     check(0.85)
     return _section("Pictures", *figures)
 
@@ -213,14 +206,9 @@ def _settings(result: MergeResult, config: Any, report: Mapping[str, Any]) -> li
 
 
 def _setting(setting: Setting, standard: Any) -> Row:
-    def shown(value: Any) -> str:
-        if setting.choices is not None:
-            return word_for(setting, value)
-        return ("yes" if value else "no") if isinstance(value, bool) else f"{value:g}"
-
     usual = value_at(standard, setting.path)
-    changed = "" if usual == setting.default else f" (usually {shown(usual)})"
-    return setting.label, f"{shown(setting.default)}{changed}"
+    shown, instead = (text_for(setting, value, "yes", "no") for value in (setting.default, usual))
+    return setting.label, shown if usual == setting.default else f"{shown} (usually {instead})"
 
 
 def _use(result: MergeResult) -> list[str]:

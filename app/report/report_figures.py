@@ -8,19 +8,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from algorithms.common.pose import FloatArray
-from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap, where
+from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
 from algorithms.observations.observation import Encounter, Observation
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.verdict.contradictions import Contradictions
-from app.drawing.palette import LIGHT, Rgb, css
+from app.drawing.grid_pixels import is_free, wall_masks
+from app.drawing.palette import LIGHT, Rgb
 from app.drawing.scene_layout import Rect, known_corners, rect_of
+from app.drawing.svg.chart_plot import draw_chart
 from app.drawing.svg.map_plot import robot, scale_bar, scene
-from app.drawing.svg.map_raster import Pixels, RasterView, draw_map
+from app.drawing.svg.map_raster import RasterView, cells_seen, draw_map, under
 from app.drawing.svg.svg_canvas import SvgCanvas, SvgPlot, ticks
 from app.model import chart_data as charts
 from app.model.contradiction_text import MOST_PLACES
@@ -75,17 +76,10 @@ def sources(ref: GridMap, mov: GridMap, seen: Sequence[Observation], met: Sequen
 def overlay(result: MergeResult, seen: Sequence[Observation]) -> str:
     """Both maps under the transform: whose wall it is, where they agree, where they contradict."""
     fusion = result.fusion
-    plot, raster = _merged_plot(fusion)
-    ref_wall, mov_wall = fusion.ref_cells >= OCCUPIED_FROM, fusion.mov_cells >= OCCUPIED_FROM
-    against = (ref_wall & _free(fusion.mov_cells)) | (mov_wall & _free(fusion.ref_cells))
-    for mask, colour in (
-        (ref_wall, LIGHT.ref),
-        (mov_wall, LIGHT.mov),
-        (ref_wall & mov_wall, LIGHT.agreed),
-        (against, LIGHT.conflict),
-    ):
-        raster.paint(mask, colour)
-    plot.image(raster.pixels)
+    cells = fusion.ref_cells, fusion.mov_cells
+    walls = cells[0] >= OCCUPIED_FROM, cells[1] >= OCCUPIED_FROM
+    free = is_free(cells[0]), is_free(cells[1])
+    plot = _merged_plot(fusion, *wall_masks(walls, free, LIGHT))
     o, at = seen[0], result.encounters[0]
     robot(plot, o.observer.xy, o.observer.theta, LIGHT.ref)
     there = result.T_ref_mov.apply(at.x_mov)
@@ -100,11 +94,8 @@ def overlay(result: MergeResult, seen: Sequence[Observation]) -> str:
 def difference(result: MergeResult, found: Contradictions) -> str:
     """Walls that the other map denies, in the colour of their map, and the numbered places they make."""
     fusion = result.fusion
-    plot, raster = _merged_plot(fusion)
-    raster.paint((fusion.ref_cells >= OCCUPIED_FROM) | (fusion.mov_cells >= OCCUPIED_FROM), FAINT)
-    raster.paint(found.ref_only, LIGHT.ref)
-    raster.paint(found.mov_only, LIGHT.mov)
-    plot.image(raster.pixels)
+    walls = np.maximum(fusion.ref_cells, fusion.mov_cells) >= OCCUPIED_FROM
+    plot = _merged_plot(fusion, (walls, FAINT), (found.ref_only, LIGHT.ref), (found.mov_only, LIGHT.mov))
     px = plot.wide / (plot.across[1] - plot.across[0])
     listed = list(enumerate(found.places[:MOST_PLACES], 1))
     for n, place in reversed(listed):  # the largest on top
@@ -125,19 +116,13 @@ def difference(result: MergeResult, found: Contradictions) -> str:
 def proof(state: ProofState, measure: ObjectiveLabel) -> str:
     """What is known of every turn of the circle: no transform at that turn is better than its ceiling."""
     finite = state.ceilings[np.isfinite(state.ceilings)]
-    low, high = charts.proof_range(state, float(finite.max()) if len(finite) else 0.0)
-    x, ceiling, met, floor, best, rivals = charts.proof(state, high)
+    chart = charts.proof(state, float(finite.max()) if len(finite) else 0.0, measure)
+    assert chart.up is not None
     sheet = SvgCanvas(252, FULL)
-    plot = SvgPlot(sheet, 50, 8, FULL - 66, 180, (-180.0, 180.0), (low, high))
-    plot.curve(x, ceiling, css(LIGHT.margin), 1.5, fill=True)
-    plot.curve(x, met, css(LIGHT.particle), 1, fill=True)
-    plot.curve(x, floor, css(LIGHT.rival), 1.2, dash="3 4")
-    for n in np.flatnonzero(np.isfinite(rivals)):
-        sheet.dot(*plot.one(float(x[n]), float(rivals[n])), 4.5, LIGHT.rival, "#fff", width=1)
-    for n in np.flatnonzero(np.isfinite(best)):
-        sheet.star(*plot.one(float(x[n]), float(best[n])), 8, LIGHT.answer, LIGHT.rim)
+    plot = SvgPlot(sheet, 50, 8, FULL - 66, 180, (-180.0, 180.0), chart.up)
+    draw_chart(plot, chart, LIGHT)
     plot.axes(
-        "turn of map 2 (°), the whole circle", measure.row, (-180, -90, 0, 90, 180), ticks(low, high, 4)
+        "turn of map 2 (°), the whole circle", measure.row, (-180, -90, 0, 90, 180), ticks(*chart.up, 4)
     )
     entries = [
         ("ceiling: nothing is better", LIGHT.margin, "line"),
@@ -151,31 +136,18 @@ def proof(state: ProofState, measure: ObjectiveLabel) -> str:
     return sheet.svg("The best value at every turn, and the bound above it")
 
 
-class _Raster:
-    """Pixels of a view, painted by masks of a grid's cells; no cell is lost where a pixel holds many."""
-
-    def __init__(self, view: RasterView, grid: GridMap) -> None:
-        self._view, self._grid = view, grid
-        at = np.floor(grid.grid_coordinates(view.places())).astype(np.intp)
-        self._inside = np.all((at >= 0) & (at < (grid.width, grid.height)), axis=1)
-        self._below = at[self._inside, 1] * grid.width + at[self._inside, 0]
-        self.pixels: Pixels = view.blank(LIGHT)
-        self.paint(grid.cells != UNKNOWN, LIGHT.free, forward=False)
-
-    def paint(self, mask: BoolArray, colour: Rgb, forward: bool = True) -> None:
-        """Give these cells a colour."""
-        seen = np.zeros(len(self._inside), dtype=np.bool_)
-        seen[self._inside] = mask.ravel()[self._below]
-        self.pixels[seen.reshape(self.pixels.shape[:2])] = colour
-        if forward:
-            row, col, there = self._view.pixels_of(self._grid.centres(*where(mask)))
-            self.pixels[row[there], col[there]] = colour
-
-
-def _merged_plot(fusion: Fusion) -> tuple[SvgPlot, _Raster]:
-    rect, high = _fitted(known_corners(fusion.merged), FULL, 260.0, 620.0)
+def _merged_plot(fusion: Fusion, *masks: tuple[BoolArray, Rgb]) -> SvgPlot:
+    """A plot of the merged map's floor and of masks of its cells, each in its colour."""
+    grid = fusion.merged
+    rect, high = _fitted(known_corners(grid), FULL, 260.0, 620.0)
     view = RasterView(_widened(rect, FULL / high), int(FINE * FULL), int(FINE * high))
-    return scene(SvgCanvas(high + 24, FULL), 0, 0, FULL, high, view), _Raster(view, fusion.merged)
+    pixels = view.blank(LIGHT)
+    pixels[under(grid.cells, grid, view, None, UNKNOWN) != UNKNOWN] = LIGHT.free
+    for mask, colour in masks:
+        pixels[cells_seen(mask, grid, view)] = colour
+    plot = scene(SvgCanvas(high + 24, FULL), 0, 0, FULL, high, view)
+    plot.image(pixels)
+    return plot
 
 
 def _finish(plot: SvgPlot, chips: Sequence[tuple[str, Rgb]], title: str) -> str:
@@ -186,10 +158,6 @@ def _finish(plot: SvgPlot, chips: Sequence[tuple[str, Rgb]], title: str) -> str:
     for words, colour in chips:
         after = sheet.chip(after, plot.high + 17, colour, words)
     return sheet.svg(title)
-
-
-def _free(cells: NDArray[np.int8]) -> BoolArray:
-    return np.asarray((cells >= FREE) & (cells <= FREE_UP_TO))
 
 
 def _name(plot: SvgPlot, at: FloatArray, words: str, colour: Rgb) -> None:

@@ -1,11 +1,13 @@
-"""A merge as files: what was found, how sure it is, and how to publish it."""
+"""A merge as files: what was found, how sure it is, and how to publish it; each alone, or all in a zip."""
 
 from __future__ import annotations
 
+import io
 import json
 import math
+import zipfile
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, is_dataclass
+from dataclasses import asdict, dataclass, field, is_dataclass
 from enum import Enum
 from typing import Any
 
@@ -13,7 +15,9 @@ import cv2
 import numpy as np
 
 from algorithms.common.errors import NoAnswerError
+from algorithms.common.pose import Pose2
 from algorithms.files.map_file import map_to_bytes
+from algorithms.files.observation_file import OBSERVATION_FILE, observations_to_bytes
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.decision import Outcome
@@ -33,6 +37,11 @@ TRANSFORM_FILE = "transform.yaml"
 OVERLAY_FILE = "overlay.png"
 PAGE_FILE = "report.html"
 REPORT_FILE = "report.json"
+ARCHIVE = "merged.zip"
+# what a robot would act upon: of a refused merge it is given only to who insists
+ACTED_UPON = (*MERGED_FILES, TRANSFORM_FILE)
+# every file alone, the most wanted first
+ALONE = (PAGE_FILE, *reversed(MERGED_FILES), TRANSFORM_FILE, OVERLAY_FILE, REPORT_FILE, OBSERVATION_FILE)
 
 
 def report_of(
@@ -49,37 +58,18 @@ def report_of(
     inputs : the files it was made from, as the user named them
     warnings : what is odd about how the maps were read
     """
-    T, verdict = result.T_ref_mov, result.verdict
-    report = {
-        "T_ref_mov": {"x": T.x, "y": T.y, "theta": T.theta},
+    found = {
+        "T_ref_mov": asdict(result.T_ref_mov),
         "covariance": result.covariance,
-        "verdict": asdict(verdict),
+        "verdict": result.verdict,
         "objective": result.value,
         "proven_optimal": result.proven_optimal,
-        "method": result.method,
-        "seed": result.seed,
         "timings_s": {"load": load_s, **result.timings_s},
         "proof": proof_of(result),
         "answers": [_answer(weighed) for weighed in result.weighed],
         "performance_index_at_estimate": performance_index(result.fusion),
-        "settings": config,
-        "inputs": dict(inputs or {}),
-        "warnings": list(warnings),
-        "versions": versions(),
     }
-    return {key: plain(value) for key, value in report.items()}
-
-
-def _answer(weighed: Weighed) -> dict[str, Any]:
-    """An answer that may be right: its transform, its log-odds were it alone, and what it rests on."""
-    T = weighed.T_ref_mov
-    return {
-        "T_ref_mov": {"x": T.x, "y": T.y, "theta": T.theta},
-        "score": weighed.score,
-        "quantities": dict(weighed.quantities),
-        "deviations": weighed.deviations,
-        "evidence": asdict(weighed.evidence),
-    }
+    return _report(found, result.method, result.seed, config, load_s, inputs, warnings)
 
 
 def report_of_no_answer(
@@ -94,15 +84,23 @@ def report_of_no_answer(
     """What report.json says where the method found no transform: the keys of ``report_of``, null where
     there is nothing to say.
     """
+    verdict = {"accepted": False, "outcome": Outcome.REFUSED, "probability": 0.0, "reason": str(refusal)}
+    return _report({"verdict": verdict}, method, seed, config, load_s, inputs, warnings)
+
+
+def _report(
+    found: Mapping[str, Any],
+    method: str,
+    seed: int,
+    config: Any,
+    load_s: float,
+    inputs: Mapping[str, str] | None,
+    warnings: Sequence[str],
+) -> dict[str, Any]:
     report = {
         "T_ref_mov": None,
         "covariance": None,
-        "verdict": {
-            "accepted": False,
-            "outcome": Outcome.REFUSED,
-            "probability": 0.0,
-            "reason": str(refusal),
-        },
+        "verdict": None,
         "objective": None,
         "proven_optimal": False,
         "method": method,
@@ -113,10 +111,21 @@ def report_of_no_answer(
         "performance_index_at_estimate": None,
         "settings": config,
         "inputs": dict(inputs or {}),
-        "warnings": list(warnings),
+        "warnings": warnings,
         "versions": versions(),
     }
-    return {key: plain(value) for key, value in report.items()}
+    return {key: plain(value) for key, value in (report | found).items()}
+
+
+def _answer(weighed: Weighed) -> dict[str, Any]:
+    """An answer that may be right: its transform, its log-odds were it alone, and what it rests on."""
+    return {
+        "T_ref_mov": asdict(weighed.T_ref_mov),
+        "score": weighed.score,
+        "quantities": weighed.quantities,
+        "deviations": weighed.deviations,
+        "evidence": weighed.evidence,
+    }
 
 
 def proof_of(result: MergeResult) -> dict[str, Any] | None:
@@ -129,7 +138,7 @@ def proof_of(result: MergeResult) -> dict[str, Any] | None:
     proof = result.proof
     if proof is None:
         return None
-    rivals = zip(proof.rivals.tolist(), proof.rival_values.tolist(), strict=True)
+    rivals = zip(proof.rivals, proof.rival_values, strict=True)
     return {
         "nodes": proof.nodes,
         "gap": proof.gap,
@@ -137,14 +146,15 @@ def proof_of(result: MergeResult) -> dict[str, Any] | None:
         "stopped": proof.stopped,
         "swarm_found_it": result.search_found_it,
         "rivals": [
-            {"T_ref_mov": {"x": x, "y": y, "theta": theta}, "value": value} for (x, y, theta), value in rivals
+            {"T_ref_mov": asdict(Pose2.from_array(pose)), "value": float(value)} for pose, value in rivals
         ],
     }
 
 
 def report_json(report: Mapping[str, Any]) -> bytes:
     """The content of report.json, a line per key."""
-    lines = (f"  {json.dumps(key)}: {_json(value)}" for key, value in report.items())
+    texts = {key: json.dumps(value, ensure_ascii=False, allow_nan=False) for key, value in report.items()}
+    lines = (f"  {json.dumps(key)}: {text}" for key, text in texts.items())
     return ("{\n" + ",\n".join(lines) + "\n}\n").encode()
 
 
@@ -162,7 +172,6 @@ def overlay(fusion: Fusion, most: int = render.MOST_PIXELS) -> render.Pixels:
 
 
 def overlay_png(result: MergeResult) -> bytes:
-    """That picture as a file."""
     done, png = cv2.imencode(".png", overlay(result.fusion)[..., ::-1])  # OpenCV keeps blue first
     assert done
     return png.tobytes()
@@ -194,8 +203,39 @@ def result_files(
     return files
 
 
-def _json(value: Any) -> str:
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+@dataclass(frozen=True, eq=False)
+class ResultFiles:
+    """A result with what it was made from; its files are made when they are first asked for.
+
+    config : the settings that were used
+    """
+
+    result: MergeResult
+    inputs: MergeInputs
+    config: Any
+    _made: dict[str, bytes] = field(default_factory=dict, init=False)
+
+    @property
+    def files(self) -> Mapping[str, bytes]:
+        """Everything by name: what ``mapmeld merge`` leaves in a folder, and the observation as used."""
+        return self.make()
+
+    def make(self, check: Check = unwatched) -> Mapping[str, bytes]:
+        """The same; ``check`` is called now and then while they are made, which is once."""
+        if not self._made:
+            i, maps = self.inputs, {"map1": self.inputs.ref, "map2": self.inputs.mov}
+            named = {"pair": i.name} | {key: grid.name if grid else "" for key, grid in maps.items()}
+            report = report_of(self.result, self.config, inputs=named, warnings=i.readings())
+            files = result_files(self.result, i, self.config, report, with_merged=True, check=check)
+            self._made.update({OBSERVATION_FILE: observations_to_bytes(i.observations)} | files)
+        return self._made
+
+    def archive(self) -> bytes:
+        packed = io.BytesIO()
+        with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as target:
+            for name, content in self.files.items():
+                target.writestr(name, content)
+        return packed.getvalue()
 
 
 def plain(value: Any) -> Any:

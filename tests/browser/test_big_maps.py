@@ -60,7 +60,7 @@ def around_the_pillar(tab: Tab, frame: str) -> list[tuple[int, ...]]:
 def look_at_the_pillar(tab: Tab, frame: str) -> None:
     """A cell is some 10 px wide."""
     move = """([x, y, f]) => {
-        const m = f === "mov" ? window.mapmeld.mov : { x: 0, y: 0 }, [u, v] = [x + m.x, y + m.y];
+        const m = window.mapmeld.maps[f.slice(3)], [u, v] = [x + m.x, y + m.y];
         window.mapmeld.follow = false;
         window.mapmeld.kit.aim(true, { view: "map", box: [u - 1.3, v - 1.3, u + 1.3, v + 1.3] });
     }"""
@@ -91,7 +91,7 @@ def test_large_maps_are_loaded_stopped_looked_at_and_dragged(tab, tmp_path, monk
     # two words that come within one frame are seen as the later one
     assert {"Reading map1.pgm, 9 MB.", "Reading map2.pgm, 9 MB.", "Drawing the maps."} & set(said)
     drawn = "(name) => !!window.__viserMutable.nodeRefFromName[`/world/${name}/walls`]"
-    settle(lambda: all(tab.page.evaluate(drawn, name) for name in ("ref", "mov")), "the pictures")
+    settle(lambda: all(tab.page.evaluate(drawn, name) for name in ("map1", "map2")), "the pictures")
 
     def slowly(yaml_name, yaml, name, image):
         while name == "slow.pgm":
@@ -111,21 +111,23 @@ def test_large_maps_are_loaded_stopped_looked_at_and_dragged(tab, tmp_path, monk
     assert "map1.pgm" in table.inner_text()
     assert "slow.pgm" not in table.inner_text()
 
-    look_at_the_pillar(tab, "scene")
-    settle(lambda: around_the_pillar(tab, "scene") == [LIGHT.ref, *[LIGHT.free] * 4], "every cell of map 1")
-    look_at_the_pillar(tab, "mov")
-    settle(lambda: around_the_pillar(tab, "mov") == [LIGHT.mov, *[LIGHT.free] * 4], "every cell of map 2")
+    look_at_the_pillar(tab, "map1")
+    settle(lambda: around_the_pillar(tab, "map1") == [LIGHT.ref, *[LIGHT.free] * 4], "every cell of map 1")
+    look_at_the_pillar(tab, "map2")
+    settle(lambda: around_the_pillar(tab, "map2") == [LIGHT.mov, *[LIGHT.free] * 4], "every cell of map 2")
 
     tab.press("Move map 2 by hand")
     settle(lambda: tab.page.evaluate("() => !!window.mapmeld.hand?.mov"), "map 2 in the hand")
-    before = tab.page.evaluate("() => window.mapmeld.mov.x")
-    x, y = tab.page.evaluate("(p) => window.mapmeld.pixel(p, 'mov')", centre(*PILLAR).tolist())
+    before = tab.page.evaluate("() => window.mapmeld.maps[2].x")
+    x, y = tab.page.evaluate("(p) => window.mapmeld.pixel(p, 'map2')", centre(*PILLAR).tolist())
     tab.page.mouse.move(x + 40, y + 40)
     tab.page.mouse.down()
     tab.page.mouse.move(x + 140, y + 60, steps=8)
     tab.page.mouse.up()
-    assert tab.page.evaluate("() => window.mapmeld.mov.x") > before
-    settle(lambda: around_the_pillar(tab, "mov") == [LIGHT.mov, *[LIGHT.free] * 4], "the cells to come along")
+    assert tab.page.evaluate("() => window.mapmeld.maps[2].x") > before
+    settle(
+        lambda: around_the_pillar(tab, "map2") == [LIGHT.mov, *[LIGHT.free] * 4], "the cells to come along"
+    )
 
     tab.press("Merge")
     settle(lambda: tab.mood == "running", "the run")

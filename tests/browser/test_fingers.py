@@ -13,7 +13,7 @@ Point = tuple[float, float]
 
 MIDDLE = """() => {
     const hull = mapmeld.hand.mov.hull, mean = (k) => hull.reduce((sum, p) => sum + p[k], 0) / hull.length;
-    return mapmeld.pixel([mean(0), mean(1)], "mov");
+    return mapmeld.pixel([mean(0), mean(1)], "map2");
 }"""  # of map 2, in the window
 
 

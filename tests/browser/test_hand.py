@@ -124,7 +124,7 @@ def drag(tab, start: list[float], by: tuple[float, float]) -> None:
 def at_mov(tab, point: tuple[float, float]) -> list[float]:
     """Where a point of map 2, from its anchor, is in the window."""
     tab.at_rest()
-    return tab.page.evaluate("(p) => mapmeld.pixel(p, 'mov')", list(point))
+    return tab.page.evaluate("(p) => mapmeld.pixel(p, 'map2')", list(point))
 
 
 def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(tab, tmp_path):
@@ -169,14 +169,14 @@ def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(ta
     far = tab.page.get_by_label("T: Δx (m)", exact=True)
 
     def lies() -> list[float]:
-        return tab.page.evaluate("() => [mapmeld.mov.x, mapmeld.mov.y]")
+        return tab.page.evaluate("() => [mapmeld.maps[2].x, mapmeld.maps[2].y]")
 
     right = [lies()[0] - field(tab, "T: Δx (m)") + x, lies()[1] - field(tab, "T: Δy (m)") + y]
     far.fill(f"{x + 60:.2f}")
     far.press("Enter")
     settle(lambda: lies()[0] == pytest.approx(right[0] + 60, abs=0.02), "the number")
     settle(
-        lambda: ink["x"] < tab.page.evaluate("() => mapmeld.pixel([0, 0], 'mov')[0]") < ink["x"] + width,
+        lambda: ink["x"] < tab.page.evaluate("() => mapmeld.pixel([0, 0], 'map2')[0]") < ink["x"] + width,
         "the camera to take in a map that was typed out of the picture",
     )
     for label, value in (("T: Δx (m)", x), ("T: Δy (m)", y)):
@@ -274,7 +274,7 @@ def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab
         settle(lambda: field(tab, "range r (m)") == pytest.approx(o.range, abs=0.15), "the number")
         tab.page.mouse.click(*where(o.observer.xy))
         settle(lambda: tab.state == "That is not in map 2.", "a touch in the wrong map to be told")
-        drag(tab, where(at.x_mov, "mov"), (0, -40))
+        drag(tab, where(at.x_mov, "map2"), (0, -40))
         settle(lambda: tab.state.startswith("Drag a sign"), "all three")
         settle(lambda: field(tab, "robot 2: heading (°)") == pytest.approx(90, abs=3), "the number")
 
@@ -314,8 +314,8 @@ def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab
             "return at && [at.x, at.y]; }"
         )
         middle = pytest.approx([0, 0], abs=1e-6)
-        settle(lambda: tab.page.evaluate(lies, "/world/ref/free") == middle, "map 1 around its middle")
-        for number in ("ref", "mov"):
+        settle(lambda: tab.page.evaluate(lies, "/world/map1/free") == middle, "map 1 around its middle")
+        for number in ("map1", "map2"):
             floor, walls = f"/world/{number}/free", f"/world/{number}/walls"
             settle(
                 lambda f=floor, w=walls: (

@@ -113,7 +113,7 @@ def test_a_dial_moves_the_picture_and_the_map(tab):
     assert len(tab.layer("lesson")) > 3  # the pulls
     tab.choose("Step", "4. Every wall cell votes for its lines")
     at_step(tab, 4)
-    assert {item["f"] for item in settle(lambda: tab.layer("lesson"), "the lines")} == {"scene", "mov"}
+    assert {item["f"] for item in settle(lambda: tab.layer("lesson"), "the lines")} == {"scene", "map2"}
 
 
 def test_each_press_counts_however_quickly_they_follow(tab):

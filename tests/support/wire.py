@@ -113,7 +113,7 @@ class WireTab:
             elif kind == "RunJavascriptMessage" and (told := _HUD.match(message["source"])):
                 said = json.loads(told[1])
                 self.words.update(said.get("hud", {}))
-                for name in ("channel", "key", "mov"):
+                for name in ("channel", "key", "maps"):
                     if name in said:
                         self.words[name] = said[name]
 

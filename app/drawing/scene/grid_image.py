@@ -35,7 +35,6 @@ class Size:
     pooled: int
 
     def of(self, grid: GridMap) -> int:
-        """For this grid."""
         return self.whole if max(grid.cells.shape) <= self.whole else self.pooled
 
 
@@ -137,16 +136,13 @@ class GridImage:
             self._handle.image = self._drawn(draw, grid).pixels
 
     def hide(self) -> None:
-        """Take the picture away."""
         self.visible(False)
 
     def visible(self, yes: bool) -> None:
-        """Show or hide it as it is."""
         if self._handle is not None:
             self._handle.visible = self._seen = yes
 
     def remove(self) -> None:
-        """Forget the picture."""
         if self._handle is not None:
             self._handle.remove()
             self._handle = None

@@ -57,7 +57,6 @@ class HeightsView:
             self._stage.look_at("heights", np.array([0.0, 0.12 * radius, 0.0]), 1.62 * radius, 0.92, 0.0)
 
     def hide(self) -> None:
-        """Take everything away."""
         for handle in self._handles:
             handle.remove()
         self._handles.clear()

@@ -47,9 +47,8 @@ class MapComparison:
         self.recolour(palette)
 
     def recolour(self, palette: Palette) -> None:
-        """Draw in the colours of this palette."""
-        told = {"ref": palette.ref, "mov": palette.mov, "conflict": palette.conflict}
-        self._stage.compare(colours={name: css(colour) for name, colour in told.items()})
+        colours = {f"map{number}": css(colour) for number, colour in enumerate(palette.maps, 1)}
+        self._stage.compare(colours={**colours, "conflict": css(palette.conflict)})
 
     def outdate(self) -> None:
         """What was found where is out of date; the maps still lie there."""

@@ -34,7 +34,7 @@ GHOSTLY = 60  # of 255; twice as much on the page, which makes thin walls darker
 
 
 class MapLayers:
-    """Map 1 lies still; map 2 hangs on the frame /world/mov, which the page turns and slides."""
+    """Map 1 lies still; map 2 hangs on the frame /world/map2, which the page turns and slides."""
 
     def __init__(
         self, scene: viser.SceneApi, size: Size = LAID_OVER, stage: BrowserMessages | None = None
@@ -45,41 +45,29 @@ class MapLayers:
         def image(name: str, height: float) -> GridImage:
             return GridImage(scene, f"/world/{name}", height, size, stage)
 
+        def images(name: str, *heights: float) -> tuple[GridImage, ...]:
+            """One of every map."""
+            return tuple(image(f"map{number}/{name}", height) for number, height in enumerate(heights, 1))
+
         # viser turns a y-up scene half round its y axis; undone here, scene and page agree
         scene.add_frame("/world", show_axes=False, wxyz=(0.0, 0.0, 1.0, 0.0))
-        scene.add_frame("/world/ref", show_axes=False)
-        scene.add_frame("/world/mov", show_axes=False)
-        self._free = (
-            image("ref/free", FREE_1),
-            image("mov/free", FREE_2),
-        )
-        self._walls = (
-            image("ref/walls", WALLS_1),
-            image("mov/walls", WALLS_2),
-        )
-        self._levels = (
-            image("ref/levels", WALLS_1),
-            image("mov/levels", WALLS_2),
-        )
-        self._merged = (
-            image("ref/merged_free", MERGED_FREE),
-            image("ref/merged_walls", MERGED_WALLS),
-        )
-        self._denied = image("ref/denied", MERGED_WALLS)
-        self._touches = (
-            image("ref/touches", MERGED_FREE),
-            image("mov/touches", MERGED_WALLS),
-        )
+        scene.add_frame("/world/map1", show_axes=False)
+        scene.add_frame("/world/map2", show_axes=False)
+        self._free = images("free", FREE_1, FREE_2)
+        self._walls = images("walls", WALLS_1, WALLS_2)
+        self._levels = images("levels", WALLS_1, WALLS_2)
+        self._merged = image("map1/merged_free", MERGED_FREE), image("map1/merged_walls", MERGED_WALLS)
+        self._denied = image("map1/denied", MERGED_WALLS)
+        self._touches = images("touches", MERGED_FREE, MERGED_WALLS)
         self._ghost_frame = scene.add_frame("/world/ghost", show_axes=False)
         self._ghost = image("ghost/walls", GHOST)
         self._haunted: GridMap | None = None  # whose walls the ghost is made of
         self._ghost_at: Pose2 | None = None
-        pairs = (*self._free, *self._walls, *self._levels, *self._merged, *self._touches)
-        self._all = (*pairs, self._denied, self._ghost)
-        self._shown: tuple[GridMap | None, GridMap | None] = (None, None)
+        several = (*self._free, *self._walls, *self._levels, *self._merged, *self._touches)
+        self._all = (*several, self._denied, self._ghost)
+        self._shown: tuple[GridMap | None, ...] = (None, None)
         self._layout: SceneLayout | None = None
         self._palette: Palette | None = None
-        self._mov: GridMap | None = None
         self._lifted: AugmentDetail | None = None
         self._fused: Fusion | None = None
         self._conflicts: Contradictions | None = None
@@ -92,23 +80,21 @@ class MapLayers:
         """Draw two maps; what was there before is gone. A map that was there already is only moved."""
         grids = (ref, mov)
         old = self._shown if palette is self._palette else (None, None)
-        same = [grid is not None and grid is old[k] for k, grid in enumerate(grids)]
-        stay = [image for k in (0, 1) if same[k] for image in (self._free[k], self._walls[k])]
+        same = [grid is not None and grid is before for grid, before in zip(grids, old, strict=True)]
+        stay = [image for k in range(len(grids)) if same[k] for image in (self._free[k], self._walls[k])]
         for image in self._all:
             if image not in stay:
                 image.remove()
         self._shown = grids
         self._layout, self._palette, self._lifted, self._fused = layout, palette, None, None
         self._haunted = self._contrasted = None
-        self._mov = mov
-        colours, anchors = (palette.ref, palette.mov), (layout.anchor_ref, layout.anchor_mov)
-        for k, grid in enumerate(grids):
+        for k, (grid, anchor) in enumerate(zip(grids, layout.anchors, strict=True)):
             if same[k]:
-                self._free[k].move(anchors[k])
-                self._walls[k].move(anchors[k])
+                self._free[k].move(anchor)
+                self._walls[k].move(anchor)
             elif grid is not None:
-                self._free[k].show(partial(render.floor, grid.cells, palette), grid, anchors[k])
-                self._walls[k].show(partial(render.walls, grid.cells, colours[k]), grid, anchors[k])
+                self._free[k].show(partial(render.floor, grid.cells, palette), grid, anchor)
+                self._walls[k].show(partial(render.walls, grid.cells, palette.maps[k]), grid, anchor)
         self.show("sources")
 
     def lift(self, detail: AugmentDetail | None) -> None:
@@ -116,13 +102,12 @@ class MapLayers:
         if detail is None or detail is self._lifted or self._layout is None or self._palette is None:
             return
         self._lifted = detail
-        anchors = (self._layout.anchor_ref, self._layout.anchor_mov)
-        for image, augmented, anchor in zip(self._levels, (detail.ref, detail.mov), anchors, strict=True):
+        lifted, anchors = (detail.ref, detail.mov), self._layout.anchors
+        for image, augmented, anchor in zip(self._levels, lifted, anchors, strict=True):
             image.show(partial(render.levels, augmented, self._palette), augmented.grid, anchor)
         self.show(self.which)
 
     def merge(self, fusion: Fusion) -> None:
-        """Show this merged map."""
         if fusion is not self._fused and self._layout is not None and self._palette is not None:
             if self._fused is not None:
                 self._conflicts = None  # they were of the other one
@@ -156,8 +141,7 @@ class MapLayers:
         """Show which walls of both maps coincide, and which the other one denies."""
         if self._layout is None or self._palette is None:
             return
-        anchors = (self._layout.anchor_ref, self._layout.anchor_mov)
-        for image, one, touch, anchor in zip(self._touches, walls, told, anchors, strict=True):
+        for image, one, touch, anchor in zip(self._touches, walls, told, self._layout.anchors, strict=True):
             image.repaint(partial(render.touches, one, touch, self._palette), one.grid, anchor)
         if self.which != "touching":
             self.show("touching")
@@ -165,11 +149,12 @@ class MapLayers:
 
     def ghost(self, at: Pose2 | None) -> None:
         """Show map 2's walls faintly with its anchor at another place of the scene; None: nowhere."""
-        if at is not None and self._mov is not None and self._layout is not None and self._palette:
-            if self._haunted is not self._mov:
-                self._haunted = self._mov
-                faint = partial(render.walls, self._mov.cells, self._palette.rival, GHOSTLY)
-                self._ghost.show(faint, self._mov, self._layout.anchor_mov)
+        mov = self._shown[1]
+        if at is not None and mov is not None and self._layout is not None and self._palette:
+            if self._haunted is not mov:
+                self._haunted = mov
+                faint = partial(render.walls, mov.cells, self._palette.rival, GHOSTLY)
+                self._ghost.show(faint, mov, self._layout.anchor_mov)
             self._ghost_frame.position = (at.x, at.y, 0.0)
             self._ghost_frame.wxyz = (cos(at.theta / 2), 0.0, 0.0, sin(at.theta / 2))
         self._ghost_at = at
@@ -203,7 +188,7 @@ class MapLayers:
 
     def closer(self, view: CameraView) -> list[Closer]:
         """The excerpts that this view lacks, or has no use for any more."""
-        at = {"ref": Pose2(), "mov": view.mov, "ghost": self._ghost_at or Pose2()}
+        at = {"map1": Pose2(), "map2": view.mov, "ghost": self._ghost_at or Pose2()}
         found = (image.closer(view, at[image.name.split("/")[2]]) for image in self._all)
         return [closer for closer in found if closer is not None]
 

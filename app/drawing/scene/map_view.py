@@ -35,7 +35,7 @@ class MapView:
         self._mov_at = Pose2()
         self.mode: Mode = "overlay"
         self.boxed: object = None  # the box that is drawn and looked at
-        self.layout = SceneLayout(np.zeros(2), np.zeros(2), None, None, Pose2())
+        self.layout = SceneLayout((np.zeros(2), np.zeros(2)))
 
     # --- what was loaded --------------------------------------------------------------------------
 
@@ -98,7 +98,6 @@ class MapView:
         self._mov_at = at
 
     def touch(self, walls: tuple[WallLookup, WallLookup], told: tuple[CellAgreement, CellAgreement]) -> None:
-        """Show which walls coincide and which are denied; see ``MapLayers.touch``."""
         self.ground.touch(walls, told)
 
     def let_go(self) -> None:
@@ -168,10 +167,9 @@ class MapView:
         """Put map 2 at a place of the scene, gliding for so long."""
         if at != self._mov_at or milliseconds == 0:
             self._mov_at = at
-            self._stage.place_mov(at, milliseconds)
+            self._stage.place_map(2, at, milliseconds)
 
     def clear(self, *names: str) -> None:
-        """Take what these layers show away."""
         for name in names:
             self._stage.layer(name, None)
         if "rival" in names:

@@ -11,7 +11,7 @@ import numpy as np
 from algorithms.common.pose import FloatArray
 from algorithms.observations.observation import Encounter, Observation
 from app.drawing.draw_items import Item, ellipse, mark, path
-from app.drawing.palette import Palette
+from app.drawing.palette import Palette, Rgb
 from app.drawing.scene_layout import SceneLayout
 from app.model.observation_draft import ObservationDraft
 
@@ -19,6 +19,23 @@ ZERO = np.zeros(2)  # the meeting place of the first sighting, in both frames
 TURN_ARM = 90  # px from robot 2 to the knob that turns map 2; map_editing.js knows it as the knob's arm
 KNOB_ARM = 34  # px from a robot to the knob that turns it; map_editing.js knows it as ARM
 QUIET = 0.55  # opacity of what is told beside the first sighting
+
+
+def robot(
+    at: FloatArray,
+    heading: float | None,
+    sizes: tuple[float, float],
+    colour: Rgb,
+    frame: str = "scene",
+    **more: Any,
+) -> Item:
+    """A robot; a dot where its heading is not known.
+
+    sizes : of a robot and of a dot; pixels
+    """
+    if heading is None:
+        return mark("dot", at, colour, frame, r=sizes[1], **more)
+    return mark("robot", at, colour, frame, a=heading, r=sizes[0], **more)
 
 
 def robots(
@@ -34,13 +51,11 @@ def robots(
     first = o.observer.xy - layout.anchor_ref
     items = [mark("robot", first, colours.ref, a=o.observer.theta, r=9, t="robot 1", **near)]
     if mov and seen:
-        known = o.observed_heading is not None
-        shape, how = ("robot", {"a": o.observed_heading, "r": 9}) if known else ("dot", {"r": 6})
-        items.append(mark(shape, ZERO, colours.mov, "mov", t="robot 2", **how, **far))
+        items.append(robot(ZERO, o.observed_heading, (9, 6), colours.mov, "map2", t="robot 2", **far))
     if not together:
         items.append(mark("ring", ZERO, colours.conflict, r=7, t="x̂₁ seen here", size=11, **far))
         if mov:
-            items.append(mark("ring", ZERO, colours.conflict, "mov", r=13))
+            items.append(mark("ring", ZERO, colours.conflict, "map2", r=13))
     return items
 
 
@@ -93,10 +108,8 @@ def further(
         # once the maps lie together, the number stands beside robot 2 alone
         items.append(mark("ring", end, colours.conflict, alpha=QUIET, r=4, **({} if together else name)))
         if mov:
-            known = o.observed_heading is not None
-            shape, how = ("robot", {"a": o.observed_heading, "r": 6}) if known else ("dot", {"r": 4})
             there = at.x_mov - layout.anchor_mov
-            items.append(mark(shape, there, colours.mov, "mov", alpha=QUIET, **how, **name))
+            items.append(robot(there, o.observed_heading, (6, 4), colours.mov, "map2", alpha=QUIET, **name))
     return items
 
 
@@ -135,16 +148,11 @@ def _draft(draft: ObservationDraft, layout: SceneLayout, colours: Palette, alpha
     if draft.observed is not None:
         there = np.array(draft.observed) - layout.anchor_mov
         name = {"t": "robot 2", **_beside(draft.heading or 0.0)} if chosen else {}
-        if draft.heading is None:
-            if chosen:  # nobody knows which way it looked: the knob can tell
-                knob = mark("ring", there, colours.mov, "mov", alpha=QUIET, a=0.0, r=5, arm=KNOB_ARM)
-                items.append(knob)
-            items.append(mark("dot", there, colours.mov, "mov", alpha=alpha, r=7, **name))
-        else:
-            if chosen:
-                items.append(mark("dot", there, colours.mov, "mov", a=draft.heading, r=5, arm=KNOB_ARM))
-            shape = mark("robot", there, colours.mov, "mov", alpha=alpha, a=draft.heading, r=9, **name)
-            items.append(shape)
+        if chosen:  # where nobody knows which way it looked, the knob can tell
+            knob = ("dot", draft.heading, 1.0) if draft.heading is not None else ("ring", 0.0, QUIET)
+            shape, turn, faint = knob
+            items.append(mark(shape, there, colours.mov, "map2", alpha=faint, a=turn, r=5, arm=KNOB_ARM))
+        items.append(robot(there, draft.heading, (9, 7), colours.mov, "map2", alpha=alpha, **name))
     return items
 
 
@@ -156,6 +164,6 @@ def _beside(heading: float) -> dict[str, Any]:
 def grip(hull: FloatArray, colours: Palette) -> list[Item]:
     """What map 2 is held by: its outline, and a knob to turn it about its anchor; in its own frame."""
     return [
-        path(hull, colours.mov, "mov", w=1.4, close=True, d=[7, 5], halo=True),
-        mark("dot", ZERO, colours.mov, "mov", r=8, a=0.0, arm=TURN_ARM, t="turn"),
+        path(hull, colours.mov, "map2", w=1.4, close=True, d=[7, 5], halo=True),
+        mark("dot", ZERO, colours.mov, "map2", r=8, a=0.0, arm=TURN_ARM, t="turn"),
     ]

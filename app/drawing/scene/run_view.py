@@ -27,6 +27,7 @@ from app.drawing.browser_messages import BrowserMessages
 from app.drawing.draw_items import cloud, mark
 from app.drawing.palette import css
 from app.drawing.scene import search_symbols as signs
+from app.drawing.scene.map_layers import Which
 from app.drawing.scene.map_view import OF_A_RUN, SLIDE_MS, MapView
 from app.drawing.scene_layout import Rect, known_hull, union
 from app.model import verdict_text as words
@@ -54,7 +55,8 @@ class RunView:
         glide = 1.0 if live else 0.0
         look: Rect | None = None
         if isinstance(detail, (AugmentDetail, HoughDetail)):
-            look = self._lifted(detail.match.turns[0] if isinstance(detail, HoughDetail) else 0.0, glide)
+            turn = detail.match.turns[0] if isinstance(detail, HoughDetail) else 0.0
+            look = self._beside(turn, glide * TURN_MS, "levels")
             self._rings(config)
         elif isinstance(detail, (WindowDetail, ShiftDetail, CandidatesDetail)):
             look = self._candidates(story, glide)
@@ -74,9 +76,7 @@ class RunView:
     def preview(self, story: RunState, config: Any) -> None:
         """Draw what a moved slider does before there is a merge: levels, Σ_aug, windows, the box's size."""
         self._maps.ground.lift(story.get(AugmentDetail))
-        self._lifted(0.0, 0.0)
-        if not story.reached(AugmentDetail):  # a method without levels
-            self._maps.ground.show("sources")
+        self._beside(0.0, 0.0, "levels" if story.reached(AugmentDetail) else "sources")
         self._rings(config)
         box = getattr(config, "box", None)
         if box is not None:
@@ -84,21 +84,12 @@ class RunView:
         self._windows(story, self._maps.layout.view())
 
     def _windows(self, story: RunState, view: Rect) -> None:
-        window, found = story.get(WindowDetail), story.get(CandidatesDetail)
+        window, at_hand = story.get(WindowDetail), story.at_hand
         if window is None or self._maps.inputs.at is None:
             return
-        at_hand = found.candidates[0] if found else story.shifts[-1].candidate if story.shifts else None
         turn = at_hand.T_ref_mov.theta if at_hand else 0.0
         drawn = signs.windows(window, turn, self._maps.layout, self._maps.palette, view)
         self._stage.layer("window", drawn)
-
-    def _lifted(self, turn: float, glide: float) -> Rect:
-        turned = Pose2(self._maps.layout.apart.x, self._maps.layout.apart.y, turn)
-        self._maps.ground.show("levels")
-        self._maps.place(turned, glide * TURN_MS)
-        self._maps.clear(*OF_A_RUN)
-        self._maps.draw_robots(together=False)
-        return union(self._maps.layout.view(), self._maps.layout.view(turned))
 
     def _rings(self, config: Any) -> None:
         augment = getattr(config, "augment", None)
@@ -139,9 +130,9 @@ class RunView:
             turn = float(detail.turns[np.nanargmax(np.where(tried, detail.scores, -np.inf))])
         return self._beside(turn, glide * SLIDE_MS)
 
-    def _beside(self, turn: float, milliseconds: float) -> Rect:
+    def _beside(self, turn: float, milliseconds: float, which: Which = "sources") -> Rect:
         turned = Pose2(self._maps.layout.apart.x, self._maps.layout.apart.y, turn)
-        self._maps.ground.show("sources")
+        self._maps.ground.show(which)
         self._maps.place(turned, milliseconds)
         self._maps.clear(*OF_A_RUN)
         self._maps.draw_robots(together=False)

@@ -13,7 +13,7 @@ from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.optimisation.search_box import SearchBox
 from app.drawing.draw_items import Item, ellipse, mark, path, rectangle
 from app.drawing.palette import Palette, css
-from app.drawing.scene.robot_symbols import QUIET, ZERO
+from app.drawing.scene.robot_symbols import QUIET, ZERO, robot
 from app.drawing.scene_layout import Rect, SceneLayout
 
 MOST_MATCHES = 160  # drawn; more would be a blot
@@ -29,7 +29,7 @@ def rings(covariance: FloatArray, colours: Palette, both: bool) -> list[Item]:
         how = {"close": True, "w": 1.2, "d": [3, 4], "halo": True}
         items.append(path(points, colours.margin, **how, **label))
         if both:
-            items.append(path(points, colours.margin, "mov", **how))
+            items.append(path(points, colours.margin, "map2", **how))
     return items
 
 
@@ -120,8 +120,8 @@ def rival(at: Pose2, hull: FloatArray, heading: float | None, words: str, colour
     label["tc"] = css(colours.rival)
     items = [path(outline, colours.rival, alpha=0.8, w=1.4, close=True, d=[7, 5], **label)]
     # larger than the star of the answer, which lies on it: both put robot 2 where it was seen
-    shape, how = ("robot", {"a": heading + at.theta, "r": 13}) if heading is not None else ("dot", {"r": 12})
-    return [*items, mark(shape, at.xy, colours.rival, **how)]
+    turned = None if heading is None else heading + at.theta
+    return [*items, robot(at.xy, turned, (13, 12), colours.rival)]
 
 
 def margins(sigma_x: float, sigma_y: float, colours: Palette) -> list[Item]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from math import pi
 
 import numpy as np
@@ -65,7 +66,6 @@ class SwarmView:
         self._of: tuple[SearchBox, Palette] | None = None  # whose frame is drawn
 
     def hide(self) -> None:
-        """Take everything away."""
         for name in ("axes", "swarm", "trail", "best", "rival", "floor"):
             self._stage.layer(name, None)
         self._trail.clear()
@@ -77,16 +77,8 @@ class SwarmView:
         if look:
             self._stage.look_at("swarm", np.array([0.0, 0.0, 0.0]), 1.95, 1.15, -0.55)
         if detail is None:
-            text = mark(
-                "dot",
-                np.zeros(3),
-                palette.margin,
-                r=0.1,
-                t="Press Merge: the swarm appears here.",
-                align="center",
-                size=14,
-            )
-            self._stage.layer("axes", [text])
+            how = {"t": "Press Merge: the swarm appears here.", "align": "center", "size": 14}
+            self._stage.layer("axes", [mark("dot", np.zeros(3), palette.margin, r=0.1, **how)])
             return
         proven = story.get(ProvenDetail)
         known = proven is not None and proven.state.best is not None
@@ -113,31 +105,22 @@ class SwarmView:
                 "trail", [path(line, None, w=1) | {"c": css(palette.particle, 0.35)} for line in trails]
             )
         self._stage.layer("swarm", [cloud(cube, palette.particle, r=3, alpha=0.9, **glide)])
-        legs = [path(np.array([best, foot]), palette.best, w=1, d=[2, 3]) for foot in self._feet(best)]
+        x, y, z = best.tolist()
+        feet = [x, -1, z], [x, y, -1], [1, y, z]
+        legs = [path(np.array([best, foot]), palette.best, w=1, d=[2, 3]) for foot in feet]
         self._stage.layer(
             "best", [*legs, mark("diamond", best, palette.best, r=7, rim="#ffffff", t="swarm best")]
         )
 
     @staticmethod
-    def _feet(point: FloatArray) -> list[FloatArray]:
-        x, y, z = point
-        return [np.array([x, -1, z]), np.array([x, y, -1]), np.array([1, y, z])]
-
-    @staticmethod
     def _frame(detail: RefineDetail, palette: Palette) -> list[Item]:
-        low, high = detail.box.low.copy(), detail.box.high.copy()
-        low[2], high[2] = low[2] * 180 / pi, high[2] * 180 / pi
-        edges = [
-            (np.array([a, b, c]), axis)
-            for axis in range(3)
-            for a, b, c in ((i, j, k) for i in (-1, 1) for j in (-1, 1) for k in (-1, 1))
-            if (a, b, c)[axis] == -1
-        ]
+        low, high = (edge * (1, 1, 180 / pi) for edge in (detail.box.low, detail.box.high))
         items: list[Item] = []
-        for start, axis in edges:
-            end = start.copy()
-            end[axis] = 1
-            items.append(path(np.array([start, end], dtype=float), palette.margin, w=1, d=[5, 4]))
+        for axis, corner in product(range(3), product((-1.0, 1.0), repeat=3)):
+            if corner[axis] < 0:
+                ends = np.array([corner, corner])
+                ends[1, axis] = 1
+                items.append(path(ends, palette.margin, w=1, d=[5, 4]))
         names = ("x", "y") if np.any(detail.box.pivot) else ("Δx", "Δy")
 
         def text(at: list[float], words: str, **more: object) -> Item:

@@ -49,7 +49,6 @@ class ZoomCrop:
 
     @property
     def part(self) -> CellRegion:
-        """Rows and columns."""
         return slice(self.top, self.bottom), slice(self.left, self.right)
 
     @property

@@ -7,6 +7,7 @@ from math import cos, sin
 import numpy as np
 
 from algorithms.common.pose import FloatArray
+from app.drawing.grid_pixels import Pixels
 from app.drawing.palette import Rgb
 from app.drawing.svg.map_raster import RasterView, around
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number
@@ -18,6 +19,18 @@ def scene(sheet: SvgCanvas, x: float, y: float, wide: float, high: float, view: 
     """A plot over a view of the plane; pixels of the view are drawn finer than those of the sheet."""
     x0, y0, x1, y1 = view.rect
     return SvgPlot(sheet, x, y, wide, high, (x0, x1), (y0, y1))
+
+
+def map_panel(
+    sheet: SvgCanvas, x: float, wide: float, high: float, view: RasterView, pixels: Pixels, title: str
+) -> SvgPlot:
+    """A framed picture of a view, its title above and a scale bar in it."""
+    sheet.text(x, 11, title, 11, bold=True)
+    plot = scene(sheet, x, 18, wide, high, view)
+    plot.image(pixels)
+    sheet.rect(x, 18, wide, high, None, INK, 0.35)
+    scale_bar(plot)
+    return plot
 
 
 def view_of(centre: FloatArray, half: float, wide: float, high: float) -> RasterView:

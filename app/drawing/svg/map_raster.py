@@ -12,12 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.common.pose import FloatArray, Pose2
-from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap
+from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap, where
 from algorithms.spectra.augmented_map import AugmentedMap
+from app.drawing.grid_pixels import Pixels
 from app.drawing.palette import Palette, Rgb, viridis
 from app.drawing.scene_layout import Rect
-
-Pixels = NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -35,13 +34,6 @@ class RasterView:
     def blank(self, palette: Palette) -> Pixels:
         """Nothing known."""
         return np.full((self.high, self.wide, 3), palette.unknown, dtype=np.uint8)
-
-    def places(self) -> FloatArray:
-        """(H·W, 2) middles of the pixels; metres."""
-        x0, y0, x1, y1 = self.rect
-        x = x0 + (np.arange(self.wide) + 0.5) / self.wide * (x1 - x0)
-        y = y1 - (np.arange(self.high) + 0.5) / self.high * (y1 - y0)
-        return np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
 
     def cells(
         self, grid: GridMap, T: Pose2 | None = None
@@ -63,8 +55,11 @@ class RasterView:
         )
         return row, col, (row >= 0) & (row < grid.height) & (col >= 0) & (col < grid.width)
 
-    def pixels_of(self, points: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp], BoolArray]:
-        """Row and column of (N, 2) points, and which of them are in view."""
+    def pixels_of(
+        self, points: FloatArray, T: Pose2 | None = None
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp], BoolArray]:
+        """Row and column of (N, 2) points of a frame that lies at T, and which of them are in view."""
+        points = points if T is None else T.apply(points)
         x0, y0, x1, y1 = self.rect
         col = np.floor((points[:, 0] - x0) / (x1 - x0) * self.wide).astype(np.intp)
         row = np.floor((y1 - points[:, 1]) / (y1 - y0) * self.high).astype(np.intp)
@@ -93,10 +88,17 @@ def walls(
     """(H, W) where a map that lies at T has a wall; ``cells`` those under the pixels, where known."""
     values = under(grid.cells, grid, view, T, UNKNOWN) if cells is None else cells
     mask = np.asarray(values >= OCCUPIED_FROM)
-    points = grid.points if T is None else T.apply(grid.points)  # from afar a pixel holds many cells
-    row, col, seen = view.pixels_of(points)
+    row, col, seen = view.pixels_of(grid.points, T)  # from afar a pixel holds many cells
     mask[row[seen], col[seen]] = True
     return mask
+
+
+def cells_seen(mask: BoolArray, grid: GridMap, view: RasterView) -> BoolArray:
+    """(H, W) where a mask of a grid's cells is under a pixel, or one of them has its centre in it."""
+    found = under(mask, grid, view, None, False)
+    row, col, seen = view.pixels_of(grid.centres(*where(mask)))
+    found[row[seen], col[seen]] = True
+    return found
 
 
 def draw_map(
@@ -123,7 +125,7 @@ def draw_levels(view: RasterView, palette: Palette, lifted: AugmentedMap, T: Pos
     levels = np.zeros(lifted.grid.cells.shape)
     levels[lifted.rows, lifted.cols] = lifted.levels / lifted.peak
     share = under(levels, lifted.grid, view, T, 0.0)
-    row, col, seen = view.pixels_of(lifted.points if T is None else T.apply(lifted.points))
+    row, col, seen = view.pixels_of(lifted.points, T)
     np.maximum.at(share, (row[seen], col[seen]), lifted.levels[seen] / lifted.peak)
     up = share > 0.004
     pixels[up] = viridis(share[up])

@@ -98,21 +98,18 @@ class SvgCanvas:
 
     def rect(
         self, x: float, y: float, wide: float, high: float, fill: Colour | None = None,
-        colour: Colour | None = None, alpha: float = 1.0, width: float = 1.0, dash: str = "",
+        colour: Colour | None = None, alpha: float = 1.0, width: float = 1.0,
     ) -> None:  # fmt: skip
-        """An upright rectangle."""
-        dashes = f' stroke-dasharray="{dash}"' if dash else ""
         self.parts.append(
             f'<rect x="{x:.1f}" y="{y:.1f}" width="{max(0, wide):.1f}" height="{max(0, high):.1f}" '
             f'fill="{_css(fill)}" stroke="{_css(colour)}" stroke-width="{width:g}" '
-            f'opacity="{alpha:g}"{dashes}/>'
+            f'opacity="{alpha:g}"/>'
         )
 
     def dot(
         self, x: float, y: float, r: float, fill: Colour | None, colour: Colour | None = None,
         alpha: float = 1.0, width: float = 1.5,
     ) -> None:  # fmt: skip
-        """A disc or a ring."""
         self.parts.append(
             f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{r:g}" fill="{_css(fill)}" stroke="{_css(colour)}" '
             f'stroke-width="{width:g}" opacity="{alpha:g}"/>'
@@ -125,7 +122,6 @@ class SvgCanvas:
             self.path([(x - r, y + r), (x + r, y - r)], c, w)
 
     def star(self, x: float, y: float, r: float, fill: Colour, rim: Colour) -> None:
-        """A star."""
         spikes = [(r if k % 2 == 0 else 0.45 * r, pi * (k / 5 - 0.5)) for k in range(10)]
         points = [(x + q * cos(a), y + q * sin(a)) for q, a in spikes]
         self.path(points, rim, 1.5, fill, close=True)
@@ -206,7 +202,6 @@ class SvgPlot:
         )
 
     def one(self, x: float, y: float) -> tuple[float, float]:
-        """Pixels of one point."""
         px, py = self.at([(x, y)])[0].tolist()
         return px, py
 

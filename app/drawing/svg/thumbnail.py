@@ -10,9 +10,10 @@ import numpy as np
 
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import UNKNOWN, GridMap
+from app.drawing.grid_pixels import Pixels, wall_masks
 from app.drawing.palette import Palette
 from app.drawing.scene_layout import known_hull, rect_of, union
-from app.drawing.svg.map_raster import Pixels, RasterView, under, walls
+from app.drawing.svg.map_raster import RasterView, under, walls
 
 SIZE = 208, 156  # pixels; shown at half of that
 _NEAR = np.ones((3, 3), np.uint8)  # walls a pixel apart are the same wall here
@@ -25,15 +26,12 @@ def thumbnail(
     view = _around(ref, mov, T_ref_mov, *size)
     cells = under(ref.cells, ref, view, None, UNKNOWN), under(mov.cells, mov, view, T_ref_mov, UNKNOWN)
     wall = walls(ref, view, None, cells[0]), walls(mov, view, T_ref_mov, cells[1])
-    near = [cv2.dilate(mask.astype(np.uint8), _NEAR) > 0 for mask in wall]
-    free = [(known != UNKNOWN) & ~mask for known, mask in zip(cells, near, strict=True)]
+    near = cv2.dilate(wall[0].astype(np.uint8), _NEAR) > 0, cv2.dilate(wall[1].astype(np.uint8), _NEAR) > 0
+    free = (cells[0] != UNKNOWN) & ~near[0], (cells[1] != UNKNOWN) & ~near[1]
     pixels = view.blank(palette)
     for mask, colour in (
         ((cells[0] != UNKNOWN) | (cells[1] != UNKNOWN), palette.free),
-        (wall[0], palette.ref),
-        (wall[1], palette.mov),
-        ((wall[0] & near[1]) | (wall[1] & near[0]), palette.agreed),
-        ((wall[0] & free[1]) | (wall[1] & free[0]), palette.conflict),
+        *wall_masks(wall, free, palette, near),
     ):
         pixels[mask] = colour
     return pixels

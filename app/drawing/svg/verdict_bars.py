@@ -9,22 +9,13 @@ from app.drawing.svg.svg_canvas import INK, WIDE, SvgCanvas, worded
 from app.model import verdict_text as words
 
 AMBER: Rgb = (0x7A, 0x52, 0x00)  # as words, on a light page
-
-
 COLOURS: dict[Outcome, Rgb] = {
     Outcome.MERGED: LIGHT.mov,
     Outcome.BENT: AMBER,
     Outcome.REFUSED: LIGHT.conflict,
 }
-
-
 FULL = 6.0  # log-odds of a bar over its whole half; 400 to 1
-
-
-ROW = 40.0
-
-
-TOP = 44.0
+ROW, TOP = 40.0, 44.0
 
 
 def values(verdict: Verdict) -> dict[str, str]:
@@ -40,7 +31,6 @@ def values(verdict: Verdict) -> dict[str, str]:
 
 
 def titles() -> dict[str, str]:
-    """What each bar is called."""
     return {**{name: quantity.title for name, quantity in QUANTITIES.items()}, OTHERS: "other answers"}
 
 

@@ -2,7 +2,7 @@
 // and curves beside the map. Nothing is computed here and nothing is fetched; what the ink looks like is
 // in map_drawing.js, which the live page draws with, too.
 (() => {
-  const { lerp, smooth, wrap, glide, layers, scaleBar } = mapmeldInk;
+  const { STILL, lerp, poseOf, toScene, way, along, replace, layers, scaleBar, legend } = mapmeldInk;
   const R = JSON.parse(document.getElementById("recording").textContent);
   const $ = (id) => document.getElementById(id);
   const CAMERA_MS = 220, LAST = R.length;
@@ -10,10 +10,6 @@
   const PAUSE = '<svg viewBox="0 0 10 10"><path d="M1.5 1h2.6v8H1.5zM5.9 1h2.6v8H5.9z"/></svg>';
 
   // --- every frame as a whole: what has not changed is taken over from the frame before -----------
-  const movAt = (m, ms) => {
-    const s = smooth(Math.min(1, (ms - m.began) / Math.max(1, m.ms)));
-    return { x: lerp(m.from.x, m.to.x, s), y: lerp(m.from.y, m.to.y, s), theta: m.from.theta + m.turn * s };
-  };
   // The camera's middle and size glide, the size by its logarithm, as a zoom does; however often it is
   // told another place on its way, it comes near as quickly.
   const boxAt = (look, ms) => {
@@ -26,24 +22,18 @@
     const [x0, x1] = part(0), [y0, y1] = part(1);
     return [x0, y0, x1, y1];
   };
-  const still = { x: 0, y: 0, theta: 0 };
   let now = { layers: {}, hud: {}, curves: [], pictures: [], ghost: [0, 0, 0], table: null,
-    mov: { from: still, to: still, turn: 0, began: 0, ms: 0 }, look: null };
+    ways: { 1: way(STILL, STILL, 0), 2: way(STILL, STILL, 0) }, look: null };
   const frames = R.frames.map((told) => {
     const ms = told.t * 1000, before = now;
     now = { ...before, t: told.t, hud: { ...before.hud, ...told.hud } };
     for (const name of ["curves", "pictures", "ghost", "table"]) if (told[name] !== undefined) now[name] = told[name];
     if (told.layers) {
       now.layers = { ...before.layers };
-      for (const [name, items] of Object.entries(told.layers)) {
-        (items || []).forEach((item, i) => glide(item, (before.layers[name] || [])[i], ms));
-        if (items) now.layers[name] = items; else delete now.layers[name];
-      }
+      replace(now.layers, told.layers, ms);
     }
-    if (told.mov) {
-      const from = movAt(before.mov, ms);
-      now.mov = { from, to: told.mov, turn: wrap(told.mov.theta - from.theta), began: ms, ms: told.mov.ms };
-      if (!told.mov.ms) now.mov = { from: told.mov, to: told.mov, turn: 0, began: ms, ms: 0 };
+    for (const [number, to] of Object.entries(told.maps || {})) {
+      now.ways = { ...now.ways, [number]: way(along(before.ways[number], ms), to, ms) };
     }
     if (told.look) now.look = { from: before.look ? boxAt(before.look, ms) : told.look.box, to: told.look.box, began: ms };
     return now;
@@ -130,11 +120,11 @@
     const metre = Math.min((wide - 2 * side) / (x1 - x0), (high - top - bottom) / (y1 - y0));
     return { metre, x: (x0 + x1) / 2, y: (y0 + y1) / 2 + (top - bottom) / 2 / metre };
   }
-  function pictures(g, frame, mov, view) {
-    const [gx, gy, gt] = frame.ghost, at = { scene: still, mov, ghost: { x: gx, y: gy, theta: gt } };
+  function pictures(g, frame, view) {
+    const [x, y, theta] = frame.ghost, ghost = { x, y, theta };
     for (const number of frame.pictures) {
       const picture = R.pictures[number], image = P.dark ? picture.dark : picture.light;
-      const base = at[picture.frame], [x, y] = view.project("scene", [base.x, base.y]), m = view.metre;
+      const base = picture.frame === "ghost" ? ghost : poseOf(view.maps, picture.frame), [x, y] = view.project("scene", [base.x, base.y]), m = view.metre;
       const [wide, high] = picture.size.map((length) => length * m);
       g.save();
       g.translate(x, y); g.rotate(-base.theta);
@@ -147,16 +137,17 @@
     }
   }
   function paintMap(frame) {
-    const [g, wide, high] = fit(map), ms = P.time * 1000, mov = movAt(frame.mov, ms), c = camera(frame, ms, wide, high);
+    const [g, wide, high] = fit(map), ms = P.time * 1000, c = camera(frame, ms, wide, high);
     g.fillStyle = P.dark ? `rgb(${R.dark["229,231,235"]})` : "rgb(229,231,235)"; g.fillRect(0, 0, wide, high);
+    const maps = Object.fromEntries(Object.entries(frame.ways).map(([number, way]) => [number, along(way, ms)]));
     const view = {
-      mov, metre: c.metre, wide, high, dark: P.dark,
-      project(name, [x, y]) {
-        if (name === "mov") [x, y] = [Math.cos(mov.theta) * x - Math.sin(mov.theta) * y + mov.x, Math.sin(mov.theta) * x + Math.cos(mov.theta) * y + mov.y];
+      maps, metre: c.metre, wide, high, dark: P.dark,
+      project(name, point) {
+        const [x, y] = toScene(poseOf(maps, name), point);
         return [wide / 2 + (x - c.x) * c.metre, high / 2 - (y - c.y) * c.metre];
       },
     };
-    pictures(g, frame, mov, view);
+    pictures(g, frame, view);
     const all = {};
     for (const [name, items] of Object.entries(frame.layers)) all[name] = items.map(inked);
     layers(g, view, all, ms);
@@ -175,15 +166,7 @@
     caption.dataset.mood = h.mood; caption.lastElementChild.textContent = said;
     caption.classList.toggle("long", said.length > 95 && said.length <= 230);
     caption.classList.toggle("longer", said.length > 230);
-    $("legend").replaceChildren(...(h.legend || []).map((entry) => {
-      const chip = element("span"), swatch = element("i");
-      swatch.className = entry.s;
-      if (entry.s === "scale") {
-        swatch.style.background = `linear-gradient(90deg, ${entry.c.join(", ")})`;
-        chip.append(entry.low + " ", swatch, " " + entry.high + "  " + entry.t);
-      } else { swatch.style.setProperty("--c", colour(entry.c)); chip.append(swatch, entry.t); }
-      return chip;
-    }));
+    $("legend").replaceChildren(...legend(h.legend, "", colour));
     const table = $("table"), told = frame.table;
     table.hidden = !told; $("charts").hidden = !!told;
     $("says").textContent = told ? "" : frame.curves.map((chart) => chart.says || "").join(" ").trim();

@@ -186,7 +186,7 @@ class MapDragController:
         self._move(at)
         with self._locks.drawing:
             if glide is not None:
-                self._messages.place_mov(at, glide)
+                self._messages.place_map(2, at, glide)
             if look and self._panels.run.follow:
                 self._messages.look_down(self._maps.extent(), need=True)
             self._messages.flush()

@@ -212,7 +212,7 @@ class PlacementController:
     def _place(self, draft: ObservationDraft) -> dict[str, object]:
         if draft.missing is None:
             return {}
-        return {"place": {"id": draft.missing, "f": "mov" if draft.missing == "observed" else "scene"}}
+        return {"place": {"id": draft.missing, "f": "map2" if draft.missing == "observed" else "scene"}}
 
     def _grips(self, draft: ObservationDraft) -> list[dict[str, object]]:
         layout, grips = self._layout, []
@@ -227,7 +227,7 @@ class PlacementController:
             at = np.array(draft.observed) - layout.anchor_mov
             known = draft.heading is not None  # a heading that is not known can be given by its knob
             grips.append(
-                {"id": "observed", "f": "mov", "p": at, "a": draft.heading or 0.0, "vague": not known}
+                {"id": "observed", "f": "map2", "p": at, "a": draft.heading or 0.0, "vague": not known}
             )
         return grips
 

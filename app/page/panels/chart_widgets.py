@@ -1,4 +1,4 @@
-"""Charts as widgets of a panel: their lines, marks and axes."""
+"""A chart of the model as a widget of a panel."""
 
 from __future__ import annotations
 
@@ -9,62 +9,26 @@ import viser
 from viser import uplot
 
 from algorithms.common.pose import FloatArray
+from app.drawing.palette import LIGHT, css
+from app.model.chart_data import Chart, Curve
+from app.page.panels.html_widgets import put
 
-_NOTHING = (np.array([0.0, 1.0]), np.full(2, np.nan))
-
-
-def dots(label: str, colour: str, size: float, rim: str | None = None) -> uplot.Series:
-    """A series that is drawn as marks."""
-    # no fill of the series itself: it would reach from mark to mark
-    points = {"show": True, "size": size, "fill": colour, "stroke": rim or colour, "width": 1}
-    return uplot.Series(label=label, width=0, stroke=colour, points=points)  # type: ignore[typeddict-item]
+RIM = "#9a8b00"  # of yellow dots; it reads on light and on dark panels alike, as the light colours do
+FILLED = {"area": 0.16, "band": 0.2}  # opacity of what lies below a curve
 
 
-def line(label: str, colour: str, width: float = 1.5, **more: Any) -> uplot.Series:
-    """A series that is drawn as a line."""
-    return uplot.Series(label=label, stroke=colour, width=width, points={"show": False}, **more)
-
-
-def entitle(chart: Any, title: str) -> None:
-    """Give a chart this title."""
-    if chart.title != title:  # a chart is built anew for a new title
-        chart.title = title
-
-
-def plot(
-    gui: viser.GuiApi,
-    title: str,
-    label: str,
-    series: tuple[uplot.Series, ...],
-    height: int,
-    top: float | None = 1.1,
-    ticks: tuple[float, ...] = (),
-) -> Any:
-    """An empty chart.
-
-    label : of the x axis
-    top   : of the y axis, which begins at 0; None: it follows what is drawn
-    ticks : steps between the numbers of the x axis that read well; any if empty
-    """
+def add_chart(gui: viser.GuiApi, form: Chart, height: int) -> Any:
+    """A chart that shows nothing yet."""
     small = "11px system-ui, sans-serif"
+    turns = {"incrs": (30.0, 45.0, 90.0, 180.0)} if form.across == (-180.0, 180.0) else {}
     return gui.add_uplot(
-        empty(len(series)),
-        (uplot.Series(label=label), *series),
-        title=title,
-        scales={
-            "x": uplot.Scale(time=False),
-            "y": uplot.Scale(auto=True) if top is None else uplot.Scale(range=(0.0, top)),
-        },
+        nothing(len(form.curves)),
+        (uplot.Series(label=form.axis), *map(_series, form.curves)),
+        title=form.title,
+        scales=_scales(form),
         axes=(
-            uplot.Axis(
-                label=label,
-                labelSize=16,
-                labelFont=small,
-                font=small,
-                size=26,
-                **({"incrs": ticks} if ticks else {}),
-            ),
-            uplot.Axis(font=small, size=46 if top is None else 42),
+            uplot.Axis(label=form.axis, labelSize=16, labelFont=small, font=small, size=26, **turns),
+            uplot.Axis(font=small, size=46 if form.up is None else 42),
         ),
         legend=uplot.Legend(show=True, live=False),
         height=height,
@@ -72,6 +36,34 @@ def plot(
     )
 
 
-def empty(series: int) -> tuple[FloatArray, ...]:
-    """The data of a chart of so many series that shows nothing."""
-    return (_NOTHING[0], *(_NOTHING[1] for _ in range(series)))
+def fill(handle: Any, chart: Chart) -> None:
+    """Show the curves; the widget is built anew where its title or an axis changes."""
+    put(handle, scales=_scales(chart), title=chart.title)
+    handle.data = chart.columns
+
+
+def nothing(curves: int) -> tuple[FloatArray, ...]:
+    """The data of a chart that shows nothing."""
+    return (np.array([0.0, 1.0]), *[np.full(2, np.nan)] * curves)
+
+
+def _scales(chart: Chart) -> dict[str, uplot.Scale]:
+    across, up = chart.across, chart.up
+    return {
+        "x": uplot.Scale(time=False) if across is None else uplot.Scale(time=False, range=across),
+        "y": uplot.Scale(auto=True) if up is None else uplot.Scale(range=up),
+    }
+
+
+def _series(curve: Curve) -> uplot.Series:
+    rgb = getattr(LIGHT, curve.colour)
+    colour, points = css(rgb), {"show": False}
+    if curve.kind == "dots":
+        # no fill of the series itself: it would reach from mark to mark
+        rim = RIM if curve.colour == "answer" else colour
+        points = {"show": True, "size": curve.size, "fill": colour, "stroke": rim, "width": 1}
+    width = 0 if curve.kind in ("dots", "band") else curve.size
+    how: dict[str, Any] = {"dash": (3, 4), "alpha": 0.8} if curve.kind == "dash" else {}
+    if curve.kind in FILLED:
+        how["fill"] = css(rgb, FILLED[curve.kind] if curve.colour == "margin" else 0.55)
+    return uplot.Series(label=curve.name, stroke=colour, width=width, points=points, **how)  # type: ignore[typeddict-item]

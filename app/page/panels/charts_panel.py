@@ -6,38 +6,29 @@ from collections.abc import Callable
 from typing import Any
 
 import viser
-from viser import uplot
 
 from algorithms.maps.map_fusion import Fusion
-from algorithms.methods.merge_result import MergeResult
-from algorithms.methods.steps import (
-    AnswersDetail,
-    AugmentDetail,
-    CandidatesDetail,
-    HoughDetail,
-    MatchesDetail,
-    ProofDetail,
-    ProvenDetail,
-    RefineDetail,
-    ShiftDetail,
-    TurnsDetail,
-    WindowDetail,
-)
-from algorithms.optimisation.branch_and_bound import ProofState
-from app.drawing.palette import LIGHT, css
+from algorithms.methods.steps import CandidatesDetail, HoughDetail, ProofDetail, RefineDetail, TurnsDetail
 from app.model import chart_data as charts
 from app.model import status_text as words
 from app.model.run_state import RunState
-from app.page.panels.chart_widgets import dots, empty, entitle, line, plot
-from app.page.panels.html_widgets import box, table
+from app.model.step_table import PROOF, RESULT, SHIFT, SWARM, TURN, row_of
+from app.page.panels.chart_widgets import add_chart, fill, nothing
+from app.page.panels.html_widgets import box, put, table
 
-TURN, SHIFT, SWARM, PROOF, RESULT = "Turn", "Shift", "Swarm", "Proof", "Result"
 WIDTH = 316
-LINES = 4  # courses of the search that are drawn
-
-# colours that read on light and on dark panels alike
-REF, MOV, MARK, BEST = css(LIGHT.ref), css(LIGHT.mov), css(LIGHT.particle), css(LIGHT.best)
-GREY, OPTIMUM, RIVAL, RIM = css(LIGHT.margin), css(LIGHT.answer), css(LIGHT.rival), "#9a8b00"
+# name of a chart -> its page, how it looks, its height
+CHARTS = {
+    "hough": (TURN, charts.HOUGH, 190),
+    "turns": (TURN, charts.TURNS, 190),
+    "circle": (TURN, charts.CIRCLE, 230),
+    "x spectra": (SHIFT, charts.X_SPECTRA, 140),
+    "x": (SHIFT, charts.SHIFT_X, 140),
+    "y spectra": (SHIFT, charts.Y_SPECTRA, 140),
+    "y": (SHIFT, charts.SHIFT_Y, 140),
+    "climb": (SWARM, charts.CLIMB, 230),
+    "proof": (PROOF, charts.PROOF, 250),
+}
 # what a page says while there is nothing on it
 HINTS = {
     TURN: "Which way do the walls run? Press Merge, or move a slider: the Hough spectra of both maps, and "
@@ -58,81 +49,23 @@ class ChartsPanel:
         self._turned = turned
         self._panel = gui.add_panel()
         self._chosen = False
-        self._shown: dict[str, object] = {}
+        self._shown: dict[str, object] = {}  # by the name of a chart or text: what it was made from
         with self._panel.add_tab("Stages", icon=viser.Icon.CHART_LINE):
             self._pages = gui.add_button_group("", (TURN, SHIFT, SWARM, PROOF, RESULT))
             self._pages.on_click(lambda _: self._choose())
             self._hint = gui.add_html("")
-            self._hough = plot(
-                gui,
-                *charts.HOUGH,
-                (line("map 1", REF), line("map 2", MOV)),
-                190,
-            )
-            self._turns = plot(
-                gui,
-                *charts.TURNS,
-                (line("CC", GREY), dots("candidates", MARK, 8), dots("at hand", BEST, 10)),
-                190,
-            )
-            self._circle = plot(
-                gui,
-                charts.CIRCLE[0].format("agreement"),
-                charts.CIRCLE[1],
-                (line("agreement", GREY), dots("best", BEST, 10)),
-                230,
-                None,
-                (30.0, 45.0, 90.0, 180.0),
-            )
-            window = uplot.Series(
-                label="window", width=0, fill="rgba(107,114,128,.20)", points={"show": False}
-            )
-            self._shifts: list[tuple[Any, Any]] = []
-            for axis, number, names in (("x", "(13)", charts.SHIFT_X), ("y", "(14)", charts.SHIFT_Y)):
-                self._shifts.append(
-                    (
-                        plot(
-                            gui,
-                            f"{axis.upper()} spectra, eq. {number}; map 2 turned and shifted",
-                            f"{axis} (m)",
-                            (line("map 1", REF), line("map 2", MOV)),
-                            140,
-                        ),
-                        plot(
-                            gui,
-                            *names,
-                            (window, line("C", GREY), dots("shift", BEST, 9)),
-                            140,
-                        ),
-                    )
-                )
-            colours = (BEST, MARK, REF, GREY)
-            self._climb = plot(
-                gui,
-                charts.CLIMB[0].format("value"),
-                charts.CLIMB[1],
-                tuple(line(f"{k + 1}", colour, 2.2 if k == 0 else 1.3) for k, colour in enumerate(colours)),
-                230,
-                None,
-            )
-            self._candidates = gui.add_html("")
             self._proof_says = gui.add_html("")
-            self._proof = plot(
-                gui,
-                charts.PROOF[0].format("value"),
-                charts.PROOF[1],
-                (
-                    line("ceiling", GREY, 1.4, fill="rgba(107,114,128,.16)"),
-                    line("best met", MARK, 1, fill="rgba(230,159,0,.55)"),
-                    line("floor", RIVAL, 1, dash=(3, 4), alpha=0.8),
-                    dots("optimum", OPTIMUM, 11, RIM),
-                    dots("rivals", RIVAL, 9),
-                ),
-                250,
-                ticks=(30.0, 45.0, 90.0, 180.0),
-            )
-            self._rivals = gui.add_html("")
+            self._charts = {name: add_chart(gui, form, height) for name, (_, form, height) in CHARTS.items()}
+            self._candidates, self._rivals = gui.add_html(""), gui.add_html("")
             self.result = gui.add_html("")
+        self._texts = (self._proof_says, self._candidates, self._rivals, self.result)
+        self._widgets: list[tuple[Any, str, str]] = [  # each with its page and its name in ``_shown``
+            *((handle, CHARTS[name][0], name) for name, handle in self._charts.items()),
+            (self._candidates, SWARM, "candidates"),
+            (self._proof_says, PROOF, "proof"),
+            (self._rivals, PROOF, "proof"),
+            (self.result, RESULT, "result"),
+        ]
         self._panel.dock_left()
         self._panel.set_width(WIDTH)
         self.page = TURN
@@ -162,44 +95,20 @@ class ChartsPanel:
         """Go along with the run from now on."""
         self._chosen = False
 
-    def turn_to(self, page: str) -> None:
-        """Show a page, unless the person has chosen one."""
-        if not self._chosen and page != self.page:
-            self.page = page
-            self._show_page()
-
     def _show_page(self) -> None:
-        if self._pages.value != self.page:
-            self._pages.value = self.page
-        for handles, page in (
-            ((self._hough, self._turns), TURN if "turn" in self._shown else ""),
-            ((self._circle,), TURN if "circle" in self._shown else ""),
-            ([handle for pair in self._shifts for handle in pair], SHIFT),
-            ((self._climb, self._candidates), SWARM),
-            ((self._proof_says, self._proof, self._rivals), PROOF),
-            ((self.result,), RESULT),
-        ):
-            shown = bool(page) and self.page == page and self._filled(page)
-            for handle in handles:
-                if handle.visible != shown:
-                    handle.visible = shown
-        empty = not self._filled(self.page)
-        if self._hint.visible != empty:
-            self._hint.visible = empty
-        if empty and HINTS[self.page] not in self._hint.content:
-            self._hint.content = box(HINTS[self.page], "plain")
-
-    def _filled(self, page: str) -> bool:
-        """Whether there is anything to show on a page."""
-        if page == RESULT:
-            return bool(self.result.content)
-        if page == TURN and "circle" in self._shown:
-            return True
-        return {TURN: "turn", SHIFT: "shift", SWARM: "candidates", PROOF: "proof"}[page] in self._shown
+        put(self._pages, value=self.page)
+        empty = True
+        for handle, page, name in self._widgets:
+            shown = page == self.page and bool(self._shown.get(name))
+            put(handle, visible=shown)
+            empty = empty and not shown
+        put(self._hint, visible=empty)
+        if empty:
+            put(self._hint, content=box(HINTS[self.page], "plain"))
 
     def tell(self, answer: str) -> None:
         """Put the answer, as HTML, on its page."""
-        self.result.content = answer
+        self.result.content = self._shown["result"] = answer
         self._show_page()
 
     # --- a run ------------------------------------------------------------------------------------
@@ -207,88 +116,60 @@ class ChartsPanel:
     def clear(self) -> None:
         """Nothing is known."""
         self._shown.clear()
-        self._candidates.content = self.result.content = ""
-        self._proof_says.content = self._rivals.content = ""
-        pairs = (chart for pair in self._shifts for chart in pair)
-        for chart in (self._hough, self._turns, self._circle, *pairs, self._climb, self._proof):
-            chart.data = empty(len(chart.data) - 1)
+        for text in self._texts:
+            text.content = ""
+        for chart in self._charts.values():
+            chart.data = nothing(len(chart.data) - 1)
         self._show_page()
 
     def show(self, story: RunState, follow: bool) -> None:
         """Draw what has changed since the last call; ``follow`` turns to the page of the stage at hand."""
         detail = story.last.detail if story.last else None
-        hough, refine = story.get(HoughDetail), story.get(RefineDetail)
-        shift = story.shifts[-1] if story.shifts else None
-        found, proof = story.get(CandidatesDetail), story.get(ProofDetail)
-        # after the search the best candidate is the one at hand
-        at_hand = found.candidates[0] if found else shift.candidate if shift else None
+        hough, found, proof = story.get(HoughDetail), story.get(CandidatesDetail), story.get(ProofDetail)
+        refine, measure, chosen = story.get(RefineDetail), story.measure, story.at_hand
         if isinstance(detail, TurnsDetail):
-            self._turn_all(detail, story.measure.name)
+            self._forget("hough", "turns")  # of an earlier run, with spectra
+            self._draw("circle", detail, lambda: charts.circle(detail, measure.name))
         elif hough is not None and detail is hough:
-            self._shown.pop("circle", None)
-        if hough is not None and self._new("turn", (hough, at_hand)):
-            self._hough.data = charts.hough_spectra(hough.match)
-            chosen = at_hand.T_ref_mov.theta if at_hand else None
-            self._turns.data = charts.turn_correlation(hough.match, chosen)
-            around = charts.turn_range(hough.match)
-            if self._new("turn scale", around):
-                self._turns.scales = {"x": uplot.Scale(time=False), "y": uplot.Scale(range=around)}
-        if at_hand is not None and self._new("shift", at_hand):
-            for (spectra, correlation), match in zip(self._shifts, (at_hand.x, at_hand.y), strict=True):
-                spectra.data = charts.shift_spectra(match)
-                correlation.data = charts.shift_correlation(match)
-        measure = story.measure
-        if refine is not None and self._new("climb", refine):
-            self._climb.data = charts.courses(story.courses, LINES)
-            entitle(self._climb, charts.CLIMB[0].format(measure.row))
+            self._forget("circle")
+        if hough is not None:
+            turn = chosen.T_ref_mov.theta if chosen else None
+            self._draw("hough", hough, lambda: charts.hough_spectra(hough.match))
+            self._draw("turns", (hough, chosen), lambda: charts.turn_correlation(hough.match, turn))
+        if chosen is not None:
+            x, y = chosen.x, chosen.y
+            self._draw("x spectra", chosen, lambda: charts.shift_spectra(x, charts.X_SPECTRA))
+            self._draw("y spectra", chosen, lambda: charts.shift_spectra(y, charts.Y_SPECTRA))
+            self._draw("x", chosen, lambda: charts.shift_correlation(x, charts.SHIFT_X))
+            self._draw("y", chosen, lambda: charts.shift_correlation(y, charts.SHIFT_Y))
+        if refine is not None:
+            self._draw("climb", refine, lambda: charts.climb(story.courses, measure))
         if found is not None and self._new("candidates", (found, refine)):
             rows = charts.candidate_rows(found.candidates, story.courses, measure)
-            head = ("rank", "Δθ", "Δx (m)", "Δy (m)", "look", "swarm")
-            self._candidates.content = table(rows, head)
-        if proof is not None and self._new("proof", proof):
-            self._prove(story, proof.state)
-        elif proof is None and story.reached(Fusion):  # of an earlier run; this method proves nothing
-            self._shown.pop("proof", None)
+            self._candidates.content = table(rows, ("rank", "Δθ", "Δx (m)", "Δy (m)", "look", "swarm"))
+        if proof is not None:
+            if self._draw("proof", proof, lambda: charts.proof(proof.state, story.ceiling, measure)):
+                self._proof_says.content = box(words.proof_says(proof.state, measure), "plain")
+                head = ("on the raster", "Δθ", measure.unit or measure.name, "of the best")
+                rows = charts.proof_rows(proof.state, measure)
+                self._rivals.content = table(rows, head) if rows else ""
+        elif story.reached(Fusion):  # of an earlier run; this method proves nothing
+            self._forget("proof")
+        if follow and not self._chosen:
+            self.page = row_of(detail).page or self.page
         self._show_page()
-        if not follow:
-            return
-        if isinstance(detail, (AugmentDetail, HoughDetail, TurnsDetail)):
-            self.turn_to(TURN)
-        elif isinstance(detail, (WindowDetail, ShiftDetail, CandidatesDetail)):
-            self.turn_to(SHIFT)
-        elif isinstance(detail, (RefineDetail, AnswersDetail)):
-            self.turn_to(SWARM)
-        elif isinstance(detail, (ProofDetail, ProvenDetail)):
-            self.turn_to(PROOF)
-        elif isinstance(detail, (MatchesDetail, MergeResult)):
-            self.turn_to(RESULT)
 
-    def _turn_all(self, detail: TurnsDetail, measure: str) -> None:
-        if not self._new("circle", detail):
-            return
-        self._shown.pop("turn", None)  # of an earlier run, with spectra
-        self._circle.scales = {
-            "x": uplot.Scale(time=False, range=(-180.0, 180.0)),
-            "y": uplot.Scale(range=charts.circle_range(detail)),
-        }
-        entitle(self._circle, charts.CIRCLE[0].format(measure))
-        self._circle.data = charts.circle(detail)
+    def _forget(self, *names: str) -> None:
+        for name in names:
+            self._shown.pop(name, None)
 
-    def _prove(self, story: RunState, state: ProofState) -> None:
-        measure, span = story.measure, charts.proof_range(state, story.ceiling)
-        # the axis first: its curves are clipped to it
-        if self._new("proof scale", span):
-            self._proof.scales = {
-                "x": uplot.Scale(time=False, range=(-180.0, 180.0)),
-                "y": uplot.Scale(range=span),
-            }
-        entitle(self._proof, charts.PROOF[0].format(measure.row))
-        self._proof.data = charts.proof(state, span[1])
-        self._proof_says.content = box(words.proof_says(state, measure), "plain")
-        rows = charts.proof_rows(state, measure)
-        head = ("on the raster", "Δθ", measure.unit or measure.name, "of the best")
-        self._rivals.content = table(rows, head) if rows else ""
+    def _draw(self, name: str, source: object, chart: Callable[[], charts.Chart]) -> bool:
+        """Draw a chart, unless it was made from the same; whether it was drawn."""
+        new = self._new(name, source)
+        if new:
+            fill(self._charts[name], chart())
+        return new
 
     def _new(self, name: str, source: object) -> bool:
         before, self._shown[name] = self._shown.get(name), source
-        return before is None or before != source
+        return before != source

@@ -14,7 +14,7 @@ import viser
 from app.drawing.palette import LIGHT, QUIET
 from app.page.cancellable_task import CancellableTask, DownloadTask
 from app.page.panels.html_widgets import box
-from app.report.export import ACTED_UPON, ALONE, ARCHIVE, ResultFiles
+from app.report.result_files import ACTED_UPON, ALONE, ARCHIVE, ResultFiles
 from app.report.ros_transform import publish_command
 from app.system.cancellation import Check
 

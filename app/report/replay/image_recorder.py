@@ -11,40 +11,12 @@ from typing import Any
 from app.drawing.grid_pixels import Pixels
 from app.drawing.png import data_uri
 
-FRAMES = {"ref": "scene", "mov": "mov", "ghost": "ghost"}  # of the scene's tree -> of the player
-
-
-class PictureHandle:
-    """A picture that lies in the scene; where it lies in the end is what is recorded."""
-
-    def __init__(
-        self,
-        number: int,
-        position: tuple[float, float, float],
-        wxyz: tuple[float, ...],
-        scene: PictureScene,
-    ) -> None:
-        self.number, self.visible = number, True
-        self.position, self.wxyz = position, wxyz
-        self._scene = scene
-
-    @property
-    def at(self) -> list[float]:
-        """Its middle in its frame, metres, and its turn, radians."""
-        x, y, _ = self.position
-        return [round(x, 4), round(y, 4), round(yaw(self.wxyz), 6)]
-
-    def remove(self) -> None:
-        """It is not shown any more; what was recorded of it stays."""
-        self._scene.shown.remove(self)
-
 
 class FrameHandle:
     """Where the pictures below a frame lie."""
 
-    def __init__(self, wxyz: tuple[float, ...]) -> None:
-        self.position: tuple[float, ...] = (0.0, 0.0, 0.0)
-        self.wxyz = wxyz
+    def __init__(self, position: tuple[float, ...], wxyz: tuple[float, ...]) -> None:
+        self.position, self.wxyz = position, wxyz
 
     @property
     def pose(self) -> list[float]:
@@ -52,18 +24,39 @@ class FrameHandle:
         return [self.position[0], self.position[1], yaw(self.wxyz)]
 
 
+class PictureHandle:
+    """A picture that lies in the scene; where it lies in the end is what is recorded.
+
+    picture : what the player knows of it
+    pose    : of its middle
+    """
+
+    def __init__(self, number: int, picture: dict[str, Any], pose: FrameHandle, scene: PictureScene) -> None:
+        self.number, self.picture, self.visible = number, picture, True
+        self.position, self.wxyz = pose.position, pose.wxyz
+        self._scene = scene
+
+    def recorded(self) -> dict[str, Any]:
+        """The picture with its middle in its frame, metres, and its turn, radians."""
+        x, y, _ = self.position
+        return self.picture | {"at": [round(x, 4), round(y, 4), round(yaw(self.wxyz), 6)]}
+
+    def remove(self) -> None:
+        """It is not shown any more; what was recorded of it stays."""
+        self._scene.shown.remove(self)
+
+
 class PictureScene:
     """Every picture once, in the order they came, and which of them are seen at the moment."""
 
     def __init__(self) -> None:
-        self._pictures: list[dict[str, Any]] = []
         self._handles: list[PictureHandle] = []
         self.shown: list[PictureHandle] = []
         self.ghost: FrameHandle | None = None
 
     def add_frame(self, name: str, *, wxyz: tuple[float, ...] = (1, 0, 0, 0), **_: Any) -> FrameHandle:
         """A frame of the tree; those that move are told by the page or, for the ghost, read here."""
-        frame = FrameHandle(wxyz)
+        frame = FrameHandle((0.0, 0.0, 0.0), wxyz)
         if name.endswith("/ghost"):
             self.ghost = frame
         return frame
@@ -80,15 +73,13 @@ class PictureScene:
         **_: Any,
     ) -> PictureHandle:
         """A picture with its middle at ``position`` of its frame; metres."""
-        self._pictures.append(
-            {
-                "frame": FRAMES[name.split("/")[2]],
-                "data": data_uri(pixels),
-                "size": [round(wide, 4), round(high, 4)],
-                "thin": "free" not in name,
-            }
-        )
-        handle = PictureHandle(len(self._handles), position, wxyz, self)
+        picture = {
+            "frame": name.split("/")[2],
+            "data": data_uri(pixels),
+            "size": [round(wide, 4), round(high, 4)],
+            "thin": "free" not in name,
+        }
+        handle = PictureHandle(len(self._handles), picture, FrameHandle(position, wxyz), self)
         self._handles.append(handle)
         self.shown.append(handle)
         return handle
@@ -96,9 +87,7 @@ class PictureScene:
     @property
     def pictures(self) -> list[dict[str, Any]]:
         """Every picture with the place that it was given last."""
-        return [
-            picture | {"at": handle.at} for picture, handle in zip(self._pictures, self._handles, strict=True)
-        ]
+        return [handle.recorded() for handle in self._handles]
 
     @property
     def seen(self) -> list[int]:

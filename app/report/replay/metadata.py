@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import METHODS
 from app.drawing import grid_pixels as render
 from app.model.merge_inputs import MergeInputs
 from app.model.settings import settings_of, text_for, value_at
-from app.report.replay.recorder import LATER_PARTICLES, PARTICLES, PICTURE
+from app.report.replay.recorder import LATER_PARTICLES, PARTICLES, PICTURE, sizes
 from app.system.version import versions
 
 Rows = list[list[str]]
@@ -36,13 +35,10 @@ class ReplayMetadata:
         return METHODS[self.method].title
 
     def facts(self) -> Rows:
-        """What was merged, and how; words and what there is to say."""
-        named = zip(("map 1", "map 2"), (self.inputs.ref, self.inputs.mov), strict=True)
-        sightings = len(self.inputs.observations)
         return [
             ["pair", self.inputs.name],
-            *([name, _size(grid)] for name, grid in named if grid is not None),
-            ["observations", str(sightings)],
+            *sizes(self.inputs),
+            ["observations", str(len(self.inputs.observations))],
             ["method", f"{self.method_title} ({self.method})"],
             ["seed", str(self.seed)],
             ["made with", ", ".join(f"{name} {number}" for name, number in self.versions.items())],
@@ -72,7 +68,3 @@ class ReplayMetadata:
                 f"The pictures are coarser than the maps: at most {PICTURE} pixels on a side; walls are kept."
             )
         return notes
-
-
-def _size(grid: GridMap) -> str:
-    return f"{grid.width} × {grid.height} cells of {grid.resolution:g} m"

@@ -136,14 +136,19 @@ def record(steps: Iterable[Step], inputs: MergeInputs, config: Any) -> Recording
     }
 
 
-def beginning(inputs: MergeInputs) -> dict[str, Any]:
-    """What there is before anything was done."""
-    rows = [
+def sizes(inputs: MergeInputs) -> list[list[str]]:
+    """How large the maps are, a row each."""
+    return [
         [name, f"{grid.width} × {grid.height} cells of {grid.resolution:g} m"]
         for name, grid in (("map 1", inputs.ref), ("map 2", inputs.mov))
         if grid is not None
     ]
-    return {"title": inputs.name, "rows": [*rows, ["sightings of robot 2", str(len(inputs.observations))]]}
+
+
+def beginning(inputs: MergeInputs) -> dict[str, Any]:
+    """What there is before anything was done."""
+    seen = ["sightings of robot 2", str(len(inputs.observations))]
+    return {"title": inputs.name, "rows": [*sizes(inputs), seen]}
 
 
 def observed(inputs: MergeInputs) -> dict[str, Any]:

@@ -323,14 +323,14 @@ def test_what_helps_after_a_rival_was_refused_is_a_method_that_looks_at_the_sigh
 def test_a_chart_of_every_turn_marks_the_best_and_holds_what_is_not_tried_yet():
     turns = np.radians(np.arange(-180, 180, 10.0))
     scores = np.where(np.arange(36) < 20, np.cos(turns - turns[12]), np.nan)
-    x, y, best = charts.circle(TurnsDetail(turns, scores))
+    x, y, best = charts.circle(TurnsDetail(turns, scores)).columns
     assert np.flatnonzero(np.isfinite(best)).tolist() == [12]
     assert (y[20:] == np.nanmin(scores)).all()
     assert np.allclose(x, np.degrees(turns))
-    _, _, best = charts.circle(TurnsDetail(turns, scores, best=float(turns[3]) + 2 * np.pi))
+    _, _, best = charts.circle(TurnsDetail(turns, scores, best=float(turns[3]) + 2 * np.pi)).columns
     assert np.flatnonzero(np.isfinite(best)).tolist() == [3]
-    low, high = charts.circle_range(TurnsDetail(turns, scores))
+    low, high = charts.circle(TurnsDetail(turns, scores)).up
     assert low < np.nanmin(scores) < np.nanmax(scores) < high
     nothing = TurnsDetail(turns, np.full(36, np.nan))
-    assert np.isfinite(charts.circle(nothing)[1]).all()
-    assert charts.circle_range(nothing)[0] < charts.circle_range(nothing)[1]
+    assert np.isfinite(charts.circle(nothing).columns[1]).all()
+    assert charts.circle(nothing).up[0] < charts.circle(nothing).up[1]

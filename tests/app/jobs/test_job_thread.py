@@ -21,7 +21,8 @@ from algorithms.optimisation.search_box import SearchBox
 from app.jobs.job_thread import JobThread
 from app.jobs.runner import Runner
 from app.model.merge_job import MergeJob
-from app.model.playback import DWELL, FRAME, InterruptibleWait, dwell
+from app.model.playback import FRAME, InterruptibleWait, dwell
+from app.model.step_table import STEPS
 
 PATIENCE = 10.0  # seconds until a test gives up
 ROOM = GridMap(np.full((4, 4), FREE, dtype=np.int8), 0.1)
@@ -128,7 +129,7 @@ def test_at_a_pace_every_step_that_is_meant_to_be_seen_is_shown(start, ear, monk
     start(steps(1, 2, 3), waiting=waiting, clock=lambda: 0.0).request(job(pace=2.0))
     assert ear.done.wait(PATIENCE)
     assert [number for what, number in ear.heard if what == "show"] == [1, 2, 3]
-    assert waited == [2.0 * DWELL[ObservationDetail]] * 3
+    assert waited == [2.0 * STEPS[ObservationDetail].stay] * 3
 
 
 def test_a_newer_request_cuts_the_older_one_short_even_while_it_waits(start, ear):
@@ -248,7 +249,7 @@ def test_a_closed_session_ends_its_thread(start, ear):
 def test_known_steps_are_played_again_only_when_asked_for():
     known = Step("observe", detail(), 0.0, reused=True)
     assert dwell(known, 1.0, again=False) == 0
-    assert dwell(known, 1.0, again=True) == DWELL[ObservationDetail]
+    assert dwell(known, 1.0, again=True) == STEPS[ObservationDetail].stay
     assert dwell(known, 0.0, again=True) == 0
 
 

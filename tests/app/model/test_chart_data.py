@@ -44,8 +44,8 @@ def inside(x: FloatArray, y: FloatArray, at: float) -> float:
 
 @given(states())
 def test_every_curve_of_a_proof_lies_on_the_circle_and_in_its_range_without_infinities(state):
-    low, top = charts.proof_range(state, 90.0)
-    x, ceiling, found, floor, best, rivals = charts.proof(state, top)
+    chart = charts.proof(state, 90.0, AGREEMENT)
+    (low, top), (x, ceiling, found, floor, best, rivals) = chart.up, chart.columns
     assert (np.diff(x) >= 0).all()
     assert x[0] == pytest.approx(-180)
     assert x[-1] == pytest.approx(180)
@@ -60,24 +60,24 @@ def test_every_curve_of_a_proof_lies_on_the_circle_and_in_its_range_without_infi
 
 @given(states())
 def test_in_the_middle_of_every_sector_stands_its_own_ceiling(state):
-    top = charts.proof_range(state, 90.0)[1]
-    x, ceiling, found, *_ = charts.proof(state, top)
+    chart = charts.proof(state, 90.0, AGREEMENT)
+    top, (x, ceiling, found, *_) = chart.up[1], chart.columns
     for turn, bound, met in zip(np.degrees(state.turns), state.ceilings, state.found, strict=True):
         assert inside(x, ceiling, turn) == pytest.approx(np.clip(bound, 0, top))
         assert inside(x, found, turn) == pytest.approx(np.clip(met, 0, top))
 
 
 def test_the_optimum_is_marked_at_its_turn_and_its_value():
-    x, _, _, _, best, rivals = charts.proof(proof_state(), 30.0)
+    x, _, _, _, best, rivals = charts.proof(proof_state(), 30.0, AGREEMENT).columns
     assert x[np.isfinite(best)] == pytest.approx(np.degrees(0.5))
     assert best[np.isfinite(best)] == pytest.approx(20.0)
     assert rivals[np.isfinite(rivals)] == pytest.approx(15.0)
 
 
 def test_the_axis_of_a_proof_stands_still_while_the_ceiling_comes_down():
-    first = charts.proof_range(proof_state(ceiling=90.0), 90.0)
-    assert charts.proof_range(proof_state(ceiling=21.0), 90.0) == first
-    assert charts.proof_range(proof_state(best_value=-inf, ceiling=-inf), -inf) == (0.0, 1.0)
+    first = charts.proof(proof_state(ceiling=90.0), 90.0, AGREEMENT).up
+    assert charts.proof(proof_state(ceiling=21.0), 90.0, AGREEMENT).up == first
+    assert charts.proof(proof_state(best_value=-inf, ceiling=-inf), -inf, AGREEMENT).up == (0.0, 1.0)
 
 
 def test_the_table_names_the_optimum_and_its_rivals():
@@ -90,9 +90,9 @@ def test_the_table_names_the_optimum_and_its_rivals():
 
 
 def test_a_climb_that_begins_outside_of_the_window_has_no_infinite_point():
-    x, *lines = charts.courses([[-inf, -3.0, 5.0], [-inf]], 3)
+    x, *lines = charts.climb([[-inf, -3.0, 5.0], [-inf]], AGREEMENT).columns
     assert x.tolist() == [1, 2, 3]
-    assert [line.tolist() for line in lines] == [[0, -3, 5], [0, 0, 0], [0, 0, 0]]
+    assert [line.tolist() for line in lines] == [[0, -3, 5], [0, 0, 0], [0, 0, 0], [0, 0, 0]]
 
 
 def test_a_mark_between_two_sectors_leaves_no_spike_in_the_stair():
@@ -105,6 +105,6 @@ def test_a_mark_between_two_sectors_leaves_no_spike_in_the_stair():
         rivals=np.zeros((0, 3)),
         rival_values=np.zeros(0),
     )
-    x, ceiling, *_ = charts.proof(state, 30.0)
+    x, ceiling, *_ = charts.proof(state, 30.0, AGREEMENT).columns
     assert x[x == 0].size == 3  # the end of one, the beginning of the other, the mark
     assert ceiling.tolist() == sorted(ceiling.tolist())

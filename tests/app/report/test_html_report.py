@@ -23,9 +23,8 @@ from algorithms.verdict.probability_model import Fit, quantities_of, shipped_mod
 from algorithms.verdict.wall_evidence import Evidence
 from app.model.merge_inputs import MergeInputs
 from app.page.panels.html_widgets import box
-from app.report.export import ACTED_UPON, ALONE, ResultFiles
 from app.report.html_report import report_page
-from app.report.result_files import report_of
+from app.report.result_files import ACTED_UPON, ALONE, ResultFiles, report_of
 from app.report.ros_transform import publish_command
 
 DEFAULTS = METHODS[DEFAULT_METHOD].defaults

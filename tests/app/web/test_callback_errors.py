@@ -23,7 +23,7 @@ from app.model.run_state import RunState
 from app.page.application import make_server
 from app.page.page_state import PageState
 from app.page.panels.files_panel import read_case as real_read_case
-from app.report.export import ResultFiles
+from app.report.result_files import ResultFiles
 from app.system.logging_setup import JsonFormatter, facts
 from app.web.callback_errors import OUT_OF_MEMORY, words
 

@@ -53,14 +53,6 @@ class FigureSlider:
     step: float = 1
 
 
-def _no_dials(study: LessonRun) -> tuple[FigureSlider, ...]:
-    return ()
-
-
-def _no_ink(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
-    return []
-
-
 @dataclass(frozen=True)
 class LessonFigure:
     """How one step is drawn.
@@ -76,8 +68,8 @@ class LessonFigure:
     needs: tuple[type, ...]
     draw: Callable[[LessonRun, At, Palette], str]
     story: Callable[[LessonRun, At], RunState]
-    dials: Callable[[LessonRun], tuple[FigureSlider, ...]] = _no_dials
-    ink: Callable[[LessonRun, At, SceneLayout, Palette], list[Item]] = _no_ink
+    dials: Callable[[LessonRun], tuple[FigureSlider, ...]] = lambda _: ()
+    ink: Callable[[LessonRun, At, SceneLayout, Palette], list[Item]] = lambda *_: []
     turn: Callable[[LessonRun, At], float] | None = None
 
 
@@ -118,7 +110,7 @@ def _lines(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> l
     first, second, step = study.votes
     for votes, lifted, anchor, frame in (
         (first, detail.ref, layout.anchor_ref, "scene"),
-        (second, detail.mov, layout.anchor_mov, "mov"),
+        (second, detail.mov, layout.anchor_mov, "map2"),
     ):
         for k, (theta, rho) in enumerate(spectra.strongest(votes, step)):
             ends = spectra.line_through(theta, rho, lifted.x_hat, reach) - anchor
@@ -146,33 +138,6 @@ def _moves(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> l
     return items
 
 
-def _line_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
-    return (FigureSlider("line", spectra.LINES),)
-
-
-def _slide_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
-    return (FigureSlider("slid by (°)", 180, spectra.first_turn(study), first=0),)
-
-
-def _turn_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
-    return (FigureSlider("candidate", len(study.get(HoughDetail).match.turns)),)
-
-
-def _shift_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
-    return (FigureSlider("candidate", len(study.all(ShiftDetail))),)
-
-
-def _off_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
-    half = search.TURN_STEPS // 2
-    return (
-        FigureSlider("off the best (°)", search.TURN_STEPS, half, -half * search.TURN_STEP, search.TURN_STEP),
-    )
-
-
-def _sample_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
-    return (FigureSlider("throws", len(study.samples), 1),)
-
-
 def _swarm_dials(study: LessonRun) -> tuple[FigureSlider, ...]:
     few = study.few
     # at first the particle with the longest way to go
@@ -185,25 +150,38 @@ def _look_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
     return (FigureSlider("look", count, count - 1),)
 
 
+_HALF = search.TURN_STEPS // 2
+_LINE = FigureSlider("line", spectra.LINES)
+_OFF = FigureSlider("off the best (°)", search.TURN_STEPS, _HALF, -_HALF * search.TURN_STEP, search.TURN_STEP)
+
+
 PICTURES: dict[str, LessonFigure] = {
     "observation": LessonFigure((ObservationDetail,), maps.observation, _up_to(ObservationDetail)),
     "augmentation": LessonFigure((AugmentDetail,), maps.augmentation, _up_to(AugmentDetail)),
     "dual": LessonFigure((ObservationDetail,), maps.dual, _up_to(ObservationDetail)),
-    "hough": LessonFigure((AugmentDetail,), spectra.hough, _up_to(AugmentDetail), _line_dial, _lines),
+    "hough": LessonFigure((AugmentDetail,), spectra.hough, _up_to(AugmentDetail), lambda _: (_LINE,), _lines),
     "spectrum": LessonFigure((HoughDetail,), spectra.spectrum, _up_to(AugmentDetail)),
     "correlation": LessonFigure(
-        (HoughDetail,), spectra.correlation, _up_to(HoughDetail), _slide_dial,
+        (HoughDetail,), spectra.correlation, _up_to(HoughDetail),
+        lambda study: (FigureSlider("slid by (°)", 180, spectra.first_turn(study), first=0),),
         turn=lambda study, at: radians(at[0]),
     ),
     "turned": LessonFigure(
-        (HoughDetail,), maps.turned, _up_to(HoughDetail), _turn_dial,
+        (HoughDetail,), maps.turned, _up_to(HoughDetail),
+        lambda study: (FigureSlider("candidate", len(study.get(HoughDetail).match.turns)),),
         turn=lambda study, at: study.get(HoughDetail).match.turns[at[0]],
     ),
-    "shift": LessonFigure((CandidatesDetail,), spectra.shift, _nth(ShiftDetail), _shift_dial),
+    "shift": LessonFigure(
+        (CandidatesDetail,), spectra.shift, _nth(ShiftDetail),
+        lambda study: (FigureSlider("candidate", len(study.all(ShiftDetail))),),
+    ),
     "window": LessonFigure((CandidatesDetail,), spectra.window, _up_to(CandidatesDetail)),
-    "objective": LessonFigure((CandidatesDetail,), search.objective, _up_to(CandidatesDetail), _off_dial),
+    "objective": LessonFigure(
+        (CandidatesDetail,), search.objective, _up_to(CandidatesDetail), lambda _: (_OFF,)
+    ),
     "samples": LessonFigure(
-        (CandidatesDetail,), search.samples, _searching(lambda study: study.samples, 0), _sample_dial
+        (CandidatesDetail,), search.samples, _searching(lambda study: study.samples, 0),
+        lambda study: (FigureSlider("throws", len(study.samples), 1),),
     ),
     "swarm": LessonFigure(
         (CandidatesDetail,), search.swarm, _searching(lambda study: study.few, 1), _swarm_dials, _moves

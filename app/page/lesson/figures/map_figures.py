@@ -8,14 +8,16 @@ from math import cos, degrees, pi, sin
 import numpy as np
 
 from algorithms.common.pose import Pose2
-from algorithms.maps.grid_map import FREE_UP_TO, OCCUPIED_FROM, UNKNOWN, CellArray
+from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN, CellArray
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import AugmentDetail, HoughDetail
 from algorithms.observations.observation import Encounter
 from app.drawing.draw_items import ellipse
+from app.drawing.grid_pixels import is_free, upright, wall_masks
+from app.drawing.grid_pixels import sheet as painted
 from app.drawing.palette import VIRIDIS, Palette
-from app.drawing.svg.map_plot import robot, scale_bar, scene, view_of
+from app.drawing.svg.map_plot import map_panel, robot, view_of
 from app.drawing.svg.map_raster import draw_levels, draw_map, under
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number, turn_label, worded
 from app.page.lesson.lesson_run import LessonRun
@@ -38,11 +40,7 @@ def observation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     )
     for x, grid, centre, colour, title in rows:
         view = view_of(centre, half, side, side)
-        plot = scene(sheet, x, 18, side, side, view)
-        sheet.text(x, 11, title, 11, bold=True)
-        plot.image(draw_map(view, palette, grid, colour))
-        sheet.rect(x, 18, side, side, None, INK, 0.35)
-        scale_bar(plot)
+        plot = map_panel(sheet, x, side, side, view, draw_map(view, palette, grid, colour), title)
         if x == 0:
             seen, here = plot.one(*met.x_ref.tolist()), plot.one(*o.observer.xy.tolist())
             heading, reach = o.observer.theta, 0.55 * o.range
@@ -80,7 +78,6 @@ def observation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
 
 
 def level_scale(sheet: SvgCanvas, x: float, y: float, wide: float, peak: float, words: str) -> None:
-    """The colour scale of the levels, from nothing to the peak."""
     sheet.image(np.ascontiguousarray(VIRIDIS[None]), x, y, wide, 9, smooth=True)
     sheet.rect(x, y, wide, 9, None, INK, 0.35)
     for share in (0.0, 0.5, 1.0):
@@ -96,9 +93,8 @@ def augmentation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     half = 2.35 * config.spread * max(config.aspect, 1 / config.aspect) ** 0.5
     for x, lifted, title in ((0.0, detail.ref, "map 1"), (196.0, detail.mov, "map 2")):
         view = view_of(lifted.x_hat, half, HALF, HALF)
-        plot = scene(sheet, x, 18, HALF, HALF, view)
-        sheet.text(x, 11, f"{title}, augmented", 11, bold=True)
-        plot.image(draw_levels(view, palette, lifted))
+        pixels = draw_levels(view, palette, lifted)
+        plot = map_panel(sheet, x, HALF, HALF, view, pixels, f"{title}, augmented")
         for k, name in ((1, "σ"), (2, "2 σ")):
             ring = plot.at(ellipse(lifted.x_hat, config.covariance(), k))
             sheet.path(ring, palette.text, 1.2, dash="4 3", close=True, alpha=0.75)
@@ -108,8 +104,6 @@ def augmentation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
             )
         px, py = plot.one(*lifted.x_hat.tolist())
         sheet.dot(px, py, 4, palette.conflict, "#fff")
-        sheet.rect(x, 18, HALF, HALF, None, INK, 0.35)
-        scale_bar(plot)
     level_scale(sheet, 0, 212, 250, detail.ref.peak, "level (1/m²)")
     return sheet.svg("Both maps, their walls coloured by level around the meeting place")
 
@@ -133,10 +127,7 @@ def dual(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     r0, c0 = max(0, low[1]), max(0, low[0])
     r1, c1 = min(grid.height, low[1] + across), min(grid.width, low[0] + across)
     patch[r0 - low[1] : r1 - low[1], c0 - low[0] : c1 - low[0]] = grid.cells[r0:r1, c0:c1]
-    pixels = np.full((across, across, 3), palette.unknown, dtype=np.uint8)
-    pixels[(patch >= 0) & (patch <= FREE_UP_TO)] = palette.free
-    pixels[patch >= OCCUPIED_FROM] = palette.ref
-    plot.image(np.ascontiguousarray(pixels[::-1]))
+    plot.image(upright(painted(patch, palette.ref, palette).pixels))
     for k in range(across + 1):
         at_ = k / across * side
         sheet.path([(at_, 18), (at_, 18 + side)], palette.margin, 0.5, alpha=0.5)
@@ -171,16 +162,15 @@ def turned(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     sheet = SvgCanvas(232)
     half = 2.0 * study.config.augment.spread
     about = Pose2(0.0, 0.0, match.turns[k]) @ Pose2(*(-detail.mov.x_hat).tolist())
-    places = ((0.0, detail.ref, detail.ref.x_hat, None), (196.0, detail.mov, np.zeros(2), about))
-    for x, lifted, centre, T in places:
+    how = f"map 2, turned by {turn_label(match.turns[k])}"
+    places = (
+        (0.0, detail.ref, detail.ref.x_hat, None, "map 1, as it is"),
+        (196.0, detail.mov, np.zeros(2), about, how),
+    )
+    for x, lifted, centre, T, title in places:
         view = view_of(centre, half, HALF, HALF)
-        plot = scene(sheet, x, 18, HALF, HALF, view)
-        plot.image(draw_levels(view, palette, lifted, T))
+        plot = map_panel(sheet, x, HALF, HALF, view, draw_levels(view, palette, lifted, T), title)
         sheet.dot(*plot.one(*centre.tolist()), 5, None, palette.conflict, width=2)
-        sheet.rect(x, 18, HALF, HALF, None, INK, 0.35)
-        scale_bar(plot)
-    sheet.text(0, 11, "map 1, as it is", 11, bold=True)
-    sheet.text(196, 11, f"map 2, turned by {turn_label(match.turns[k])}", 11, bold=True)
     kind = "the twin of a peak" if match.twins[k] else "a peak"
     words = (
         f"Candidate {k + 1} of {len(match.turns)}: {kind}, correlation {match.strengths[k]:.0%} of the best."
@@ -191,7 +181,7 @@ def turned(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
 
 def _class(cells: CellArray) -> np.ndarray:
     """0 wall, 1 free, 2 unknown, of every cell."""
-    return np.where(cells >= OCCUPIED_FROM, 0, np.where((cells >= 0) & (cells <= FREE_UP_TO), 1, 2))
+    return np.where(cells >= OCCUPIED_FROM, 0, np.where(is_free(cells), 1, 2))
 
 
 def merged(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
@@ -201,21 +191,12 @@ def merged(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     counts = np.bincount((3 * first + second).ravel(), minlength=9).reshape(3, 3)
     sheet = SvgCanvas(218)
     view = view_of(result.encounter.x_ref, 2.0 * study.config.augment.spread, HALF, HALF)
-    plot = scene(sheet, 0, 18, HALF, HALF, view)
-    sheet.text(0, 11, "around the meeting place", 11, bold=True)
     pixels = view.blank(palette)
     a, b = (under(part, fusion.merged, view, None, 2) for part in (first, second))
-    for mask, colour in (
-        ((a == 1) | (b == 1), palette.free),
-        (a == 0, palette.ref),
-        (b == 0, palette.mov),
-        ((a == 0) & (b == 0), palette.agreed),
-        ((a == 0) & (b == 1) | (a == 1) & (b == 0), palette.conflict),
-    ):
+    pixels[(a == 1) | (b == 1)] = palette.free
+    for mask, colour in wall_masks((a == 0, b == 0), (a == 1, b == 1), palette):
         pixels[mask] = colour
-    plot.image(pixels)
-    sheet.rect(0, 18, HALF, HALF, None, INK, 0.35)
-    scale_bar(plot)
+    map_panel(sheet, 0, HALF, HALF, view, pixels, "around the meeting place")
     x, y, wide, high = 242.0, 62.0, 45.0, 38.0
     sheet.text(x + 1.5 * wide, 30, "map 2 says", 11, "middle", worded(palette.mov, palette), True)
     sheet.text(x - 44, 51, "map 1", 11, colour=worded(palette.ref, palette), bold=True)

@@ -8,13 +8,14 @@ from math import degrees, hypot
 import numpy as np
 import skimage  # its parts are loaded where they are first used
 
-from algorithms.common.pose import FloatArray, Pose2
+from algorithms.common.pose import FloatArray, Pose2, wrap_angle
 from algorithms.methods.steps import AugmentDetail, ProofDetail, WindowDetail
 from algorithms.optimisation.objective import PAD, Objective
 from algorithms.optimisation.optimiser import SearchState
-from app.drawing.draw_items import ellipse
+from app.drawing.draw_items import ellipse, rectangle
 from app.drawing.palette import Palette, css, viridis
-from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, ticks
+from app.drawing.svg.chart_plot import draw_chart
+from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, ticks, turn_label
 from app.model import chart_data as charts
 from app.model.objective_label import AGREEMENT, GAMMA, ObjectiveLabel, measure_of
 from app.page.lesson.lesson_run import FEW, LessonRun
@@ -42,23 +43,20 @@ def best_of(study: LessonRun) -> Pose2:
     return study.box.transform(study.box.centre)
 
 
-def _landscape(objective: Objective, study: LessonRun, turn: float, half: float) -> FloatArray:
-    """(SIDE, SIDE) values around x̂₁ at one turn, row 0 at the top."""
-    coupled = study.get(WindowDetail).coupled
-    x0, y0 = coupled.x_ref[0].tolist()
+def _landscape(
+    value: Objective, middle: FloatArray, half: float, turn: float, pivot: FloatArray
+) -> FloatArray:
+    """(SIDE, SIDE) values at one turn where the pivot goes around a place, row 0 at the top."""
+    x0, y0 = middle.tolist()
     offset = (np.arange(SIDE) + 0.5) / SIDE * 2 * half - half
     x, y = np.meshgrid(x0 + offset, y0 - offset)
-    return objective(transforms(x.ravel(), y.ravel(), turn, coupled.pivot)).reshape(SIDE, SIDE)
-
-
-def _half(study: LessonRun) -> float:
-    coupled = study.get(WindowDetail).coupled
-    return max(1.0, 0.75 * float((coupled.high - coupled.low).max()))
+    return value(transforms(x.ravel(), y.ravel(), turn, pivot)).reshape(SIDE, SIDE)
 
 
 def objective(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Γ and the agreement over the shift at a turn, and over the turn at the best shift."""
-    best, coupled, half = best_of(study), study.get(WindowDetail).coupled, _half(study)
+    best, coupled = best_of(study), study.get(WindowDetail).coupled
+    half = max(1.0, 0.75 * float((coupled.high - coupled.low).max()))
     off = np.radians(TURN_STEP) * (at[0] - TURN_STEPS // 2)
     turn = best.theta + off
     place = best.apply(coupled.pivot)
@@ -74,7 +72,7 @@ def objective(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         (226.0, study.agreement, AGREEMENT, css(palette.particle)),
     )
     for x, value, measure, colour in rows:
-        grid = _landscape(value, study, turn, half)
+        grid = _landscape(value, coupled.x_ref[0], half, turn, coupled.pivot)
         plot = SvgPlot(sheet, x, 18, side, side, (x0 - half, x0 + half), (y0 - half, y0 + half))
         top = float(value(best.array()[None])[0])
         highest = max(top, float(grid.max()), 1e-12)
@@ -84,26 +82,18 @@ def objective(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         ring = plot.at(ellipse(coupled.x_ref[0], coupled.covariances[0], coupled.k))
         sheet.path(ring, "#fff", 1.4, dash="4 3", close=True)
         sheet.star(*plot.one(*place.tolist()), 7, palette.answer, palette.rim)
-        marks = [round(x0 - half / 2, 1), round(x0 + half / 2, 1)]
-        plot.axes(PLACES, "y (m)" if x < 100 else "", marks, _few(y0, half))
+        plot.axes(PLACES, "y (m)" if x < 100 else "", _few(x0, half), _few(y0, half))
         curve = value(round_)
         curve = curve / max(float(curve.max()), 1e-12)
         below.curve(np.mod(np.degrees(turns) + 180, 360)[order] - 180, curve[order], colour, 1.5)
-    sheet.text(
-        0, 186, f"at Δθ = {_turn(turn)}, {_turn(off)} off the best. Dashed: the window. Star: the best.", 10
-    )
+    here = f"at Δθ = {turn_label(wrap_angle(turn))}, {turn_label(off)} off the best"
+    sheet.text(0, 186, f"{here}. Dashed: the window. Star: the best.", 10)
     sheet.text(0, 200, "Dark: nothing fits, or more is denied than agrees.", 10, alpha=0.8)
-    here = (degrees(turn) + 180) % 360 - 180
-    below.upright(here, INK, 1, "3 3")
+    below.upright((degrees(turn) + 180) % 360 - 180, INK, 1, "3 3")
     below.axes("turn Δθ (°)", "", (-180, -90, 0, 90, 180), (0, 0.5, 1), grid=True)
     after = sheet.chip(250, 219, palette.best, "Γ", "line")
     sheet.chip(after, 219, palette.particle, "agreement", "line")
     return sheet.svg("Landscapes of both objectives")
-
-
-def _turn(turn: float) -> str:
-    value = (degrees(turn) + 180) % 360 - 180
-    return f"{value:.1f}°".replace("-", "−")
 
 
 def _few(middle: float, half: float) -> list[float]:
@@ -116,18 +106,14 @@ def _box_plot(study: LessonRun, sheet: SvgCanvas, x: float, y: float, side: floa
     half = 0.5 * float((box.high - box.low)[:2].max()) * 1.02
     cx, cy = box.centre[:2].tolist()
     plot = SvgPlot(sheet, x, y, side, side, (cx - half, cx + half), (cy - half, cy + half))
-    offset = (np.arange(SIDE) + 0.5) / SIDE * 2 * half - half
-    gx, gy = np.meshgrid(cx + offset, cy - offset)
     value = study.agreement if study.config.refine.objective == "agreement" else study.gamma
-    best = best_of(study)
-    grid = value(transforms(gx.ravel(), gy.ravel(), best.theta, box.pivot)).reshape(SIDE, SIDE)
+    grid = _landscape(value, box.centre[:2], half, best_of(study).theta, box.pivot)
     share = np.clip(grid / max(float(grid.max()), 1e-12), 0, 1)
     plot.image(np.asarray(0.55 * viridis(share) + 0.45 * np.array(PALED), dtype=np.uint8))
-    low, high = box.low[:2], box.high[:2]
-    corners = np.array([low, [high[0], low[1]], high, [low[0], high[1]]])
-    sheet.path(plot.at(corners), "#fff", 1.5, dash="6 4", close=True)
+    sheet.path(plot.at(rectangle(box.low[:2], box.high[:2])), "#fff", 1.5, dash="6 4", close=True)
     coupled = study.get(WindowDetail).coupled
     sheet.path(plot.at(ellipse(coupled.x_ref[0], coupled.covariances[0], coupled.k)), "#fff", 1.2, close=True)
+    plot.axes(PLACES, "y (m)", _few(cx, 0.5), _few(cy, 0.5))
     return plot
 
 
@@ -143,7 +129,6 @@ def samples(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         for px, py in plot.at(state.poses[:120, :2]).tolist():
             sheet.dot(px, py, 1.7, palette.particle, None, 0.9 - 0.22 * age)
     sheet.star(*plot.one(*told[k].best[:2].tolist()), 7, palette.answer, palette.rim)
-    plot.axes(PLACES, "y (m)", _few(float(study.box.centre[0]), 0.5), _few(float(study.box.centre[1]), 0.5))
     measure, best = measure_of(study.config), np.array([state.best_value for state in told])
     known = np.where(np.isfinite(best), best, 0.0)
     low, high = float(known.min()), max(float(known.max()), 1e-12)
@@ -172,7 +157,6 @@ def swarm(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         if n == j:
             sheet.dot(*end, 6, None, "#fff", width=2)
     sheet.star(*plot.one(*before.best[:2].tolist()), 6, palette.best, "#fff")
-    plot.axes(PLACES, "y (m)", _few(float(study.box.centre[0]), 0.5), _few(float(study.box.centre[1]), 0.5))
     if after.pulls is not None:
         _pulls(sheet, before, after, j, palette)
     return sheet.svg("A move of the swarm and what pulls at one particle")
@@ -252,24 +236,15 @@ def proof(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         sheet.image(np.ascontiguousarray(pixels[::-1]), 96.0 * k, 18, 90, 90)
         sheet.text(96.0 * k + 45, 121, f"{size} cell{'s' if size > 1 else ''}", 10, "middle")
     state = detail.state
-    low, high = charts.proof_range(state, study.story(ProofDetail).ceiling)
-    x, ceiling, met, floor, best, rivals = charts.proof(state, high)
-    plot = SvgPlot(sheet, 42, 150, 324, 118, (-180, 180), (low, high))
     measure = measure_of(study.config)
+    chart = charts.proof(state, study.story(ProofDetail).ceiling, measure)
+    assert chart.up is not None
+    plot = SvgPlot(sheet, 42, 150, 324, 118, (-180, 180), chart.up)
     left = "proven" if state.proven else f"nothing above {measure.text(state.ceiling)} is left"
     sheet.text(0, 143, f"{state.nodes:,} blocks looked at: {left}", 11, bold=True)
-    plot.curve(x, ceiling, css(palette.margin), 1.5, fill=True)
-    plot.curve(x, met, css(palette.particle), 1, fill=True)
-    plot.curve(x, floor, css(palette.rival), 1, dash="3 4")
-    for column, star in ((rivals, False), (best, True)):
-        for n in np.flatnonzero(np.isfinite(column)):
-            px, py = plot.one(float(x[n]), float(column[n]))
-            if star:
-                sheet.star(px, py, 7, palette.answer, palette.rim)
-            else:
-                sheet.dot(px, py, 4, palette.rival, "#fff", width=1)
+    draw_chart(plot, chart, palette)
     unit = f" ({measure.unit})" if measure.unit else ""
-    plot.axes("turn Δθ (°)", f"best{unit}", (-180, -90, 0, 90, 180), ticks(low, high, 4))
+    plot.axes("turn Δθ (°)", f"best{unit}", (-180, -90, 0, 90, 180), ticks(*chart.up, 4))
     after = sheet.chip(42, 313, palette.margin, "ceiling", "line")
     after = sheet.chip(after, 313, palette.particle, "best met", "line")
     after = sheet.chip(after, 313, palette.answer, "best", "dot")

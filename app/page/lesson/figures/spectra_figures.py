@@ -8,14 +8,15 @@ from math import degrees
 import numpy as np
 import scipy  # its parts are loaded where they are first used
 
-from algorithms.common.pose import FloatArray, Pose2, rotation, wrap_angle
+from algorithms.common.pose import FloatArray, rotation, wrap_angle
 from algorithms.methods.steps import AugmentDetail, HoughDetail, ShiftDetail, WindowDetail
 from app.drawing.draw_items import ellipse, rectangle
 from app.drawing.palette import Palette, viridis
 from app.drawing.scene_layout import known_corners
-from app.drawing.svg.map_plot import scale_bar, scene
+from app.drawing.svg.map_plot import map_panel
 from app.drawing.svg.map_raster import RasterView, around, draw_map, walls
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number, turn_label, worded
+from app.model.chart_data import to_one
 from app.page.lesson.lesson_run import LessonRun
 
 DEGREES = (0, 30, 60, 90, 120, 150, 180)
@@ -142,11 +143,6 @@ def correlation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Correlation of the two Hough spectra")
 
 
-def _to_one(values: FloatArray) -> FloatArray:
-    top = float(values.max(initial=0.0))
-    return np.asarray(values / top if top > 0 else values)
-
-
 def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both maps at a candidate's turn and shift with their sums beside them, and the correlations."""
     told, lifted = study.all(ShiftDetail), study.get(AugmentDetail)
@@ -154,16 +150,12 @@ def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     sheet, wide, high = SvgCanvas(320), 210.0, 120.0
     half = 2.2 * study.config.augment.spread
     view = RasterView(around(lifted.ref.x_hat, half, wide / high), int(2 * wide), int(2 * high))
-    plot = scene(sheet, 42, 18, wide, high, view)
     pixels = draw_map(view, palette, lifted.ref.grid, palette.ref)
     pixels = draw_map(view, palette, lifted.mov.grid, palette.mov, candidate.T_ref_mov, pixels)
     both = walls(lifted.ref.grid, view) & walls(lifted.mov.grid, view, candidate.T_ref_mov)
     pixels[both] = palette.agreed
-    plot.image(pixels)
-    sheet.rect(42, 18, wide, high, None, INK, 0.35)
-    scale_bar(plot)
     words = f"candidate {min(at[0], len(told) - 1) + 1}: turned by {turn_label(candidate.T_ref_mov.theta)}"
-    sheet.text(42, 11, words, 11, bold=True)
+    map_panel(sheet, 42, wide, high, view, pixels, words)
     x0, y0, x1, y1 = view.rect
     below = SvgPlot(sheet, 42, 18 + high + 4, wide, 40, (x0, x1), (0, 1.08))
     beside = SvgPlot(sheet, 42 + wide + 4, 18, 76, high, (0, 1.08), (y0, y1))
@@ -175,9 +167,9 @@ def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
             palette.mov,
         ),
     ):
-        below.curve(places[0], _to_one(curves[0]), colour, 1.6)
+        below.curve(places[0], to_one(curves[0]), colour, 1.6)
         inside = (places[1] >= y0) & (places[1] <= y1)
-        points = beside.at(np.column_stack([_to_one(curves[1])[inside], places[1][inside]]))
+        points = beside.at(np.column_stack([to_one(curves[1])[inside], places[1][inside]]))
         sheet.path(points, colour, 1.6)
     for frame in (below, beside):
         sheet.rect(frame.x, frame.y, frame.wide, frame.high, None, INK, 0.35)
@@ -217,21 +209,17 @@ def window(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     middle = (ends.min(axis=0) + ends.max(axis=0)) / 2
     half = 0.54 * float(np.ptp(ends, axis=0).max())
     view = RasterView(around(middle, half), 2 * int(side), 2 * int(side))
-    plot = scene(sheet, 0, 18, side, side, view)
-    sheet.text(0, 11, "the paper's window", 11, bold=True)
-    plot.image(draw_map(view, palette, grid, palette.ref))
+    pixels = draw_map(view, palette, grid, palette.ref)
+    plot = map_panel(sheet, 0, side, side, view, pixels, "the paper's window")
     sheet.path(plot.at(rectangle(low, high)), palette.conflict, 2, dash="6 4", close=True)
-    sheet.rect(0, 18, side, side, None, INK, 0.35)
-    scale_bar(plot)
     x_hat = coupled.x_ref[0]
     px, py = plot.one(*x_hat.tolist())
     sheet.dot(px, py, 7, None, palette.best, width=2)
     small = 156.0
     near = max(0.6, 1.5 * float((coupled.high - coupled.low).max()) / 2)
     view = RasterView(around(x_hat, near), 2 * int(small), 2 * int(small))
-    inset = scene(sheet, 222, 18, small, small, view)
-    sheet.text(222, 11, "the coupled one, near by", 11, bold=True)
-    inset.image(draw_map(view, palette, grid, palette.ref))
+    pixels = draw_map(view, palette, grid, palette.ref)
+    inset = map_panel(sheet, 222, small, small, view, pixels, "the coupled one, near by")
     for k, name in ((1.0, "1 σ"), (coupled.k, f"{number(coupled.k)} σ")):
         ring = inset.at(ellipse(x_hat, coupled.covariances[0], k))
         strong = k == coupled.k
@@ -241,8 +229,6 @@ def window(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     o = study.inputs.observations[0]
     sheet.path(inset.at([_towards(x_hat, o.observer.xy, 0.98 * near), x_hat]), palette.text, 1.5, dash="5 4")
     sheet.dot(*inset.one(*x_hat.tolist()), 4, None, palette.conflict, width=2)
-    sheet.rect(222, 18, small, small, "none", INK, 0.35)
-    scale_bar(inset)
     sheet.path([(px + 7, py), (222, 18 + small / 2)], palette.best, 1, dash="2 3")
     sheet.chip(222, 194, palette.conflict, "eqs. (6)–(10)", "line")
     sheet.chip(222, 212, palette.best, "eq. (3), turn known", "line")
@@ -267,9 +253,3 @@ def line_through(theta: float, rho: float, x_hat: FloatArray, reach: float) -> F
     normal = np.array([np.cos(theta), np.sin(theta)])
     along = np.array([-normal[1], normal[0]])
     return np.array([x_hat + rho * normal - reach * along, x_hat + rho * normal + reach * along])
-
-
-def candidate_place(study: LessonRun, k: int) -> Pose2:
-    """T of a candidate, in the order they were tried."""
-    told = study.all(ShiftDetail)
-    return told[min(k, len(told) - 1)].candidate.T_ref_mov

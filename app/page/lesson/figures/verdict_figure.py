@@ -18,7 +18,6 @@ MOST_ANSWERS = 5
 
 
 def verdict(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
-    """The bars of the verdict of a run."""
     return bars(study.get(MergeResult).verdict, palette)
 
 

@@ -32,7 +32,7 @@ def test_every_sighting_beyond_the_first_has_its_number_in_both_maps(stands):
     items, _ = drawn(seen)
     numbers = [str(number) for number in range(2, len(seen) + 1)]
     assert [item["t"] for item in items if "t" in item and item["f"] == "scene"] == numbers
-    assert [item["t"] for item in items if "t" in item and item["f"] == "mov"] == numbers
+    assert [item["t"] for item in items if "t" in item and item["f"] == "map2"] == numbers
     assert sum(item["k"] == "path" for item in items) == len(numbers)
 
 
@@ -41,7 +41,7 @@ def test_under_the_true_transform_robot_2_stands_where_each_line_of_sight_ends(s
     seen = [sighting(T_REF_WORLD, T_MOV_WORLD, *pair) for pair in [(OBSERVER, OBSERVED), *stands]]
     items, layout = drawn(seen, together=True)
     ends = [item["p"][1] for item in items if item["k"] == "path"]
-    robots = [item["p"] for item in items if item["f"] == "mov"]
+    robots = [item["p"] for item in items if item["f"] == "map2"]
     placed = layout.placed(T_REF_MOV)
     assert [placed.apply(robot) for robot in robots] == [pytest.approx(end, abs=1e-6) for end in ends]
 

@@ -138,7 +138,7 @@ def maps():
 @pytest.fixture
 def ground(page, maps):
     ground = MapLayers(PictureScene(), SIZE, page)
-    layout = SceneLayout(np.array([2.0, 3.0]), np.array([4.0, 1.0]), None, None, Pose2(30.0, 0.0))
+    layout = SceneLayout((np.array([2.0, 3.0]), np.array([4.0, 1.0])), beside=(Pose2(), Pose2(30.0, 0.0)))
     ground.load(*maps, layout, LIGHT)
     return ground
 
@@ -154,8 +154,8 @@ def look(ground: MapLayers, page: Page, at, mov: Pose2 = Pose2(30.0, 0.0), half:
 def test_what_is_looked_at_closely_is_sent_cell_by_cell_for_the_place_where_it_lies(ground, page, maps):
     at = maps[0].origin.apply(np.array([50, 40]) * CELL) - (2.0, 3.0)  # map 2 is far off
     look(ground, page, at)
-    assert set(page.laid) == {"/world/ref/free", "/world/ref/walls"}
-    excerpt = page.laid["/world/ref/walls"]
+    assert set(page.laid) == {"/world/map1/free", "/world/map1/walls"}
+    excerpt = page.laid["/world/map1/walls"]
     left, top, right, bottom = np.array(excerpt["hole"]) * (114, 90, 114, 90)  # its pixels are six cells
     cols, rows = slice(round(left), round(right)), slice(round(top), round(bottom))
     assert rows.start < 40 < rows.stop
@@ -168,8 +168,8 @@ def test_the_excerpt_of_map_2_is_the_same_wherever_map_2_lies(ground, page, maps
     sent = []
     for mov in (Pose2(30.0, 0.0), Pose2(-50.0, 7.0, 1.0)):
         look(ground, page, mov.apply(place), mov)
-        sent.append(page.laid["/world/mov/walls"]["hole"])
-        assert "/world/ref/walls" not in page.laid
+        sent.append(page.laid["/world/map2/walls"]["hole"])
+        assert "/world/map1/walls" not in page.laid
     assert sent[0] == sent[1]  # what lies there serves for both
 
 
@@ -193,7 +193,7 @@ def test_other_maps_lay_the_page_bare_and_an_excerpt_of_the_last_ones_comes_too_
     late = ground.closer(view)
     assert late
     look(ground, page, at)
-    ground.load(maps[1], maps[0], SceneLayout(np.zeros(2), np.zeros(2), None, None, Pose2()), LIGHT)
+    ground.load(maps[1], maps[0], SceneLayout((np.zeros(2), np.zeros(2))), LIGHT)
     page.flush()
     assert page.laid == {}
     for closer in late:
@@ -204,7 +204,7 @@ def test_other_maps_lay_the_page_bare_and_an_excerpt_of_the_last_ones_comes_too_
 
 def test_a_map_that_is_sent_whole_has_no_excerpts(page, maps):
     ground = MapLayers(PictureScene(), Size(whole=200, pooled=20), page)
-    ground.load(*maps, SceneLayout(np.zeros(2), np.zeros(2), None, None, Pose2()), LIGHT)
+    ground.load(*maps, SceneLayout((np.zeros(2), np.zeros(2))), LIGHT)
     assert ground.closer(CameraView((-5.0, -5.0, 5.0, 5.0), Pose2(), 1000.0)) == []
 
 

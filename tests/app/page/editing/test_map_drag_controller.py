@@ -49,7 +49,7 @@ def numbers(layout: SceneLayout, at: Pose2) -> Any:
 
 def told(tab: WireTab) -> Pose2:
     """Where the page was last told to put map 2."""
-    word = tab.words["mov"]
+    word = tab.words["maps"]["2"]
     return Pose2(word["x"], word["y"], word["theta"])
 
 
@@ -59,17 +59,17 @@ def layout(small_case) -> SceneLayout:
 
 
 def test_a_step_by_a_key_goes_from_where_the_page_shows_map_2_and_no_word_comes_back(tab, layout):
-    before, knew = told(tab), tab.words["mov"]["number"]
+    before, knew = told(tab), tab.words["maps"]["2"]["placed"]
     for _ in range(3):
         tab.tell("nudge", x=0.5, y=-0.25, theta=radians(1), knew=knew)
     after = Pose2(before.x + 1.5, before.y - 0.75, before.theta + radians(3))
     until(lambda: shown(tab) == numbers(layout, after), "three steps")
-    assert tab.words["mov"]["number"] == knew
+    assert tab.words["maps"]["2"]["placed"] == knew
 
 
 def test_a_step_that_overtakes_the_word_of_a_typed_number_is_added_to_it_and_the_page_put_right(tab, layout):
     x, y, _ = shown(tab)
-    knew = tab.words["mov"]["number"]
+    knew = tab.words["maps"]["2"]["placed"]
     tab.write(X, x + 20)
     tab.tell("nudge", x=0.0, y=0.5, theta=0.0, knew=knew)
     until(lambda: shown(tab)[:2] == pytest.approx((x + 20, y + 0.5), abs=2e-3), "both")
@@ -78,7 +78,7 @@ def test_a_step_that_overtakes_the_word_of_a_typed_number_is_added_to_it_and_the
 
 def test_a_drag_that_overtakes_the_word_of_a_typed_number_counts_and_the_page_is_put_right(tab, layout):
     x, _, _ = shown(tab)
-    knew = tab.words["mov"]["number"]
+    knew = tab.words["maps"]["2"]["placed"]
     tab.write(X, x + 20)
     tab.tell("put", x=3.0, y=4.0, theta=0.5, knew=knew)
     until(lambda: told(tab) == Pose2(3.0, 4.0, 0.5), "the page to be put right")
@@ -86,7 +86,7 @@ def test_a_drag_that_overtakes_the_word_of_a_typed_number_counts_and_the_page_is
 
 
 def test_a_drag_of_what_the_page_knew_brings_no_word_back(tab, layout):
-    knew = tab.words["mov"]["number"]
+    knew = tab.words["maps"]["2"]["placed"]
     tab.tell("put", x=3.0, y=4.0, theta=0.5, knew=knew)
     until(lambda: shown(tab) == numbers(layout, Pose2(3.0, 4.0, 0.5)), "the numbers")
-    assert tab.words["mov"]["number"] == knew
+    assert tab.words["maps"]["2"]["placed"] == knew

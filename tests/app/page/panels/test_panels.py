@@ -159,12 +159,12 @@ def test_the_curves_share_one_axis_and_mark_what_was_chosen(inputs):
     for step in run("spectra-swarm", inputs.ref, inputs.mov, inputs.observations):
         story.tell(step)
     match, best = story.get(HoughDetail).match, story.get(CandidatesDetail).candidates[0]
-    angles, correlation, marks, chosen = charts.turn_correlation(match, best.T_ref_mov.theta)
+    angles, correlation, marks, chosen = charts.turn_correlation(match, best.T_ref_mov.theta).columns
     assert len(angles) == len(correlation) == len(marks) == len(chosen)
     assert np.isfinite(marks).sum() == len(set(np.round(np.mod(match.turns, np.pi), 6)))
     assert np.isfinite(chosen).sum() == 1
     for axis in (best.x, best.y):
-        x, window, curve, mark = charts.shift_correlation(axis)
+        x, window, curve, mark = charts.shift_correlation(axis).columns
         assert (np.diff(x) >= 0).all()
         inside = window > 0
         assert inside.any()
@@ -172,7 +172,7 @@ def test_the_curves_share_one_axis_and_mark_what_was_chosen(inputs):
         assert x[inside].max() == pytest.approx(axis.high)
         assert axis.low - 0.1 <= x[np.isfinite(mark)][0] <= axis.high + 0.1
         assert np.isfinite(curve).all()
-        x, ref, mov = charts.shift_spectra(axis)
+        x, ref, mov = charts.shift_spectra(axis).columns
         assert len(x) == len(ref) == len(mov)
         assert max(ref.max(), mov.max()) <= 1.0
 

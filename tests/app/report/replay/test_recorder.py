@@ -140,7 +140,7 @@ def test_pictures_of_a_large_map_are_bounded_and_lose_no_wall():
     grid = GridMap(cells, 0.05)
     seen = Observation(Pose2(2.0, 0.2), 4.0, 0.2, 2.0, 0.0, observed_heading=0.0, bearing_back=np.pi)
     played = recorded(Case("long", grid, grid, (seen,), "", None), "bilateral")
-    walls = [picture for picture in played["pictures"] if picture["thin"] and picture["frame"] == "scene"]
+    walls = [picture for picture in played["pictures"] if picture["thin"] and picture["frame"] == "map1"]
     image = Image.open(io.BytesIO(base64.b64decode(walls[0]["data"].split(",")[1]))).convert("RGBA")
     assert max(image.size) <= PICTURE
     assert np.asarray(image)[..., 3].any(axis=0).sum() == 1  # one column of walls, still
@@ -242,7 +242,7 @@ def test_what_cannot_be_recorded_is_refused_with_a_remedy(more, finding, tmp_pat
 
 
 def test_pictures_lie_where_the_cells_are(small_case, recording):
-    floor = next(picture for picture in recording["pictures"] if picture["frame"] == "scene")
+    floor = next(picture for picture in recording["pictures"] if picture["frame"] == "map1")
     grid, anchor = small_case.ref, MergeInputs.of(small_case).at.x_ref
     middle = grid.origin.apply(np.array([grid.width, grid.height]) * grid.resolution / 2) - anchor
     assert floor["at"] == pytest.approx([*middle.tolist(), grid.origin.theta], abs=1e-3)
