@@ -93,7 +93,7 @@ class ManualMerge:
     def fused(self, T_ref_mov: Pose2) -> Fusion:
         """Both maps merged under a transform."""
         robots = robots_of(self.encounters, self.config.verdict.robot_size)
-        return fuse(self.ref, self.mov, T_ref_mov, self.config.conflict, robots)
+        return fuse((self.ref, self.mov), (Pose2(), T_ref_mov), self.config.conflict, robots)
 
     def _finish(self, T: Pose2, fusion: Fusion, answers: tuple[Answer, ...], seed: int) -> MergeResult:
         value, model = self.value(T), shipped_model()

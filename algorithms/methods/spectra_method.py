@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
 from algorithms.methods.spectra_answer import answer_of, weigh_answers
@@ -102,7 +103,12 @@ def run(
         "fuse",
         (ref, mov, weighed, config.conflict),
         lambda: [
-            fuse(ref, mov, best, config.conflict, robots_of(seen.encounters, config.verdict.robot_size))
+            fuse(
+                (ref, mov),
+                (Pose2(), best),
+                config.conflict,
+                robots_of(seen.encounters, config.verdict.robot_size),
+            )
         ],
     )
     yield from runner.stage(

@@ -84,7 +84,9 @@ def run_direct(
     fusion: Fusion = yield from runner.stage(
         "fuse",
         (ref, mov, weighed, config.conflict, size),
-        lambda: [fuse(ref, mov, best.T_ref_mov, config.conflict, robots_of(seen.encounters, size))],
+        lambda: [
+            fuse((ref, mov), (Pose2(), best.T_ref_mov), config.conflict, robots_of(seen.encounters, size))
+        ],
     )
     named, *beside = weighed.answers
     yield from runner.stage(

@@ -121,7 +121,7 @@ def _search(
     for index, candidate in enumerate(shift_candidates(ref_walls, mov_walls, match, window)):
         candidate = replace(candidate, T_ref_mov=along @ candidate.T_ref_mov)
         yield ShiftDetail(index, len(match.turns), candidate)
-        merged = fuse(ref, mov, candidate.T_ref_mov)
+        merged = fuse((ref, mov), (Pose2(), candidate.T_ref_mov))
         enough = merged.overlap >= config.overlap * _known(merged)
         value = merged.acceptance_index if enough else 0.0
         answers.append(Answer(candidate.T_ref_mov, value, f"acceptance index {value:.1%}"))

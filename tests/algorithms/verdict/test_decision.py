@@ -26,7 +26,7 @@ REF, MOV, SEEN, T = flat_pair()
 AT = encounter(SEEN)
 WHOLE = make_whole_maps(REF, MOV, [AT], coupled_window([AT], WindowConfig()), 0.25, 0.4)
 MODEL = shipped_model()
-FUSION = fuse(REF, MOV, T)
+FUSION = fuse((REF, MOV), (Pose2(), T))
 TURNED = T @ Pose2(*AT.x_mov.tolist()) @ Pose2(theta=np.pi) @ Pose2(*(-AT.x_mov).tolist())
 
 CLEAN = Evidence(100.0, 1.0, 98.0, 3.0, across=30.0, floor=60.0)

@@ -146,7 +146,9 @@ def test_a_proof_that_met_nothing_and_settings_that_are_not_known_still_make_a_p
 
 def test_maps_that_do_not_touch_make_a_page(result, inputs):
     far = replace(result, T_ref_mov=Pose2(500.0, 0.0, 1.0))
-    fused = replace(result.fusion, mov_cells=np.full_like(result.fusion.mov_cells, -1))
+    fused = replace(
+        result.fusion, layers=(result.fusion.ref_cells, np.full_like(result.fusion.mov_cells, -1))
+    )
     read(page_of(replace(far, fusion=fused), inputs))
 
 
