@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from algorithms.common.parallel_kernels import fast_kernel, run_in_threads
-from algorithms.common.pose import FloatArray
+from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import Float32Array, GridMap
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.spectra.augmented_map import AugmentedMap
@@ -133,6 +133,10 @@ class Objective:
         if self.window is not None:
             values -= 0.5 * self.trust * (self.window.deviations(poses) ** 2).sum(axis=1)
         return values
+
+    def value_at(self, T_ref_mov: Pose2) -> float:
+        """The value of one transform."""
+        return float(self(T_ref_mov.array()[None])[0])
 
 
 def make_objective(ref: AugmentedMap, mov: AugmentedMap, lookup: Lookup = Lookup.BILINEAR) -> Objective:

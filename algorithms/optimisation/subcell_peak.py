@@ -64,8 +64,7 @@ def peak_at(objective: Objective, T_ref_mov: Pose2, pivot: FloatArray, reach: fl
     scale = np.array([1.0, 1.0, 1 / reach]) * objective.cell
     at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
     _, hessian, _, _ = _paraboloid(objective, at, scale, pivot)
-    value = float(objective(T_ref_mov.array()[None])[0])
-    return Peak(T_ref_mov, value, -hessian / np.outer(scale, scale))
+    return Peak(T_ref_mov, objective.value_at(T_ref_mov), -hessian / np.outer(scale, scale))
 
 
 @cache

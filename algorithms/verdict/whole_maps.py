@@ -8,7 +8,7 @@ and then on crisp ones again, by which bent maps come to lie in the middle of th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -21,7 +21,6 @@ from algorithms.common.parallel_kernels import run_in_threads
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.robots import Robots
-from algorithms.observations.observation import Encounter, robots_of
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.likelihood_field import clear, wall_field
 from algorithms.optimisation.objective import Objective, Side
@@ -57,7 +56,7 @@ _PARABOLOID = np.linalg.pinv(
 class WholeMaps:
     """Both maps made ready.
 
-    robots : around them there is no wall to weigh
+    robots : around them, within their size, there is no wall to weigh
     window : the sightings; what a transform deviates from them is taken off its value
     trust  : what half a squared standard deviation off a sighting costs; metres of wall
     """
@@ -83,18 +82,15 @@ class WholeMaps:
     def _blurred(self) -> Objective:
         return self._objective(BLURRED, BLURRED_CELL)
 
-    def value(self, T_ref_mov: Pose2) -> float:
-        """The crisp objective at a transform."""
-        return float(self.crisp(T_ref_mov.array()[None])[0])
-
     def climb(self, T_ref_mov: Pose2) -> Pose2:
         """The best transform near one; that itself where none is better by much."""
         best = self._climb(self.crisp, T_ref_mov, CRISP / 2)
         if self.weigh_rigidly(best) > CONTRADICTED:
             rough = self._climb(self._blurred, T_ref_mov, BLURRED / 2)
             other = self._climb(self.crisp, rough, CRISP / 2)
-            best = max(best, other, key=self.value)
-        return best if self.value(best) > self.value(T_ref_mov) + WORTH_MOVING else T_ref_mov
+            best = max(best, other, key=self.crisp.value_at)
+        value = self.crisp.value_at
+        return best if value(best) > value(T_ref_mov) + WORTH_MOVING else T_ref_mov
 
     def weigh_rigidly(self, T_ref_mov: Pose2) -> float:
         """Share of the walls that contradict with the maps as they are."""
@@ -163,19 +159,11 @@ class WholeMaps:
 
 
 def make_whole_maps(
-    ref: GridMap,
-    mov: GridMap,
-    encounters: Sequence[Encounter],
-    window: CoupledWindow,
-    trust: float,
-    robot_size: float,
+    ref: GridMap, mov: GridMap, robots: Robots, window: CoupledWindow, trust: float
 ) -> WholeMaps:
-    """Make both maps ready, each on a core.
-
-    robot_size : radius around the places of robots within which there is no wall; metres
-    """
+    """Make both maps ready, each on a core; the rest as in WholeMaps."""
     first, second = _each(2, lambda n: make_wall_map((ref, mov)[n]))
-    return WholeMaps(first, second, robots_of(encounters, robot_size), window, trust)
+    return WholeMaps(first, second, robots, window, trust)
 
 
 def _each(count: int, make: Callable[[int], Made]) -> list[Made]:

@@ -199,7 +199,10 @@ def point_keys(case: Case, plan: SweepPlan) -> dict[tuple[Any, Any], str]:
         "truth": None if case.truth is None else truth_to_bytes(case.truth).decode(),
         "method": plan.method,
         "seeds": plan.seeds,
-        "versions": {**versions(), "code": [code(METHODS[plan.method].run.__module__), code(merit.__name__)]},
+        "versions": {
+            **versions(),
+            "code": [code(METHODS[plan.method].search.__module__), code(merit.__name__)],
+        },
     }
     return {
         place: sha256(

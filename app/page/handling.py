@@ -14,6 +14,7 @@ from algorithms.methods.manual_merge import ManualMerge, known_answers, refine
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import ObservationDetail, Step
 from algorithms.observations.observation import Observation
+from algorithms.observations.pair_problem import PairProblem
 from app.drawing.legend import legend
 from app.drawing.scene_layout import SceneLayout
 from app.model.run_state import RunState
@@ -105,7 +106,7 @@ class Handling(Part):
         method = self._method
         known = known_answers(method.get(MergeResult)) if method and method.config == config else ()
         try:
-            return ManualMerge(i.ref, i.mov, i.observations, config, known)
+            return ManualMerge(PairProblem(i.ref, i.mov, i.observations), config, known)
         except MapMergeError as error:
             self._report(error)
             return None

@@ -116,8 +116,11 @@ class MapDragController:
     def take_up(self, scales: ManualMerge, T_ref_mov: Pose2 | None) -> None:
         """The same on these scales; whoever calls is drawing."""
         self._scales = scales
-        if self._walls is None or (self._walls[0].grid, self._walls[1].grid) != (scales.ref, scales.mov):
-            self._walls = WallLookup(scales.ref), WallLookup(scales.mov)
+        if self._walls is None or (self._walls[0].grid, self._walls[1].grid) != (
+            scales.problem.ref,
+            scales.problem.mov,
+        ):
+            self._walls = WallLookup(scales.problem.ref), WallLookup(scales.problem.mov)
         self._at = self._maps.mov_at if T_ref_mov is None else self._maps.layout.placed(T_ref_mov)
         self.active = True
         searches = isinstance(scales.config, PipelineConfig)

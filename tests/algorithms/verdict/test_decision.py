@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
 from algorithms.maps.map_fusion import fuse
-from algorithms.observations.observation import encounter
+from algorithms.observations.observation import encounter, robots_of
 from algorithms.observations.search_window import WindowConfig, coupled_window
 from algorithms.verdict.decision import Outcome, VerdictConfig, judge, merges_of
 from algorithms.verdict.probability_model import Fit, misfit_of, quantities_of, shipped_model
@@ -24,7 +24,7 @@ from algorithms.verdict.whole_maps import make_whole_maps
 
 REF, MOV, SEEN, T = flat_pair()
 AT = encounter(SEEN)
-WHOLE = make_whole_maps(REF, MOV, [AT], coupled_window([AT], WindowConfig()), 0.25, 0.4)
+WHOLE = make_whole_maps(REF, MOV, robots_of([AT], 0.4), coupled_window([AT], WindowConfig()), 0.25)
 MODEL = shipped_model()
 FUSION = fuse((REF, MOV), (Pose2(), T))
 TURNED = T @ Pose2(*AT.x_mov.tolist()) @ Pose2(theta=np.pi) @ Pose2(*(-AT.x_mov).tolist())
