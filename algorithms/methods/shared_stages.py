@@ -59,7 +59,8 @@ def run_search(
              told again (``Step.reused``)
     """
     runner = StageRunner({} if memo is None else memo)
-    yield from runner.stage("observe", (problem,), lambda: [ObservationDetail(problem.encounters)])
+    seen = (problem.observations, problem.ref.resolution, problem.mov.resolution)
+    yield from runner.stage("observe", seen, lambda: [ObservationDetail(problem.encounters)])
     found = yield from search(problem, config, seed, runner)
     best = found.named.T_ref_mov
     fusion: Fusion = yield from runner.stage(

@@ -66,9 +66,9 @@ def test_a_robot_that_stands_in_the_others_map_does_not_move_the_climb():
     col, row = REF.grid_coordinates(AT.x_ref).astype(int)
     cells[row - 2 : row + 3, col - 2 : col + 3] = OCCUPIED
     seen = whole_of(replace(REF, cells=cells), MOV, AT)
-    assert seen.value(T) == pytest.approx(WHOLE.crisp.value_at(T), abs=0.3)
+    assert seen.crisp.value_at(T) == pytest.approx(WHOLE.crisp.value_at(T), abs=0.3)
     blind = make_whole_maps(seen.ref.grid, seen.mov.grid, robots_of([AT], 0.0), WHOLE.window, 0.25)
-    assert blind.value(T) < WHOLE.crisp.value_at(T) - 0.5
+    assert blind.crisp.value_at(T) < WHOLE.crisp.value_at(T) - 0.5
 
 
 def test_an_answer_at_the_top_stays_where_it_is():
