@@ -25,7 +25,7 @@ from algorithms.observations.pair_problem import PairProblem
 from algorithms.observations.search_window import CoupledWindow, coupled_window
 from algorithms.optimisation.objective import Lookup, Objective
 from algorithms.optimisation.particle_swarm import settled_within
-from algorithms.optimisation.search_box import SearchBox
+from algorithms.optimisation.search_box import SearchBox, pose_about
 from algorithms.optimisation.subcell_peak import climb_to_peak, peak_at
 from algorithms.verdict.probability_model import shipped_model
 from algorithms.verdict.ranking import Weighed, better_beside, elsewhere, weigh
@@ -112,7 +112,7 @@ class ManualMerge:
         margins = self.config.box
         half = np.array([margins.sigma_x, margins.sigma_y, radians(margins.sigma_theta)])
         pivot = self.problem.encounters[0].x_mov
-        centre = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
+        centre = pose_about(pivot, T_ref_mov)
         return SearchBox(centre - half, centre + half, pivot)
 
 

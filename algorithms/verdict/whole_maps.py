@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 from math import ceil
 from typing import TypeVar
 
@@ -24,7 +23,8 @@ from algorithms.maps.robots import Robots
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.likelihood_field import clear, wall_field
 from algorithms.optimisation.objective import Objective, Side
-from algorithms.optimisation.search_box import SearchBox
+from algorithms.optimisation.search_box import pose_about, transforms_about
+from algorithms.optimisation.subcell_peak import STENCIL, paraboloid
 from algorithms.verdict.wall_evidence import Evidence, evidence
 from algorithms.verdict.wall_map import WallMap, make_wall_map, pooled
 
@@ -44,12 +44,6 @@ WORTH_MOVING = 2.0  # metres of wall: eight measurements, more than chance makes
 
 FLAT = 1e-6  # metres of wall; a hill that curves less is a ridge, and its top as far as may be
 CLOSE = 0.02  # of HILL; a fit that moves it less is the last
-
-_AROUND = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
-_PAIRS = np.triu_indices(3)
-_PARABOLOID = np.linalg.pinv(
-    np.column_stack([np.ones(len(_AROUND)), _AROUND, _AROUND[:, _PAIRS[0]] * _AROUND[:, _PAIRS[1]]])
-)  # least squares: the value, the slope and the products' factors at the middle
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,36 +97,33 @@ class WholeMaps:
         other places are looked at, leaves it where it is to a millimetre or so.
         """
         pivot = T_ref_mov.inverse().apply(self.robots.places(T_ref_mov).mean(axis=0))
-        at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
-        box = SearchBox(at, at, pivot)
+        at = pose_about(pivot, T_ref_mov)
         for _ in range(MOST_FITS):
-            fitted = _PARABOLOID @ self.crisp(box.transforms(at + _AROUND * (HILL, HILL, HILL / REACH)))
-            curvature = np.zeros((3, 3))
-            curvature[_PAIRS] += fitted[4:]
-            curvature.T[_PAIRS] += fitted[4:]
+            slope, curvature = paraboloid(
+                self.crisp(transforms_about(pivot, at + STENCIL * (HILL, HILL, HILL / REACH)))
+            )
             bent, axes = np.linalg.eigh(curvature)
             # along each axis of the paraboloid one HILL at most: where it hardly curves, or upwards, its top
             # is nowhere, and a rounding error of the slope would decide how far to go
-            move = -axes @ np.clip(axes.T @ fitted[1:4] / np.minimum(bent, -FLAT), -1, 1)
+            move = -axes @ np.clip(axes.T @ slope / np.minimum(bent, -FLAT), -1, 1)
             at = at + move * (HILL, HILL, HILL / REACH)
             if abs(move).max() < CLOSE:
                 break
-        return box.transform(at)
+        return Pose2.from_array(transforms_about(pivot, at[None])[0])
 
     def _climb(self, objective: Objective, T_ref_mov: Pose2, step: float) -> Pose2:
         """From place to place to the best of the 27 around; half the steps where that is the middle."""
         pivot = self.window.pivot
-        at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
-        box = SearchBox(at, at, pivot)
+        at = pose_about(pivot, T_ref_mov)
         for _ in range(MOST_LOOKS):
-            around = at + _AROUND * (step, step, step / REACH)
-            best = int(objective(box.transforms(around)).argmax())
+            around = at + STENCIL * (step, step, step / REACH)
+            best = int(objective(transforms_about(pivot, around)).argmax())
             at = around[best]
             if best == len(around) // 2:
                 step /= 2
                 if step < LEAST_STEP:
                     break
-        return box.transform(at)
+        return Pose2.from_array(transforms_about(pivot, at[None])[0])
 
     def _objective(self, blur: float, least_cell: float) -> Objective:
         pairs = (self.ref, self.mov, False), (self.mov, self.ref, True)
