@@ -37,6 +37,8 @@ def _cosines() -> FloatArray:
 
 COSINES = _cosines()
 SINES = np.roll(COSINES, TURN // 4)
+DIRECTIONS = np.stack([COSINES, SINES])
+"""(2, TURN) cosine and sine of every tick."""
 
 
 def cosine(ticks: Ticks | int) -> FloatArray:

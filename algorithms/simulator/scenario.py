@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from algorithms.simulator.buildings.floor_plan import Building
 from algorithms.simulator.changes import with_pillars
 from algorithms.simulator.path_planning import PathPlanner
 from algorithms.simulator.portable_random import chance, stream, uniform
-from algorithms.simulator.robot import Conditions, Robot, RobotModel, drive, make_body
+from algorithms.simulator.robot import Conditions, Robot, drive, make_body
 from algorithms.simulator.room_tours import TourPlanner
 from algorithms.simulator.sighting import (
     ROUGH_BEARING,
@@ -141,7 +142,11 @@ def simulate(
     asked = overlap if isinstance(overlap, tuple) else (overlap, overlap)
     near_1, near_2 = (LOOSE if a is None else TOLERANCE for a in asked)
     aim_1, aim_2 = (d if a is None else a for a, d in zip(asked, drawn, strict=True))
-    b1, b2, b3 = _bodies(kind, seed, reach, resolutions, conditions)
+    none = (None, None, None)
+    b1, b2, b3 = (
+        make_body(f"R{number}", seed, kind, reach, resolution, under)
+        for number, resolution, under in zip((1, 2, 3), resolutions or none, conditions or none, strict=True)
+    )
     building = build(kind, seed, floor)
     if pillars:
         building = with_pillars(building, stream(seed, kind, f"pillars of floor {floor}"))
@@ -155,18 +160,15 @@ def simulate(
         r2, r1 = (drive(building, planner, t, b) for t, b in zip(tours, (b2, b1), strict=True))
         return r2, r1
 
-    pair_1 = _nearest_pair(
-        building, planner, two_robots, aim_1, near_1, stream(seed, kind, "R2 and R1"), sightings
-    )
+    nearest_pair = partial(_nearest_pair, building, planner, sightings)
+    pair_1 = nearest_pair(two_robots, aim_1, near_1, stream(seed, kind, "R2 and R1"))
     r2 = pair_1.observer
 
     def third_robot(aim: float, rng: np.random.Generator) -> tuple[Robot, Robot]:
         tour = tour_planner.partner(rng, r2.tour, aim, (fewest, most))
         return drive(building, planner, tour, b3), r2
 
-    pair_2 = _nearest_pair(
-        building, planner, third_robot, aim_2, near_2, stream(seed, kind, "R3 and R2"), sightings
-    )
+    pair_2 = nearest_pair(third_robot, aim_2, near_2, stream(seed, kind, "R3 and R2"))
     source = f"mapmeld simulator, {kind} seed {seed}"
     pairs = (pair_1, pair_2)
     cases = tuple(
@@ -175,35 +177,14 @@ def simulate(
     return Scenario(building, (pair_1.observed, r2, pair_2.observer), pairs, cases)
 
 
-def _bodies(
-    kind: str,
-    seed: int,
-    reach: float,
-    resolutions: tuple[float, float, float] | None,
-    conditions: tuple[Conditions, Conditions, Conditions] | None,
-) -> list[RobotModel]:
-    """R1, R2 and R3 as they are built."""
-    return [
-        make_body(
-            f"R{n + 1}",
-            seed,
-            kind,
-            reach,
-            resolutions[n] if resolutions else None,
-            conditions[n] if conditions else None,
-        )
-        for n in range(3)
-    ]
-
-
 def _nearest_pair(
     building: Building,
     planner: PathPlanner,
+    sightings: int,
     propose: Callable[[float, np.random.Generator], tuple[Robot, Robot]],
     target: float,
     tolerance: float,
     rng: np.random.Generator,
-    sightings: int,
 ) -> Pair:
     """Let robots drive until their maps overlap as asked; the nearest of a few rounds.
 

@@ -1,4 +1,4 @@
-"""Office floors: rooms on both sides of long corridors, cross corridors, and a campus of them."""
+"""Office floors: rooms on both sides of long corridors, and cross corridors."""
 
 from __future__ import annotations
 
@@ -167,8 +167,3 @@ def university(shell: np.random.Generator, rng: np.random.Generator, resolution:
     """A large office floor of about 60 m × 40 m, with corridors that look alike for tens of metres."""
     width, height = uniform(shell, 50, 70), uniform(shell, 32, 46)
     return floor(shell, rng, width, height, resolution, "university")
-
-
-def campus(rng: np.random.Generator, metres: float, resolution: float = 0.05) -> Building:
-    """A square office floor of any size, up to 200 m; for measuring speed."""
-    return floor(rng, rng, metres, metres, resolution, "campus")
