@@ -21,22 +21,6 @@ from algorithms.files.image_decoder import read_pixels
 from algorithms.files.thresholds import MODES, GreyArray, Shading, cells_of, greys_of
 from algorithms.maps.grid_map import COARSEST, FINEST, CellArray, GridMap
 
-__all__ = [
-    "GreyImage",
-    "MapMeta",
-    "Shading",
-    "grey_image",
-    "image_map_from_bytes",
-    "map_from_bytes",
-    "map_to_bytes",
-    "meta_to_bytes",
-    "parse_meta",
-    "read_bytes",
-    "read_image",
-    "read_map",
-    "write_map",
-]
-
 YAML_SUFFIXES = (".yaml", ".yml")
 AT_ZERO = Pose2()
 USUAL = Shading()
@@ -124,18 +108,6 @@ def map_from_bytes(yaml_name: str, yaml_bytes: bytes, image_name: str, image: by
     """
     meta = parse_meta(yaml_name, yaml_bytes)
     return _to_map(image_name, _opened(image), meta, PurePath(yaml_name).stem)
-
-
-def image_map_from_bytes(
-    name: str,
-    data: bytes,
-    resolution: float,
-    origin: Pose2 = AT_ZERO,
-    shading: Shading = USUAL,
-) -> GridMap:
-    """``read_image`` for an upload."""
-    meta = MapMeta(name, resolution, origin, shading)
-    return _to_map(name, io.BytesIO(data), meta, PurePath(name).stem)
 
 
 def grey_image(name: str, data: bytes | BinaryIO) -> GreyImage:

@@ -90,7 +90,6 @@ class ManualMerge:
 
     @cached_property
     def whole(self) -> WholeMaps:
-        """Both maps as a whole."""
         if isinstance(self.config, PipelineConfig):
             return whole_maps_of(self.problem, self.config)
         return whole_maps(self.problem, self.config.verdict.robot_size)

@@ -60,7 +60,6 @@ class MergeResult:
         return self.encounters[0]
 
     def with_hint(self, hint: str) -> MergeResult:
-        """The same, a hint in its verdict."""
         return replace(self, verdict=replace(self.verdict, hint=hint))
 
     @property

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import hypot, radians
 
 import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2, pose_error
+from algorithms.methods.merge_result import Answer
 from algorithms.methods.shared_stages import Found
 from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.spectra_stages import RIVAL_FLOOR
@@ -62,33 +62,16 @@ def _best_few(
     """What the whole maps are asked about: the search's best, and others at least half as good."""
     if proven is not None:
         return [proven.peak.T_ref_mov, *map(Pose2.from_array, proven.state.rivals)]
-    best = refined.answers[0]
-    apart = others(
-        [(answer.T_ref_mov, answer.value) for answer in refined.answers],
-        at.x_mov,
-        hypot(config.box.sigma_x, config.box.sigma_y),
-        radians(2 * config.box.sigma_theta),
-    )
-    few = [T for T, value in apart if value > RIVAL_FLOOR * best.value > 0]
-    return [best.T_ref_mov, *few[:MOST_RIVALS]]
-
-
-def others(
-    answers: Sequence[tuple[Pose2, float]], at_mov: FloatArray, distance: float, angle: float
-) -> list[tuple[Pose2, float]]:
-    """The answers elsewhere than the best, each elsewhere than those before it, with their values.
-
-    answers  : transforms with their values, best first
-    at_mov   : (2,) where two answers are compared, x̂2; metres, mov frame
-    distance : metres, and
-    angle    : radians, from which on two transforms are two answers
-    """
-    kept: list[tuple[Pose2, float]] = []
-    for T, value in answers:
-        apart = [pose_error(T, known, at_mov) for known, _ in kept]
+    distance = hypot(config.box.sigma_x, config.box.sigma_y)
+    angle = radians(2 * config.box.sigma_theta)
+    kept: list[Answer] = []  # each elsewhere than those before it
+    for answer in refined.answers:
+        apart = [pose_error(answer.T_ref_mov, known.T_ref_mov, at.x_mov) for known in kept]
         if all(metres > distance or turn > angle for metres, turn in apart):
-            kept.append((T, value))
-    return kept[1:]
+            kept.append(answer)
+    best, *others = kept
+    few = [other.T_ref_mov for other in others if other.value > RIVAL_FLOOR * best.value > 0]
+    return [best.T_ref_mov, *few[:MOST_RIVALS]]
 
 
 def found_by(
@@ -99,7 +82,6 @@ def found_by(
     weighed: WeighedDetail,
     config: PipelineConfig,
 ) -> Found:
-    """What all stages have come to."""
     named, *others = weighed.answers
     peak = weighed.peak
     if peak is None and proven and named.T_ref_mov == proven.peak.T_ref_mov:
@@ -132,7 +114,6 @@ def _doubts(refined: AnswersDetail, proven: ProvenDetail | None) -> list[str]:
 def _value_of(
     named: Weighed, refined: AnswersDetail, proven: ProvenDetail | None, objective: Objective
 ) -> float:
-    """What the method's objective says of the named answer."""
     first = proven.peak if proven else refined.answers[0]
     return first.value if named.T_ref_mov == first.T_ref_mov else objective.value_at(named.T_ref_mov)
 

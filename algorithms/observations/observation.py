@@ -94,7 +94,6 @@ class Encounter:
 
 
 def robots_of(encounters: Sequence[Encounter], size: float) -> Robots:
-    """The robots of these encounters."""
     observers = [at.observer for at in encounters if at.observer is not None]
     observed = [at.x_mov for at in encounters]
     return Robots(np.array(observers).reshape(-1, 2), np.array(observed).reshape(-1, 2), size)

@@ -151,7 +151,6 @@ class Objective:
         return values
 
     def value_at(self, T_ref_mov: Pose2) -> float:
-        """The value of one transform."""
         return float(self(T_ref_mov.array()[None])[0])
 
 

@@ -40,7 +40,6 @@ class Sample:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Folder names of the cases."""
         return tuple(f"{self.title or self.kind}_{pair}" for pair in self.pairs)
 
     def cases(self) -> tuple[SimulatedCase, ...]:

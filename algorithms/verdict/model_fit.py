@@ -96,7 +96,6 @@ def fit(
 
 
 def told_by(model: VerdictModel, examples: Sequence[Example]) -> Told:
-    """What a model says of examples."""
     weights = np.array([model.weights[name] for name in QUANTITIES])
     probabilities, right = [], []
     for example in examples:

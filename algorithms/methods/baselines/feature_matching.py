@@ -92,7 +92,6 @@ def match_features(problem: PairProblem, config: FeatureConfig) -> MatchesDetail
 
 
 def _agree(matches: MatchesDetail, config: MatchConfig, seed: int) -> Iterator[Detail]:
-    """The transform that most matches agree on."""
     from skimage.measure import ransac
     from skimage.transform import EuclideanTransform
 

@@ -35,6 +35,7 @@ from algorithms.methods.shared_stages import Found
 from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import AnswersDetail, Detail, Step, TurnsDetail
 from algorithms.observations.pair_problem import PairProblem
+from algorithms.spectra.candidates import circular_peaks
 
 TOLD_EVERY = 10  # turns
 
@@ -103,7 +104,7 @@ def _search(problem: PairProblem, config: MseConfig, seed: int) -> Iterator[Deta
         poses.append(pose)
         if index % TOLD_EVERY == 0:
             yield TurnsDetail(turns, scores.copy())
-    best = [index for index in _peaks(scores) if np.isfinite(scores[index])][: config.turns.kept]
+    best = [index for index in circular_peaks(scores) if np.isfinite(scores[index])][: config.turns.kept]
     if not best:
         raise NoAnswerError(f"at no turn do both maps know {config.turns.overlap:.0%} of the smaller area")
     fine = common_cell(ref, mov, config.picture.pixels)
@@ -121,14 +122,6 @@ def _search(problem: PairProblem, config: MseConfig, seed: int) -> Iterator[Deta
     askew = ref.origin.theta - mov.origin.theta
     yield TurnsDetail(turns, scores, wrap_angle(answers[0].T_ref_mov.theta - askew))
     yield AnswersDetail(tuple(answers))
-
-
-def _peaks(scores: FloatArray) -> list[int]:
-    """Turns that are better than their neighbours, best first."""
-    known = np.nan_to_num(scores, nan=-np.inf, neginf=-np.inf)
-    higher = (known >= np.roll(known, 1)) & (known >= np.roll(known, -1))
-    peaks = np.flatnonzero(higher)
-    return [int(k) for k in peaks[np.argsort(-known[peaks], kind="stable")]]
 
 
 class _Shifts:
