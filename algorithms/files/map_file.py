@@ -60,8 +60,8 @@ class GreyImage:
         counts = count_greys(self.grey, self.alpha)
         shading, meant = as_meant(shading, counts)
         cells = cells_of(self.grey, self.alpha, shading)
-        told = remarks(shading, counts, cells)
-        return cells, (meant, *told) if meant else told
+        odd = remarks(shading, counts, cells)
+        return cells, (meant, *odd) if meant else odd
 
 
 def read_map(path: Path | str, unknown_grey: int | None = None) -> GridMap:
@@ -229,8 +229,8 @@ def _read_image(path: Path, meta: MapMeta, name: str) -> GridMap:
 
 
 def _to_map(source: str, stream: BinaryIO, meta: MapMeta, name: str) -> GridMap:
-    cells, told = GreyImage(*read_pixels(source, stream)).read(meta.shading)
-    return GridMap(cells, meta.resolution, meta.origin, show_hidden(name) or "map", told)
+    cells, odd = GreyImage(*read_pixels(source, stream)).read(meta.shading)
+    return GridMap(cells, meta.resolution, meta.origin, show_hidden(name) or "map", odd)
 
 
 def _opened(data: bytes | BinaryIO) -> BinaryIO:

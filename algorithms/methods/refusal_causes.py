@@ -105,7 +105,7 @@ def find_cause(problem: PairProblem, config: PipelineConfig) -> Iterator[TriedDe
 
     config : of the default method
     """
-    told = " ".join(remarks_on((problem.ref, problem.mov)))
+    remarks = " ".join(remarks_on((problem.ref, problem.mov)))
     causes = _causes(problem.mov)
     coarse = replace(problem, ref=_coarse(problem.ref), mov=_coarse(problem.mov))
     total, number = sum(map(len, causes)), 0
@@ -123,7 +123,7 @@ def find_cause(problem: PairProblem, config: PipelineConfig) -> Iterator[TriedDe
             share, wall = 1 - verdict.contradiction, verdict.shared_wall
             yield CauseDetail(f"{clause} on {share:.0%} of {wall:.0f} m of wall: {cause.cure}.")
             return
-    yield CauseDetail(f"How the maps were read may be the cause. {told}" if told else "")
+    yield CauseDetail(f"How the maps were read may be the cause. {remarks}" if remarks else "")
 
 
 def _coarse(grid: GridMap) -> GridMap:

@@ -133,9 +133,9 @@ def scan(
     """
     ranges, kinds = true_ranges(building, xy, headings, lidar.beam_ticks(), lidar.reach)
     noise = normals(rng, ranges.size).reshape(ranges.shape)
-    luck = uniforms(rng, ranges.size).reshape(ranges.shape)
+    drawn = uniforms(rng, ranges.size).reshape(ranges.shape)
     nothing = kinds == AIR
-    lost = luck < np.where(kinds == DARK, lidar.lost_on_dark, lidar.lost)
+    lost = drawn < np.where(kinds == DARK, lidar.lost_on_dark, lidar.lost)
     noisy = np.maximum(ranges + lidar.noise * noise, 0.05)
     return np.where(lost, np.nan, np.where(nothing, np.inf, noisy))
 

@@ -118,13 +118,13 @@ class TourPlanner:
         planner = self.planner
         offset = planner.stops - planner.stops[anchor]
         ahead = offset[:, 0] * float(cosine(heading)) + offset[:, 1] * float(sine(heading))
-        whim = 0.7 + 0.6 * uniforms(rng, len(offset))
-        reach, chosen = planner.metres[anchor] * whim, [anchor]
+        factor = 0.7 + 0.6 * uniforms(rng, len(offset))
+        reach, chosen = planner.metres[anchor] * factor, [anchor]
         while len(chosen) < min(size, len(offset)):
             score = reach - pull * ahead
             score[chosen] = np.inf
             chosen.append(int(score.argmin()))
-            reach = np.minimum(reach, planner.metres[chosen[-1]] * whim)
+            reach = np.minimum(reach, planner.metres[chosen[-1]] * factor)
         start = max(chosen, key=lambda stop: (planner.metres[anchor][stop], stop))
         return self.tour(chosen, start)
 

@@ -40,11 +40,11 @@ class WallLookup:
         table[distance_to_walls(self.grid.occupied) * np.float32(self.grid.resolution) <= SAME_WALL] = AGREES
         return table
 
-    def told(self, other: WallLookup, T_other_self: Pose2) -> CellAgreement:
+    def agreement_with(self, other: WallLookup, T_other_self: Pose2) -> CellAgreement:
         """(N,) SILENT, AGREES or CONTRADICTS: what another map says of each wall cell of this one."""
         at = np.floor(other.grid.grid_coordinates(T_other_self.apply(self.grid.points))).astype(np.intp)
         cols, rows = at.T
         inside = (cols >= 0) & (rows >= 0) & (cols < other.grid.width) & (rows < other.grid.height)
-        told = np.full(len(at), SILENT, dtype=np.uint8)
-        told[inside] = other._table[rows[inside], cols[inside]]
-        return told
+        says = np.full(len(at), SILENT, dtype=np.uint8)
+        says[inside] = other._table[rows[inside], cols[inside]]
+        return says

@@ -110,9 +110,9 @@ def _agree(matches: MatchesDetail, config: MatchConfig, seed: int) -> Iterator[D
                 rng=seed,
             )
         T = Pose2.from_matrix(model.params) if model else None
-    told = matches if T is None else agreeing(matches, T, config.tolerance)
-    yield told
-    agreed = int(told.inliers.sum())
+    matched = matches if T is None else agreeing(matches, T, config.tolerance)
+    yield matched
+    agreed = int(matched.inliers.sum())
     if T is None or agreed < config.least:
         few = f"{min(len(matches.ref_features), len(matches.mov_features))} features"
         if len(ref) >= config.least:

@@ -37,7 +37,7 @@ from algorithms.methods.steps import AnswersDetail, Detail, Step, TurnsDetail
 from algorithms.observations.pair_problem import PairProblem
 from algorithms.spectra.candidates import circular_peaks
 
-TOLD_EVERY = 10  # turns
+YIELD_EVERY = 10  # turns
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def _search(problem: PairProblem, config: MseConfig, seed: int) -> Iterator[Deta
     for index, angle in enumerate(turns.tolist()):
         scores[index], pose = compare.best(angle)
         poses.append(pose)
-        if index % TOLD_EVERY == 0:
+        if index % YIELD_EVERY == 0:
             yield TurnsDetail(turns, scores.copy())
     best = [index for index in circular_peaks(scores) if np.isfinite(scores[index])][: config.turns.kept]
     if not best:

@@ -85,8 +85,8 @@ def _search(problem: PairProblem, config: PhaseCorrelationConfig, seed: int) -> 
     size = 2 * scipy.fft.next_fast_len(max(ceil(np.hypot(*each.far.shape)) for each in pair) + 1)
     half = turn_correlation(*pair, size, config.phase.frequencies)
     angles = np.arange(DIRECTIONS, dtype=np.float64) * (2 * pi / DIRECTIONS) - pi
-    told = TurnsDetail(angles, np.concatenate([half, half]))
-    yield told
+    tried = TurnsDetail(angles, np.concatenate([half, half]))
+    yield tried
     overlap = OverlapError.of(*pair, config.phase.overlap, seed)
     answers = []
     for peak in circular_peaks(half)[: config.phase.peaks]:
@@ -101,8 +101,8 @@ def _search(problem: PairProblem, config: PhaseCorrelationConfig, seed: int) -> 
         raise NoAnswerError(
             f"at none of the turns tried do both maps know {config.phase.overlap:.0%} of the smaller area"
         )
-    answers.sort(key=lambda told: -told[0].value)
-    yield replace(told, best=answers[0][1])
+    answers.sort(key=lambda tried: -tried[0].value)
+    yield replace(tried, best=answers[0][1])
     yield AnswersDetail(tuple(answer for answer, _ in answers))
 
 

@@ -251,7 +251,7 @@ class MapDragController:
             return
         T = self._maps.layout.transform(at)
         ref, mov = walls
-        told = ref.told(mov, T.inverse()), mov.told(ref, T)
+        told = ref.agreement_with(mov, T.inverse()), mov.agreement_with(ref, T)
         with self._drawing:
             if not self.active or not self._host.on_map:
                 return

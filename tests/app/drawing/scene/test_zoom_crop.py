@@ -78,7 +78,7 @@ def drawings():
     fusion = fuse((ref, mov), (Pose2(), Pose2(0.5, 1.0, 0.4)))
     walls = WallLookup(ref), WallLookup(mov)
     lifted = augment(ref, ref.origin.apply(np.array([3.0, 2.0])), np.eye(2), 100.0)
-    told = walls[0].told(walls[1], Pose2(0.5, 1.0, 0.4).inverse())
+    told = walls[0].agreement_with(walls[1], Pose2(0.5, 1.0, 0.4).inverse())
     whole, merged = ref.cells.shape, fusion.merged.cells.shape
     return {
         "floor": (partial(render.floor, ref.cells, LIGHT), whole),
