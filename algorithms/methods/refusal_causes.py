@@ -50,10 +50,6 @@ class Cause:
     change: Change
 
 
-def _mirrored(grid: GridMap, o: Observation) -> tuple[GridMap, Observation]:
-    return grid.mirrored(), observation.mirrored(o)
-
-
 def _flipped(axis: int) -> Change:
     """The image alone is turned over; its corner and the robots stay where they are."""
 
@@ -84,7 +80,7 @@ def _causes(mov: GridMap) -> list[list[Cause]]:
         Cause(
             "mirrored, map 2 agrees",
             "is its lidar mounted upside down, or was its image flipped? Put that right, and merge again",
-            _mirrored,
+            lambda grid, o: (grid.mirrored(), observation.mirrored(o)),
         ),
         Cause("with its image flipped left to right, map 2 agrees", over, _flipped(1)),
         Cause("with its image flipped top to bottom, map 2 agrees", over, _flipped(0)),

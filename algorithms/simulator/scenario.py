@@ -13,7 +13,6 @@ from algorithms.maps.grid_map import GridMap
 from algorithms.observations.observation import Observation
 from algorithms.simulator.buildings.building_types import build
 from algorithms.simulator.buildings.floor_plan import Building
-from algorithms.simulator.changes import with_pillars
 from algorithms.simulator.path_planning import PathPlanner
 from algorithms.simulator.portable_random import chance, stream, uniform
 from algorithms.simulator.robot import Conditions, Robot, drive, make_body
@@ -96,10 +95,8 @@ def simulate(
     resolutions: tuple[float, float, float] | None = None,
     both_ways: bool | None = None,
     reach: float | None = None,
-    sizes: tuple[int, int] | None = None,
     sightings: int = 1,
-    floor: int = 0,
-    pillars: bool = False,
+    building: Building | None = None,
     conditions: tuple[Conditions, Conditions, Conditions] | None = None,
 ) -> Scenario:
     """Simulate three robots in a building: R2 sees R1, R3 sees R2.
@@ -117,11 +114,9 @@ def simulate(
     both_ways : whether the observed robots measured a bearing back (``Observation.bearing_back``).
         Without it one scenario in four has it.
     reach : range of the lidars in metres. Without it drawn from 6 … 9.
-    sizes : fewest and most stops of a tour. Without it, by the building.
     sightings : how often an observer sees the other robot, at places well apart; less often where the
         two meet less often. All else is the same for any number, the first sightings included.
-    floor : which floor of the building: others have the same outer walls and corridors, and other rooms.
-    pillars : whether pillars, radiators and cabinets stand before the walls.
+    building : in which they drive. Without it that of the kind and the seed.
     conditions : under which R1, R2 and R3 drive: drift, wear, furniture moved. Without it the usual ones.
 
     Returns
@@ -147,16 +142,14 @@ def simulate(
         make_body(f"R{number}", seed, kind, reach, resolution, under)
         for number, resolution, under in zip((1, 2, 3), resolutions or none, conditions or none, strict=True)
     )
-    building = build(kind, seed, floor)
-    if pillars:
-        building = with_pillars(building, stream(seed, kind, f"pillars of floor {floor}"))
+    building = building or build(kind, seed)
     planner = PathPlanner(building)
     tour_planner = TourPlanner(building, planner, reach)
     stops = len(planner.stops)
-    fewest, most = sizes or (max(3, stops // 7), max(5, stops * 2 // 5))
+    sizes = max(3, stops // 7), max(5, stops * 2 // 5)  # fewest and most stops of a tour
 
     def two_robots(aim: float, rng: np.random.Generator) -> tuple[Robot, Robot]:
-        tours = tour_planner.pair(rng, aim, (fewest, most))
+        tours = tour_planner.pair(rng, aim, sizes)
         r2, r1 = (drive(building, planner, t, b) for t, b in zip(tours, (b2, b1), strict=True))
         return r2, r1
 
@@ -165,7 +158,7 @@ def simulate(
     r2 = pair_1.observer
 
     def third_robot(aim: float, rng: np.random.Generator) -> tuple[Robot, Robot]:
-        tour = tour_planner.partner(rng, r2.tour, aim, (fewest, most))
+        tour = tour_planner.partner(rng, r2.tour, aim, sizes)
         return drive(building, planner, tour, b3), r2
 
     pair_2 = nearest_pair(third_robot, aim_2, near_2, stream(seed, kind, "R3 and R2"))

@@ -15,7 +15,8 @@ from typing import Literal
 import numpy as np
 
 from algorithms.observations.observation import Observation
-from algorithms.simulator.buildings.building_types import BUILDINGS
+from algorithms.simulator.buildings.building_types import BUILDINGS, build
+from algorithms.simulator.changes import with_pillars
 from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.portable_random import chance, pick, stream, uniform, whole
 from algorithms.simulator.robot import Conditions
@@ -93,9 +94,9 @@ def _cases(seed: int, floor: int = 0) -> tuple[SimulatedCase, ...]:
     conditions = draw(rng, hard), draw(rng, hard), draw(rng, hard)
     overlap = uniform(rng, LEAST, MOST), uniform(rng, LEAST, MOST)
     reach = uniform(rng, 3.5, 5.0) if survey else None
-    return simulate(
-        _kind(seed), seed, overlap, reach=reach, floor=floor, pillars=True, conditions=conditions
-    ).cases
+    kind = _kind(seed)
+    building = with_pillars(build(kind, seed, floor), stream(seed, kind, f"pillars of floor {floor}"))
+    return simulate(kind, seed, overlap, reach=reach, building=building, conditions=conditions).cases
 
 
 def _lidar(rng: np.random.Generator, hard: float) -> Conditions:
