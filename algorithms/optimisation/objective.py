@@ -131,11 +131,6 @@ class Objective:
         """Edge of a cell of the ref map; metres."""
         return self.sides[0].grid.resolution
 
-    @property
-    def evaluation_size(self) -> int:
-        """Number of look-ups that one pose costs."""
-        return sum(len(side.points) for side in self.sides)
-
     def __call__(self, poses: FloatArray) -> FloatArray:
         """The value of every pose.
 

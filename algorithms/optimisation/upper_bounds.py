@@ -102,10 +102,6 @@ class _Pyramid:
         x, y = np.ascontiguousarray((points[order] / side.grid.resolution).T, dtype=np.float32)
         return x, y, weights[order].astype(np.float32), radii[order]
 
-    def cost(self, level: int) -> int:
-        """Look-ups per block."""
-        return len(self.levels[level - 1][0]) if level else len(self.side.points)
-
     def __call__(self, poses: FloatArray, level: int) -> FloatArray:
         """(P,) bound of the side's sum over the blocks with these middles; level 0: the sum itself."""
         if level == 0:
@@ -124,10 +120,6 @@ class UpperBounds:
         self.lattice = TransformLattice(objective, window)
         self._pyramids = [_Pyramid(side, self.lattice) for side in objective.sides]
         self._rounding = ROUNDING * sum(pyramid.weight for pyramid in self._pyramids)
-
-    def cost(self, level: int) -> int:
-        """Look-ups that one block of a level costs."""
-        return sum(pyramid.cost(level) for pyramid in self._pyramids)
 
     def __call__(self, nodes: IntArray, level: int) -> FloatArray:
         """(P,) for (P, 3) blocks of a level: no transform in the block and the window has a higher value.
