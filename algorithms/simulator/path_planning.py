@@ -185,23 +185,13 @@ class PathPlanner:
         """Keep the stops that can be reached from one another: the largest such group."""
         near = [cell for stop in building.stops.tolist() if (cell := self._roomiest(stop)) is not None]
         cells = sorted(set(near), key=near.index)
-        group: list[int] = []
-        tried: set[int] = set()
-        fields: dict[int, tuple[Costs, NDArray[np.int8]]] = {}
-        for n in range(len(cells)):
-            if n in tried:
-                continue
-            fields[n] = self._field(cells[n])
-            reach = [m for m, (r, c) in enumerate(cells) if fields[n][0][r, c] >= 0]
-            tried.update(reach)
-            if len(reach) > len(group):
-                group = reach
-        cells_kept = [cells[n] for n in group]
-        fields_kept = [fields[n] if n in fields else self._field(cells[n]) for n in group]
-        self._cells = cells_kept
-        self._back = [back for _, back in fields_kept]
-        self.stops: FloatArray = (np.array(cells_kept, dtype=float)[:, ::-1] + 0.5) * self.node
-        costs = [[int(cost[r, c]) for r, c in cells_kept] for cost, _ in fields_kept]
+        fields = [self._field(cell) for cell in cells]
+        reached = [[m for m, (r, c) in enumerate(cells) if cost[r, c] >= 0] for cost, _ in fields]
+        group = max(reached, key=len, default=[])
+        self._cells = [cells[n] for n in group]
+        self._back = [fields[n][1] for n in group]
+        self.stops: FloatArray = (np.array(self._cells, dtype=float)[:, ::-1] + 0.5) * self.node
+        costs = [[int(fields[n][0][r, c]) for r, c in self._cells] for n in group]
         self.metres: FloatArray = np.array(costs, dtype=float) * (self.node / 10)
 
     def _roomiest(self, stop: list[float]) -> tuple[int, int] | None:

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from algorithms.common.pose import FloatArray, Pose2
+from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.observation import Observation
 from algorithms.simulator.buildings.building_types import build
@@ -204,9 +204,10 @@ def pair_up(
     building: Building, planner: PathPlanner, observer: Robot, observed: Robot, sightings: int = 1
 ) -> Pair | None:
     """Let two robots meet and find how their frames truly lie; None where they never do."""
-    walls = _walls(planner, observer, observed)
-    if len(walls) < 10:
+    in_view = np.argwhere(observer.tour.seen & observed.tour.seen)[:, ::-1]  # wall nodes
+    if len(in_view) < 10:
         return None
+    walls = np.asarray((in_view + 0.5) * planner.node, dtype=np.float64)  # metres, world frame
     meetings = find_meetings(building, observer.true, observed.true, walls, sightings)
     if not meetings:
         return None
@@ -216,12 +217,6 @@ def pair_up(
     )
     overlap = measured_overlap(observer.grid, observed.grid, T_ref_mov)
     return Pair(observer, observed, meetings, T_ref_mov, round(rms, 4), round(overlap, 3))
-
-
-def _walls(planner: PathPlanner, a: Robot, b: Robot) -> FloatArray:
-    """(M, 2) wall nodes both robots had in view; metres, world frame."""
-    nodes = np.argwhere(a.tour.seen & b.tour.seen)[:, ::-1].astype(np.float64)
-    return np.asarray((nodes + 0.5) * planner.node)
 
 
 def case_of(pair: Pair, kind: str, source: str, rng: np.random.Generator, both_ways: bool) -> SimulatedCase:
