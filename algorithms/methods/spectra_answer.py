@@ -86,12 +86,14 @@ def found_by(
     peak = weighed.peak
     if peak is None and proven and named.T_ref_mov == proven.peak.T_ref_mov:
         peak = proven.peak
+    first, T = proven.peak if proven else refined.answers[0], named.T_ref_mov
+    value = first.value if first.T_ref_mov == T else found.objective.value_at(T)
     return Found(
         named,
         others,
         covariance_at(named, found.objective, peak, found.window, problem, config),
         refined.answers,
-        _value_of(named, refined, proven, found.objective),
+        value,
         doubts=_doubts(refined, proven),
         proof=proven.state if proven else None,
         search_found_it=proven.search_found_it if proven else None,
@@ -109,13 +111,6 @@ def _doubts(refined: AnswersDetail, proven: ProvenDetail | None) -> list[str]:
     if proven.state.stopped and proven.state.ceiling <= 0:
         return ["wherever robot 2 may have stood, more wall contradicts than agrees"]
     return ["the search was stopped before it had ruled out a better place"]
-
-
-def _value_of(
-    named: Weighed, refined: AnswersDetail, proven: ProvenDetail | None, objective: Objective
-) -> float:
-    first = proven.peak if proven else refined.answers[0]
-    return first.value if named.T_ref_mov == first.T_ref_mov else objective.value_at(named.T_ref_mov)
 
 
 def covariance_at(

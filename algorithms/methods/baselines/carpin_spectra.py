@@ -18,7 +18,7 @@ from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import UNKNOWN, GridMap
-from algorithms.maps.map_fusion import Fusion, fuse
+from algorithms.maps.map_fusion import fuse
 from algorithms.methods.baselines.base import BaselineConfig, weigh_best
 from algorithms.methods.merge_result import Answer
 from algorithms.methods.shared_stages import Found
@@ -108,13 +108,9 @@ def _search(
         candidate = replace(candidate, T_ref_mov=along @ candidate.T_ref_mov)
         yield ShiftDetail(index, len(match.turns), candidate)
         merged = fuse((ref_walls.grid, mov_walls.grid), (Pose2(), candidate.T_ref_mov))
-        enough = merged.overlap >= config.overlap * _known(merged)
+        known = min(int(np.count_nonzero(cells != UNKNOWN)) for cells in merged.layers)
+        enough = merged.overlap >= config.overlap * known
         value = merged.acceptance_index if enough else 0.0
         answers.append(Answer(candidate.T_ref_mov, value, f"acceptance index {value:.1%}"))
     answers.sort(key=lambda answer: -answer.value)
     yield AnswersDetail(tuple(answers))
-
-
-def _known(merged: Fusion) -> int:
-    """Cells of the map that knows fewer, on the merged raster."""
-    return min(int(np.count_nonzero(cells != UNKNOWN)) for cells in (merged.ref_cells, merged.mov_cells))
