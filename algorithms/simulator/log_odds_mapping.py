@@ -30,6 +30,9 @@ class OddsModel(NamedTuple):
     free_to: int = -28  # −1.41, a probability of 0.196
 
 
+USUAL = OddsModel()
+
+
 @kernel
 def _integrate(
     odds: Odds,
@@ -89,14 +92,20 @@ def _integrate(
                     next_y = (first_y + up) * per_y
 
 
-def build_map(believed: Track, ranges: FloatArray, lidar: Lidar, resolution: float, name: str) -> GridMap:
+def build_map(
+    believed: Track,
+    ranges: FloatArray,
+    lidar: Lidar,
+    resolution: float,
+    name: str,
+    model: OddsModel = USUAL,
+) -> GridMap:
     """The map a robot makes of its scans, in its own frame, cropped to what it saw.
 
     believed   : (N) poses in the robot's frame
     ranges     : (N, beams) of those poses, as ``scan`` returns them; metres
     resolution : metres per cell of the map
     """
-    model = OddsModel()
     low = np.floor((believed.xy.min(axis=0) - lidar.reach) / resolution).astype(np.int64) - 2
     high = np.ceil((believed.xy.max(axis=0) + lidar.reach) / resolution).astype(np.int64) + 2
     width, height = (high - low).tolist()

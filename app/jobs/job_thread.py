@@ -54,19 +54,19 @@ class Listener(Protocol):
 class JobThread:
     """A thread and the request it works on.
 
-    One that works ``beside`` another draws on the same page.
+    runner  : where it is worked out; closed with the thread
+    drawing : held while the listener is told, so that nothing of a run is drawn after Stop has returned
     """
 
     def __init__(
         self,
         listener: Listener,
-        bench: Runner,
+        runner: Runner,
+        drawing: RLock | None = None,
         clock: Callable[[], float] = perf_counter,
         waiting: InterruptibleWait | None = None,
-        beside: JobThread | None = None,
     ) -> None:
-        """bench : where it is worked out; closed with the session"""
-        self._listener, self.bench, self._clock = listener, bench, clock
+        self._listener, self.runner, self._clock = listener, runner, clock
         self._waiting = waiting or InterruptibleWait()
         self._wake = Condition()
         self._wanted: MergeJob | None = None
@@ -75,8 +75,7 @@ class JobThread:
         self._story = RunState()
         self._pace = 0.0
         self._closed = False
-        # held while a picture is drawn, so that nothing of a run is drawn after Stop has returned
-        self.drawing = beside.drawing if beside else RLock()
+        self.drawing = drawing or RLock()
         self._worker = Thread(target=self._work, name="mapmeld-session", daemon=True)
         self._worker.start()
 
@@ -118,7 +117,7 @@ class JobThread:
 
     def told_again(self, job: MergeJob, wanted: Callable[[], bool]) -> Iterator[Step]:
         """The steps of a run once more, for a recording: those that are known are not computed again."""
-        return self.bench.steps(job, RunCallbacks(wanted), aside=True)
+        return self.runner.steps(job, RunCallbacks(wanted), aside=True)
 
     def close(self) -> None:
         """End the worker; the tab is gone."""
@@ -131,7 +130,7 @@ class JobThread:
         try:
             self._work_on()
         finally:
-            self.bench.close()
+            self.runner.close()
 
     def _work_on(self) -> None:
         while True:
@@ -164,7 +163,7 @@ class JobThread:
         if not self._deliver(job, lambda: self._listener.begun(job)):
             return
         drawn_at = -FRAME
-        with closing(self.bench.steps(job, self._asker(job))) as steps:
+        with closing(self.runner.steps(job, self._asker(job))) as steps:
             for step in steps:
                 story.tell(step)
                 mark = self._waiting.mark

@@ -36,25 +36,59 @@ class Files:
 
 
 @dataclass(frozen=True, eq=False)
-class MergeInputs:
-    """Two maps and what robot 1 saw; None or empty for what is not there yet.
+class MapSlot:
+    """One robot's map, as far as its files are there.
 
+    grid    : None while one of its files is missing
+    missing : what to load next, as a sentence; "" where nothing is missing
+    doubt   : what is odd about the files that were loaded, as a sentence; "" where nothing is
+    """
+
+    grid: GridMap | None = None
+    missing: str = ""
+    doubt: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class MergeInputs:
+    """The maps of two robots and what robot 1 saw; empty for what is not there yet.
+
+    maps         : by the numbers of the robots, from 1
     observations : one sighting or several
     name         : what to call the pair before a person
     truth        : the known answer of a sample
-    bare         : numbers of the maps whose image is there, and nothing that says what it shows
-    imageless    : numbers of the maps whose YAML file is there, and the image it names is not
-    unnamed      : a sentence for each YAML file that names another image than the one that was loaded
     """
 
-    ref: GridMap | None = None
-    mov: GridMap | None = None
+    maps: tuple[MapSlot, ...] = (MapSlot(), MapSlot())
     observations: tuple[Observation, ...] = ()
     name: str = ""
     truth: Truth | None = None
-    bare: tuple[int, ...] = ()
-    imageless: Mapping[int, str] = field(default_factory=dict)
-    unnamed: tuple[str, ...] = ()
+
+    @staticmethod
+    def pair(
+        ref: GridMap | None = None,
+        mov: GridMap | None = None,
+        observations: tuple[Observation, ...] = (),
+        name: str = "",
+        truth: Truth | None = None,
+    ) -> MergeInputs:
+        """The inputs of two maps."""
+        return MergeInputs((MapSlot(ref), MapSlot(mov)), observations, name, truth)
+
+    @property
+    def ref(self) -> GridMap | None:
+        """Map 1, in whose frame everything ends."""
+        return self.maps[0].grid
+
+    @property
+    def mov(self) -> GridMap | None:
+        """Map 2, which is moved."""
+        return self.maps[1].grid
+
+    @property
+    def grids(self) -> tuple[GridMap, ...]:
+        """The maps that are there."""
+        return tuple(slot.grid for slot in self.maps if slot.grid is not None)
 
     @property
     def encounters(self) -> tuple[Encounter, ...]:
@@ -69,7 +103,7 @@ class MergeInputs:
     @property
     def complete(self) -> bool:
         """Whether there is all that a merge needs."""
-        return self.ref is not None and self.mov is not None and bool(self.observations)
+        return len(self.grids) == len(self.maps) and bool(self.observations)
 
     def case(self) -> Case | None:
         """The same as a case; None where a merge lacks something."""
@@ -79,38 +113,33 @@ class MergeInputs:
 
     def same_pair(self, other: MergeInputs) -> bool:
         """Whether these are the very maps and sightings of others."""
-        mine, theirs = (self.ref, self.mov, self.observations), (other.ref, other.mov, other.observations)
-        return all(a is b for a, b in zip(mine, theirs, strict=True))
+        same = (a.grid is b.grid for a, b in zip(self.maps, other.maps, strict=True))
+        return self.observations is other.observations and all(same)
 
     def missing(self) -> str:
         """What to load next, as a sentence; empty where nothing is missing."""
-        if self.bare:
-            return (
-                f"Map {self.bare[0]}'s image has no YAML file yet: load it, or fill in the form below the "
-                "image and press “Use this map”."
-            )
-        if self.imageless:
-            number, image = next(iter(self.imageless.items()))
-            return f"Map {number}'s YAML file is here. Load its image, too: {image}."
-        if self.ref is None and self.mov is None:
+        for slot in self.maps:
+            if slot.missing:
+                return slot.missing
+        here = [number for number, slot in enumerate(self.maps, 1) if slot.grid is not None]
+        absent = [number for number, slot in enumerate(self.maps, 1) if slot.grid is None]
+        if not here:
             if not self.observations:
                 return "Choose a sample, or load two maps and an observation."
             return "Now load the two maps: a YAML file and an image each."
-        if self.ref is None or self.mov is None:
-            return (
-                f"Map {1 if self.mov is None else 2} is here. Load map {2 if self.mov is None else 1}, too."
-            )
+        if absent:
+            return f"Map {here[0]} is here. Load map {absent[0]}, too."
         if not self.observations:
             return "Both maps are here. Load the observation, or place the robots: where robot 1 saw robot 2."
         return ""
 
     def doubt(self) -> str:
         """What is odd about the inputs, in sentences; empty where nothing is."""
-        return " ".join(filter(None, (*self.unnamed, *self.readings(), *self.doubts())))
+        return " ".join(filter(None, (*(slot.doubt for slot in self.maps), *self.readings(), *self.doubts())))
 
     def readings(self) -> tuple[str, ...]:
         """What is odd about how the maps were read, in sentences."""
-        return remarks_on((self.ref, self.mov))
+        return remarks_on(tuple(slot.grid for slot in self.maps))
 
     def doubts(self) -> tuple[str, ...]:
         """What is odd about each sighting, as a sentence; empty where nothing is."""
@@ -132,4 +161,4 @@ class MergeInputs:
     @staticmethod
     def of(case: Case) -> MergeInputs:
         """The inputs of a case folder."""
-        return MergeInputs(case.ref, case.mov, case.observations, case.name, case.truth)
+        return MergeInputs.pair(case.ref, case.mov, case.observations, case.name, case.truth)

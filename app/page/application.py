@@ -21,7 +21,9 @@ from app.jobs.forked_start import FORKS, start_parent
 from app.jobs.runner import RunCallbacks
 from app.jobs.warm_up import small_merge
 from app.jobs.warm_up import warm_up as warm_up_there
+from app.model.merge_inputs import MergeInputs
 from app.page.page import Page
+from app.page.undo.undo_history import SavedTab
 from app.system.logging_setup import facts
 from app.system.memory import MemoryCleanup
 from app.web.cell_quota import CellQuota
@@ -34,7 +36,7 @@ log = logging.getLogger(__name__)
 
 MOST_TABS = 64  # about 8 MB each, and what its maps and results take
 WARM = 1 if FORKS else 2  # processes for merges from the start: a second tab need not wait long for its own
-SPARE = 8  # connections more, so that a tab too many is told so
+SPARE = 8  # connections more, so that a tab too many gets an answer
 
 
 class PortError(MapMergeError):
@@ -66,7 +68,8 @@ def make_server(
     camera.position, camera.look_at, camera.up = (0.0, 0.0, 600.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)
     camera.fov, camera.near, camera.far = radians(4), 10.0, 5000.0
     pages: dict[int, Page] = {}
-    keep = SessionStore()
+    first = MergeInputs.of(initial) if initial else MergeInputs()
+    keep: SessionStore[SavedTab] = SessionStore()
     quota = CellQuota(make_room=keep.forget_all)
     housekeeping = MemoryCleanup()
     visited = False
@@ -81,7 +84,7 @@ def make_server(
         if not visited:
             visited = True
             _aside(warm_up_here)
-        pages[client.client_id] = Page(client, initial, keep, server.uploads, lesson, quota)
+        pages[client.client_id] = Page(client, first, keep, server.uploads, quota, lesson)
 
     @server.on_client_disconnect
     def _(client: viser.ClientHandle) -> None:
@@ -92,7 +95,7 @@ def make_server(
             page.close()
             housekeeping.soon()
 
-    start_parent()  # here, where no browser is being started that would be told what it is told
+    start_parent()  # before a browser is started: it would inherit the environment that this sets meanwhile
     _aside(warm_up)
     return server
 
@@ -103,14 +106,14 @@ def _aside(what: Callable[[], None]) -> None:
 
 def warm_up() -> None:
     """Have what merges ready for it, its kernels compiled: the first Merge need not wait."""
-    benches = [workers.COMMON.bench() for _ in range(WARM)]
+    runners = [workers.COMMON.bench() for _ in range(WARM)]
     job = replace(small_merge(), steps=warm_up_there)
     try:
-        for bench in benches:  # each has a process of its own, as long as the others are there
-            _run_through(bench.steps(job, RunCallbacks()))
+        for runner in runners:  # each has a process of its own, as long as the others are there
+            _run_through(runner.steps(job, RunCallbacks()))
     finally:
-        for bench in benches:
-            bench.close()
+        for runner in runners:
+            runner.close()
 
 
 def warm_up_here() -> None:
@@ -124,7 +127,7 @@ def _run_through(steps: Iterator[Step]) -> None:
             pass
     except MapMergeError:
         log.debug("warming up ended early", exc_info=True)
-    except Exception:  # nobody asked for it: who merges is told then
+    except Exception:  # nobody asked for it: who merges then is told
         log.warning("warming up failed", exc_info=True)
 
 

@@ -1,7 +1,8 @@
-"""The part of a page that its session tells of its work: what is drawn, and what is said of it."""
+"""Runs the method on what is loaded: what a person asks for, and what the run tells of itself."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -10,251 +11,269 @@ from algorithms.common.errors import MapMergeError, NoAnswerError
 from algorithms.methods import registry as methods
 from algorithms.methods.manual_merge import BY_HAND
 from algorithms.methods.merge_result import MergeResult
-from algorithms.methods.steps import AugmentDetail, CauseDetail, Step, TriedDetail
+from algorithms.methods.steps import CauseDetail, Step, TriedDetail
 from algorithms.verdict.contradictions import Contradictions, find_conflicts
-from app.drawing.legend import in_hand, legend
+from app.jobs.job_thread import JobThread
+from app.jobs.runner import Runner
 from app.jobs.worker_pool import WorkerDiedError
-from app.model import status_text as words
-from app.model import verdict_text
+from app.model import status_text
 from app.model.merge_inputs import MergeInputs
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
-from app.model.view_modes import HEIGHTS, MAP, SWARM
-from app.page.panels.html_widgets import box
+from app.model.view_modes import MAP
 from app.page.panels.result_panel import result_html
-from app.page.part import Part
+from app.page.tab import Tab
 from app.report.export import ResultFiles
 from app.report.replay.make_replay import replay_of
-from app.web import callback_errors as mishap
+from app.web.callback_errors import words
 
 
-class Telling(Part):
-    """The part of a Page that listens to its session."""
+class RunController:
+    """Of one tab: listens to its job thread.
 
-    _weighed: tuple[tuple[MergeResult, MergeInputs, Any], tuple[Contradictions, str]] | None = None
+    stop_upload : leaves the file that is on its way
+    """
 
-    # --- what the session tells -------------------------------------------------------------------
+    def __init__(self, tab: Tab, runner: Runner, stop_upload: Callable[[], None]) -> None:
+        self._state, self._display, self._panels = tab.state, tab.display, tab.panels
+        self._modes, self._history, self._notices = tab.modes, tab.history, tab.notices
+        self._messages, self._comparison = tab.display.messages, tab.display.views.comparison
+        self._stop_upload = stop_upload
+        self._weighed: tuple[tuple[MergeResult, MergeInputs, Any], tuple[Contradictions, str]] | None = None
+        self._searched: Callable[[RunState | None], None] | None = None
+        self.thread = JobThread(self, runner, tab.state.locks.drawing)
+        tab.panels.run.connect_run(
+            self.merge, self.stop, self._set_speed, tab.panels.settings.choose, self.settings_changed
+        )
+        tab.panels.settings.connect(self.settings_changed, tab.notices.report)
+
+    # --- what a person asks for -------------------------------------------------------------------
+
+    def merge(self) -> None:
+        state, panels = self._state, self._panels
+        with state.locks.action, state.locks.drawing:
+            self._modes.leave()
+            panels.settings.sync()
+            self._read_settings()
+            job = state.job(pace=panels.run.pace, again=True)
+            if job is None:
+                return
+            state.update(goal="merge")
+            snapshot, before = state.snapshot(), self._history.snapshot
+            if before is None or before.outcome is None or not before.same_request(snapshot):
+                self._history.note(snapshot, "merge")
+            panels.charts.follow()
+            self._messages.look_down(self._display.views.map.layout.view(), follow=True)
+            if state.view != MAP:
+                self._display.show_view()
+            self.thread.request(job)
+
+    def stop(self) -> None:
+        """Leave the file that is read, or else what is run, or else the file on its way."""
+        if self._panels.task.stop():
+            return
+        if not self.thread.busy:
+            self._stop_upload()
+            return
+        self.thread.stop()  # at once, whatever else is being carried out
+        with self._state.locks.action:
+            self._history.forget_goal()
+
+    def settings_changed(self) -> None:
+        """A setting, the method or the seed was changed: what is on the screen is out of date."""
+        state, mode = self._state, self._modes.current
+        self._read_settings()
+        if mode is not None and mode.reopen is not None:
+            mode.changed()
+            return
+        with state.locks.action, state.locks.drawing:
+            live = self.thread.telling and state.goal == "merge"
+            goal = state.goal or "candidates"
+            job = state.job(goal=goal, pace=self._panels.run.pace if live else 0.0)
+            if job is not None:
+                state.update(goal=goal)
+            if not self._history.note(state.snapshot()) or job is None:
+                return
+            if mode is not None and mode is self._modes.current and mode.redraw is not None:
+                mode.changed()
+                return
+            self._display.mark_outdated()
+            self.thread.request(job)
+
+    def load_settings(self, method: str, config: Any) -> None:
+        """Set these, as if a person had moved the sliders."""
+        with self._state.locks.action:
+            self._modes.leave()
+            self.set_method(method, config)
+            self.settings_changed()
+
+    def set_method(self, method: str, config: Any, seed: int | None = None) -> None:
+        """Set these, and run nothing. Without a seed it stays."""
+        self._panels.show_method(method, config, self._state.seed if seed is None else seed)
+        self._read_settings()
+
+    def _read_settings(self) -> None:
+        settings, seed = self._panels.settings, self._panels.run.seed
+        self._state.update(method=settings.method, config=settings.config, seed=seed)
+
+    def _set_speed(self) -> None:
+        self.thread.set_pace(
+            self._panels.run.pace or 0.01
+        )  # a run that is told at a pace comes to its end so
+        self._display.show_buttons()
+
+    def search(self, job: MergeJob, searched: Callable[[RunState | None], None]) -> None:
+        """Run something else than the method.
+
+        searched : is given the run in its end, or None where it was stopped
+        """
+        self._searched = searched
+        self.thread.request(job)
+
+    # --- what the run tells -----------------------------------------------------------------------
 
     def begun(self, job: MergeJob) -> None:
-        """A run starts."""
+        self._panels.run.stoppable("run", True)
         if job.goal == "cause":
-            self._run.stoppable("run", True)
             return
-        self._hush()
-        self._run.stoppable("run", True)
-        if self._farewell():  # who was looked at is not left on the map while something else is said
+        self._notices.clear()
+        if self._modes.close() is not None:  # another's result is not left there while something else is said
             self._comparison.clear()
-            self._maps.apart()
+            self._display.views.map.apart()
         if job.pace > 0:  # told step by step; a run at once leaves what is seen until it has ended
             self._comparison.clear()
-        self._stage.layer("readout", None)  # of a place that will look otherwise
-        self._stage.hud(state="Starting.", mood="running", progress=0.0, readout="")
-        self._stage.flush()
+        self._display.clear_read_out()
+        self._messages.hud(state="Starting.", mood="running", progress=0.0)
+        self._messages.flush()
 
-    def show(self, job: MergeJob, story: RunState) -> None:
-        """Draw the newest state."""
+    def show(self, job: MergeJob, run: RunState) -> None:
+        """The newest step is there."""
         if job.goal == "cause":
-            self._seek(story)
+            self._show_tried(run.get(TriedDetail))
             return
-        self._story = story
-        with self._client.atomic():
-            if job.pace > 0:
-                self._draw(story, live=True)
-            elif self._run.view == SWARM:
-                self._draw(story, live=False)
-            self._plots.show(story, follow=job.goal == "merge")
-            self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
-            self._stage.hud(state=words.sentence(story), mood="running", progress=words.progress(story))
-            self._stage.flush()
+        self._state.update(run=run)
+        self._display.show_step(live=job.pace > 0, follow=job.goal == "merge")
 
-    def ending(self, job: MergeJob, story: RunState) -> None:
+    def ending(self, job: MergeJob, run: RunState) -> None:
         """What is to be said of an answer: with large maps it takes longer than to draw it."""
-        result = story.get(MergeResult)
+        result = run.get(MergeResult)
         if result is not None and job.steps is None:
             self._weigh(result, job.config)
-
-    def _weigh(self, result: MergeResult, config: Any) -> tuple[Contradictions, str]:
-        """Where the maps contradict each other, and the page of the result; worked out once."""
-        of = (result, self._inputs, config)
-        if self._weighed is None or any(a is not b for a, b in zip(self._weighed[0], of, strict=True)):
-            found = find_conflicts(result.fusion)
-            self._weighed = of, (found, result_html(result, self._inputs, config, found))
-        return self._weighed[1]
 
     def waits(self, job: MergeJob, before: int) -> None:
         """Others are at work: other tabs' runs, or the end of a step of one that was left."""
         if job.goal == "cause":
             return
         place = f"{before} before this one" if before else "this one is next"
-        self._stage.hud(state=f"The processors are busy: {place}.", mood="running")
-        self._stage.flush()
+        self._messages.hud(state=f"The processors are busy: {place}.", mood="running")
+        self._messages.flush()
 
-    def ended(self, job: MergeJob, story: RunState) -> None:
-        """The run came to its goal."""
-        i = self._inputs
-        if job.ref is not i.ref or job.mov is not i.mov or job.observations != i.observations:
-            raise RuntimeError("an answer of other maps than those on the page")  # never shown as theirs
-        self._run.stoppable("run", False)
+    def ended(self, job: MergeJob, run: RunState) -> None:
+        self._panels.run.stoppable("run", False)
         if job.goal == "cause":
-            self._explain(story.get(CauseDetail))
+            self._explain(run.get(CauseDetail))
             return
-        result = story.get(MergeResult)
-        with self._client.atomic():
-            if result is not None and job.steps is not None:
-                self._refined(story, result)
-            elif result is None:
-                self._story = story
-                self._plots.show(story, follow=False)
-                self._maps_preview(job)
-                self._stage.hud(state=words.UP_TO_DATE, mood="idle", progress=None)
+        result = run.get(MergeResult)
+        with self._display.together():
+            if result is None:
+                self._state.update(run=run)
+                self._display.show_candidates()
+            elif job.steps is not None:
+                self._tell_searched(run)
             else:
-                self._answered(story, result, job.config, live=job.pace > 0)
-                self._timeline.amend(story)
-            self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
-            self._stage.flush()
+                self.show_answer(run, result, job.config, live=job.pace > 0)
+                self._history.amend(run)
+            self._display.show_buttons()
         if result is not None and job.steps is None and not result.verdict.accepted:
             cause = partial(methods.find_cause, job.ref, job.mov, job.observations)
-            self.session.request(replace(job, goal="cause", steps=cause, pace=0.0))
+            self.thread.request(replace(job, goal="cause", steps=cause, pace=0.0))
 
-    # --- after a refusal: a simple change under which the maps would agree? ---------------------------
-
-    def _seek(self, story: RunState) -> None:
-        """Tell below the verdict what is being tried."""
-        tried, result = story.get(TriedDetail), self._result
-        if tried is None or result is None:
-            return
-        seeking = f"Why? {tried.index + 1} of {tried.total}: {tried.clause}?"
-        with self._client.atomic():
-            self._tell_result(result.with_hint(seeking))
-            self._stage.flush()
-
-    def _explain(self, cause: CauseDetail | None) -> None:
-        """Put the cause, if one was found, into the result."""
-        result, story = self._result, self._story
-        if result is None or cause is None:
-            return
-        told = result.with_hint(cause.hint)
-        with self._client.atomic():
-            self._tell_result(told)
-            if cause.hint:
-                story.tell(Step("explain", told, 0.0))
-                self._result = told
-                self._export.offer(ResultFiles(told, self._inputs, self._config))
-                self._timeline.amend(story)
-            self._stage.flush()
-
-    def _tell_result(self, result: MergeResult) -> None:
-        self._plots.tell(result_html(result, self._inputs, self._config, self._conflicts))
-
-    def _answered(self, story: RunState, result: MergeResult, config: Any, live: bool) -> None:
-        """Show an answer and everything that led to it."""
-        self._farewell()
-        self._story, self._result, self._config = story, result, config
-        if result.method != BY_HAND:
-            self._method = story
-        self._plots.show(story, follow=True)
-        self._conflicts, told = self._weigh(result, config)
-        self._plots.tell(told)
-        self._export.offer(ResultFiles(result, self._inputs, config))
-        self._what_if.offer(result)
-        i = self._inputs
-        if result.method == BY_HAND:  # there was no run that could be told again
-            self._export.replay.visible(False)
-        elif i.ref is not None and i.mov is not None:
-            job = MergeJob(i.ref, i.mov, i.observations, config, result.method, result.seed)
-            self._export.replay.offer(i.name, partial(replay_of, job, self.session.told_again, i))
-        self._draw(story, live=live)
-        self._comparison.offer(self._conflicts, self._palette)
-        self._stage.hud(mood=verdict_text.mood(result.verdict), progress=None)
-        self._say(story, result)
-        self._museum.told(self._inputs, result.method, config, result)
-
-    def stopped(self, job: MergeJob, story: RunState) -> None:
-        """Someone pressed Stop."""
-        self._run.stoppable("run", False)
+    def stopped(self, job: MergeJob, run: RunState) -> None:
+        self._panels.run.stoppable("run", False)
         if job.goal == "cause":
-            if self._result is not None:
-                self._tell_result(self._result)
+            self._display.show_result_text(self._state.result)
             return
-        if self._maps.together:
-            self._comparison.offer(None, self._palette)
-        if job.steps is not None and self._refining is not None:
-            self._hand.take_up(*self._refining)
+        if self._display.views.map.together:
+            self._comparison.offer(None, self._state.palette)
+        if job.steps is not None and self._tell_searched(None):
             return
-        self._stage.hud(state=f"Stopped, unfinished. {words.sentence(story)}", mood="stopped", progress=None)
-        self._stage.flush()
+        state = f"Stopped, unfinished. {status_text.sentence(run)}"
+        self._messages.hud(state=state, mood="stopped", progress=None)
+        self._messages.flush()
 
-    def failed(self, job: MergeJob, story: RunState, error: Exception) -> None:
-        """The run could not go on."""
-        self._run.stoppable("run", False)
+    def failed(self, job: MergeJob, run: RunState, error: Exception) -> None:
+        self._panels.run.stoppable("run", False)
         if job.goal == "cause":  # the verdict stands without it
-            if self._result is not None:
-                self._tell_result(self._result)
+            self._display.show_result_text(self._state.result)
             return
         if isinstance(error, NoAnswerError):
-            self._unanswered(story, error)
+            self._state.update(run=run, search=None, result=None, result_config=None, contradictions=None)
+            self._display.show_no_answer(error)
             return
         died = isinstance(error, WorkerDiedError)
         if isinstance(error, MapMergeError) and not died:
-            self._report(error)
+            self._notices.report(error)
             return
-        text = str(error) if died else mishap.words(error)
-        self._notify("The run ended", text, "red")
-        self._stage.hud(state=text, mood="failed", progress=None)
-        self._stage.flush()
+        text = str(error) if died else words(error)
+        self._notices.show("The run ended", text, "red")
+        self._messages.hud(state=text, mood="failed", progress=None)
+        self._messages.flush()
 
-    def _unanswered(self, story: RunState, refusal: NoAnswerError) -> None:
-        """The method found no transform: the maps go back to where they were, with the reason."""
-        self._story, self._method = story, None
-        self._result = self._conflicts = self._config = None
-        with self._client.atomic():
-            self._comparison.clear()
-            self._export.offer(None)
-            self._what_if.offer(None)
-            self._plots.show(story, follow=True)
-            self._plots.tell(box(str(refusal), "refused"))
-            self._maps.apart()
-            self._draw(story, live=False)
-            self._stage.hud(state=str(refusal), mood="refused", progress=None)
-            self._stage.flush()
+    def _tell_searched(self, run: RunState | None) -> bool:
+        searched, self._searched = self._searched, None
+        if searched is not None:
+            searched(run)
+        return searched is not None
 
-    # --- drawing ----------------------------------------------------------------------------------
+    # --- the answer -------------------------------------------------------------------------------
 
-    def _draw(self, story: RunState, live: bool, look: bool = False) -> None:
-        view, camera = self._run.view, self._run.follow
-        if look and view == MAP and (self._placing.active or self._hand.active):
-            self._stage.look_down(self._maps.extent())
-        if view == MAP and self._placing.active:
-            self._placing.redraw()
-        elif view == MAP and self._hand.active:
-            self._hand.redraw()
-        elif view == MAP:
-            self._run_view.show(story, self._tuning.config, camera or look, live)
-        elif view == HEIGHTS:
-            self._heights.show(story.get(AugmentDetail), self._palette, look)
+    def show_answer(self, run: RunState, result: MergeResult, config: Any, live: bool) -> None:
+        """Show an answer and everything that led to it; whoever calls is drawing."""
+        self._modes.close()
+        state, replay = self._state, self._panels.export.replay
+        contradictions, html = self._weigh(result, config)
+        by_hand = result.method == BY_HAND
+        state.search = state.search if by_hand else run
+        state.update(run=run, result_config=config, contradictions=contradictions, result=result)
+        self._display.show_answer(result, html, live)
+        job = state.job()
+        if by_hand or job is None:  # there was no run that could be recorded
+            replay.visible(False)
         else:
-            self._swarm.show(story, self._palette, look)
-        self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
-        self._tell_legend()
+            job = replace(job, config=config, method=result.method, seed=result.seed)
+            replay.offer(state.inputs.name, partial(replay_of, job, self.thread.told_again, state.inputs))
 
-    def _tell_legend(self) -> None:
-        """What the colours of the picture mean."""
-        view, mode = self._run.view, self._comparison.mode
-        held = view == MAP and self._hand.active and mode == "overlay"
-        usual = legend(self._palette, view, self._story, mode=mode)
-        self._stage.hud(legend=in_hand(self._palette) if held else usual)
+    def _weigh(self, result: MergeResult, config: Any) -> tuple[Contradictions, str]:
+        """Where the maps contradict each other, and the page of the result; worked out once."""
+        of = (result, self._state.inputs, config)
+        if self._weighed is None or any(a is not b for a, b in zip(self._weighed[0], of, strict=True)):
+            found = find_conflicts(result.fusion)
+            self._weighed = of, (found, result_html(result, self._state.inputs, config, found))
+        return self._weighed[1]
 
-    def _say(self, story: RunState, result: MergeResult) -> None:
-        """The verdict; over the swarm whether it found the proven optimum, and the verdict's first word."""
-        found, reason = words.found_it(story), result.verdict.reason
-        if result.method == BY_HAND:
-            reason = verdict_text.of_hand(result, taken=True)
-        brief = f"{found} {reason.split(':')[0]}."
-        self._stage.hud(state=words.typeset(brief if found and self._run.view == SWARM else reason))
+    # --- after a refusal: a simple change under which the maps would agree? ---------------------------
 
-    def _maps_preview(self, job: MergeJob) -> None:
-        if self._run.view == MAP:
-            self._run_view.preview(self._story, job.config)
-            self._stage.hud(legend=legend(self._palette, MAP, self._story, preview=True))
-        elif self._run.view == HEIGHTS:
-            self._draw(self._story, live=False)
+    def _show_tried(self, tried: TriedDetail | None) -> None:
+        """Say below the verdict what is being tried."""
+        result = self._state.result
+        if tried is None or result is None:
+            return
+        trying = f"Why? {tried.index + 1} of {tried.total}: {tried.clause}?"
+        with self._display.together():
+            self._display.show_result_text(result.with_hint(trying))
+            self._messages.flush()
+
+    def _explain(self, cause: CauseDetail | None) -> None:
+        """Put the cause, if one was found, into the result."""
+        state = self._state
+        if state.result is None or cause is None:
+            return
+        result = state.result.with_hint(cause.hint)
+        with self._display.together():
+            self._display.show_result_text(result)
+            if cause.hint:
+                state.run.tell(Step("explain", result, 0.0))
+                state.update(result=result)
+                self._panels.export.offer(ResultFiles(result, state.inputs, state.result_config))
+                self._history.amend(state.run)
+            self._messages.flush()

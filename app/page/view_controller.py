@@ -1,99 +1,83 @@
-"""The part of a page that is about how it is looked at: the view, the colours, what a click reads out."""
+"""How the page is looked at: the view, the colours, the ways to compare, and what a click reads out."""
 
 from __future__ import annotations
 
 import numpy as np
 import viser
 
-from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import RefineDetail
 from app.drawing.draw_items import mark
 from app.drawing.palette import DARK, LIGHT
+from app.drawing.scene.map_comparison import MODES
 from app.drawing.scene.map_layers import Mode
-from app.model import verdict_text as words
-from app.model.view_modes import HEIGHTS, MAP, SWARM
-from app.page.part import Part
+from app.model.view_modes import MAP
+from app.page.tab import Tab
 
 FAR = 1e6  # metres from the scene's origin; no map reaches there
 
 
-class Looking(Part):
-    """The part of a Page that shows what there is in one way or another."""
+class ViewController:
+    """Of one tab."""
 
-    def _press(self) -> None:
-        """Let the page show which button of each group is the chosen one."""
-        self._stage.hud(pressed=[*self._run.pressed, self._plots.page])
-        self._stage.flush()
+    def __init__(self, tab: Tab, client: viser.ClientHandle) -> None:
+        self._state, self._display, self._modes = tab.state, tab.display, tab.modes
+        self._messages, self._views = tab.display.messages, tab.display.views
+        tab.panels.run.connect_view(self.choose, self.fit, self.darken)
+        tab.events.on("compare", self.compare, mode=MODES)
+        tab.events.on("resized", self._resized)
+        client.scene.on_click()(self._read_out)
+
+    def choose(self, view: str) -> None:
+        with self._state.locks.drawing:
+            self._state.update(view=view)
+            self._show()
+
+    def darken(self, dark: bool) -> None:
+        with self._state.locks.drawing:
+            self._state.palette = DARK if dark else LIGHT
+            self._display.recolour()
+            self._show()
+            self._state.update(palette=self._state.palette)
+
+    def _show(self) -> None:
+        mode = self._modes.current
+        self._display.show_view(mode.redraw if mode is not None else None)
+
+    def fit(self) -> None:
+        with self._state.locks.drawing:
+            state, maps = self._state, self._views.map
+            if state.view != MAP:
+                self._show()
+                return
+            laid_over = state.result is not None or state.hand is not None or state.run.reached(RefineDetail)
+            self._messages.look_down(maps.extent() if laid_over else maps.layout.view(), follow=True)
+            self._messages.flush()
+
+    def compare(self, mode: Mode) -> None:
+        """Look at both maps in another way."""
+        with self._state.locks.drawing:
+            state = self._state
+            if state.view == MAP and self._views.comparison.choose(mode):
+                if state.hand is None:
+                    self._views.run.show(state.run, state.config, camera=False, live=False)
+                self._display.show_legend()
+                self._messages.flush()
 
     def _read_out(self, event: viser.SceneClickEvent) -> None:
         """What is known of the place under a click."""
-        if self._run.view != MAP:
+        if self._state.view != MAP:
             return
         (x, y, z), (right, up, along) = event.ray_origin, event.ray_direction
         if along == 0:  # never meets the floor
             return
-        # viser's own frame is turned half round the y axis: see views/maps.py
+        # viser's own frame is turned half round the y axis: see map_layers.py
         place = np.array([right * z / along - x, y - up * z / along])
         if not np.all(np.abs(place) < FAR):
             return
-        self._stage.hud(readout=self._maps.read_out(place, self._story))
-        self._stage.layer("readout", [mark("cross", place, self._palette.text, r=6)])
-        self._stage.flush()
+        self._messages.hud(readout=self._views.map.read_out(place, self._state.run))
+        self._messages.layer("readout", [mark("cross", place, self._state.palette.text, r=6)])
+        self._messages.flush()
 
-    def _forget_place(self) -> None:
-        """What was read out at a click goes: the view is another."""
-        self._stage.hud(readout="")
-        self._stage.layer("readout", None)
-        self._stage.flush()
-
-    def _fit(self) -> None:
-        if self._run.view != MAP:
-            self._turn_view()
-        else:
-            placed = self._result is not None or self._hand.active or self._story.reached(RefineDetail)
-            self._stage.look_down(self._maps.extent() if placed else self._maps.layout.view(), follow=True)
-        self._stage.flush()
-
-    def _compare(self, mode: Mode) -> None:
-        """Look at both maps in another way."""
-        with self.session.drawing:
-            if self._run.view == MAP and self._comparison.choose(mode):
-                if not self._hand.active:
-                    self._run_view.show(self._story, self._tuning.config, camera=False, live=False)
-                self._tell_legend()
-                self._stage.flush()
-
-    def _switch(self, dark: bool) -> None:
-        with self.session.drawing:
-            self._palette = DARK if dark else LIGHT
-            self._theme()
-            self._maps.recolour(self._palette, self._story)
-            self._comparison.recolour(self._palette)
-            self._turn_view()
-            self._lesson.recolour()
-            self._research_recolours()
-
-    def _turn_view(self) -> None:
-        """Show the chosen view of the newest state."""
-        with self.session.drawing:
-            view = self._run.view
-            self._maps.visible(view == MAP)
-            if view != HEIGHTS:
-                self._heights.hide()
-            if view != SWARM:
-                self._swarm.hide()
-            self._draw(self._story, live=False, look=True)
-            result = self._story.get(MergeResult)
-            if result is not None and self._stage.mood in words.MOODS.values():
-                self._say(self._story, result)
-            self._stage.flush()
-
-    def _theme(self) -> None:
-        self._client.gui.configure_theme(
-            show_logo=False,
-            show_share_button=False,
-            control_width="medium",
-            dark_mode=self._palette.dark,
-            brand_color=LIGHT.ref,
-        )
-        self._stage.theme(self._palette)
+    def _resized(self) -> None:
+        self._display.clear_read_out()
+        self._messages.flush()

@@ -11,7 +11,7 @@ from algorithms.methods.baselines.feature_detectors import OrbConfig
 from algorithms.methods.baselines.feature_matching import FeatureConfig, MatchConfig
 from algorithms.methods.registry import METHODS
 from app.drawing.palette import LIGHT, css
-from app.page.page import Page
+from app.page.page_state import PageState
 
 pytestmark = pytest.mark.browser
 
@@ -47,9 +47,9 @@ def test_a_method_without_an_answer_refuses_and_takes_the_old_answer_away(tab, m
     tab.wait_for("accepted")
     assert "Difference" in tab.text
 
-    job = Page._job
+    job = PageState.job
     blind = FeatureConfig(detector=OrbConfig(contrast=100), match=MatchConfig(least=50))
-    monkeypatch.setattr(Page, "_job", lambda page, **how: replace(job(page, **how), config=blind))
+    monkeypatch.setattr(PageState, "job", lambda page, **how: replace(job(page, **how), config=blind))
     tab.choose("Method", METHODS["orb"].title)
     tab.wait_for("refused")
     said = tab.state

@@ -107,7 +107,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         return _without_answer(refusal, args, config, load_s, named, warnings)
     report = report_of(result, config, load_s, named, warnings)
     accepted = result.verdict.accepted
-    inputs = MergeInputs(ref, mov, observations, f"{args.map1.stem} and {args.map2.stem}")
+    inputs = MergeInputs.pair(ref, mov, observations, f"{args.map1.stem} and {args.map2.stem}")
     files = result_files(result, inputs, config, report, with_merged=accepted or args.force)
     stale = [] if accepted or args.force else [*MERGED_FILES, TRANSFORM_FILE]
     removed = _leave(args.out, files, stale)

@@ -92,7 +92,7 @@ def _inputs(args: argparse.Namespace, parser: Parser) -> MergeInputs:
     if args.map2 is not None:
         args.map1 = Path(args.first)
         ref, mov, observations = read_inputs(args)
-        return MergeInputs(ref, mov, observations, f"{args.map1.stem} + {args.map2.stem}")
+        return MergeInputs.pair(ref, mov, observations, f"{args.map1.stem} + {args.map2.stem}")
     known, folder = samples(), Path(args.first)
     if not folder.is_dir():
         if args.first not in known:

@@ -1,181 +1,157 @@
-"""Map 2 in a person's hand: where it lies, what the walls say of it meanwhile, what becomes of it."""
+"""Map 2 in a person's hand: where it lies, and what becomes of it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from threading import RLock
-from time import perf_counter
-from typing import Protocol
-
-import viser
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2, wrap_angle
-from algorithms.methods.manual_merge import ManualMerge
+from algorithms.methods.manual_merge import ManualMerge, known_answers, refine
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.spectra_config import PipelineConfig
-from algorithms.verdict.cell_agreement import WallLookup
-from app.drawing.browser_messages import BrowserMessages
-from app.drawing.scene.map_view import MapView
-from app.jobs.latest_request import LatestRequest
-from app.model import verdict_text as words
-from app.page.editing.transform_panel import HandWishes, TransformPanel, weighed_html
-from app.page.host import MapHost
+from algorithms.methods.steps import ObservationDetail, Step
+from algorithms.observations.pair_problem import PairProblem
+from app.model.run_state import RunState
+from app.page.editing.live_verdict import LiveVerdict
+from app.page.modes import Mode
 from app.page.panels.html_widgets import box
-from app.web.browser_events import BrowserEvents
+from app.page.run_controller import RunController
+from app.page.tab import Tab
+from app.page.undo.page_snapshot import PageSnapshot
+from app.page.undo.undo_controller import UndoController
 
-PATIENCE = 0.1  # seconds; weighing that takes longer waits until the hand rests
-REST = 0.15  # seconds in which a hand that rests does not move
 GLIDE = 180.0  # milliseconds in which map 2 goes where a number puts it
 
 
-class Host(MapHost, Protocol):
-    """The page, as far as it is asked from here."""
-
-    @property
-    def scales(self) -> ManualMerge | None:
-        """What a transform is weighed on; None where something is missing."""
-
-    @property
-    def found(self) -> Pose2 | None:
-        """What the method has found; None before."""
-
-    @property
-    def follows(self) -> bool:
-        """Whether the camera is to go along."""
-
-    def hand_asked(self) -> None:
-        """A person wants map 2 in their hand: whatever else is going on ends."""
-
-    def hand_begins(self) -> None:
-        """What was found is out of the way from now on."""
-
-    def hand_moved(self, T_ref_mov: Pose2) -> None:
-        """Map 2 was put there."""
-
-    def hand_taken(self, result: MergeResult) -> None:
-        """This is to be the answer."""
-
-    def hand_refines(self, scales: ManualMerge, T_ref_mov: Pose2) -> None:
-        """Search from there."""
-
-    def hand_snaps(self) -> None:
-        """Take the best of the whole circle."""
-
-    def hand_leaves(self) -> None:
-        """Everything as it was before."""
-
-
 class MapDragController:
-    """Of one tab. ``turn`` and ``drawing`` as in the page: the first is taken before the second."""
+    """Of one tab."""
 
-    def __init__(
-        self,
-        gui: viser.GuiApi,
-        channel: BrowserEvents,
-        stage: BrowserMessages,
-        maps: MapView,
-        turn: RLock,
-        drawing: RLock,
-        host: Host,
-    ) -> None:
-        self._stage, self._maps, self._turn, self._drawing, self._host = stage, maps, turn, drawing, host
-        self._scales: ManualMerge | None = None
-        self._walls: tuple[WallLookup, WallLookup] | None = None
+    def __init__(self, tab: Tab, undo: UndoController, runs: RunController) -> None:
+        self._state, self._display, self._modes = tab.state, tab.display, tab.modes
+        self._panels, self._notices = tab.panels, tab.notices
+        self._panel, self._locks = tab.panels.transform, tab.state.locks
+        self._messages, self._maps = tab.display.messages, tab.display.views.map
+        self._undo, self._runs = undo, runs
+        self._manual: ManualMerge | None = None
         self._at = Pose2()  # where map 2's anchor lies; scene
-        self._slow = 0.0  # seconds that weighing took last
-        self.active = False
-        typed = partial(channel.then, self._type)  # in order with what the page tells of the hand
-        wishes = HandWishes(self._toggle, typed, self._refine, self._snap, self._take)
-        self.panel = TransformPanel(gui, wishes)
-        self._work = LatestRequest(self._weigh, "mapmeld-hand")
+        self._verdict = LiveVerdict(tab.state, tab.display, self._panel)
+        self._mode = tab.modes.add(
+            Mode(self._end, redraw=self._redraw, changed=self._settings_changed, resume=self._resume)
+        )
+        typed = partial(tab.events.then, self._type)  # in order with what the page tells of the hand
+        self._panel.connect(self._toggle, typed, self._refine, self._snap, self._take)
         where = {"x": float, "y": float, "theta": float}
-        channel.on("carry", lambda **at: self._carry(Pose2(**at)), latest=True, **where)
-        channel.on("put", lambda knew, **at: self._put(Pose2(**at), knew), knew=int, **where)
-        channel.on("nudge", self._nudge, knew=int, **where)
+        tab.events.on("carry", lambda **at: self._carry(Pose2(**at)), latest=True, **where)
+        tab.events.on("put", lambda knew, **at: self._put(Pose2(**at), knew), knew=int, **where)
+        tab.events.on("nudge", self._nudge, knew=int, **where)
 
     def close(self) -> None:
-        """The tab is gone."""
-        self._work.close()
+        self._verdict.close()
 
     @property
-    def pose(self) -> Pose2 | None:
-        """T_ref_mov as map 2 is held; None while it is not."""
-        return self._maps.layout.transform(self._at) if self.active else None
+    def active(self) -> bool:
+        """Whether map 2 is in the hand."""
+        return self._state.hand is not None
 
     def begin(self, T_ref_mov: Pose2 | None = None) -> None:
         """Take map 2 up: at a transform, or where it lies."""
-        with self._turn:
-            scales = self._host.scales
-            if scales is None:
-                return
-            with self._drawing:
-                self.take_up(scales, T_ref_mov)
+        with self._locks.action:
+            manual = self._new_manual()
+            if manual is not None:
+                with self._locks.drawing:
+                    self.take_up(manual, T_ref_mov)
 
-    def take_up(self, scales: ManualMerge, T_ref_mov: Pose2 | None) -> None:
-        """The same on these scales; whoever calls is drawing."""
-        self._scales = scales
-        if self._walls is None or (self._walls[0].grid, self._walls[1].grid) != (
-            scales.problem.ref,
-            scales.problem.mov,
-        ):
-            self._walls = WallLookup(scales.problem.ref), WallLookup(scales.problem.mov)
+    def take_up(self, manual: ManualMerge, T_ref_mov: Pose2 | None) -> None:
+        """The same with what it is weighed on; whoever calls is drawing."""
+        self._modes.enter(self._mode)
+        self._manual = manual
+        self._verdict.weigh_on(manual)
         self._at = self._maps.mov_at if T_ref_mov is None else self._maps.layout.placed(T_ref_mov)
-        self.active = True
-        searches = isinstance(scales.config, PipelineConfig)
-        self.panel.open(True, refine=searches, prove=searches)
-        self._host.hand_begins()
-        self.redraw()
+        self._state.update(hand=self._maps.layout.transform(self._at))
+        searches = isinstance(manual.config, PipelineConfig)
+        self._panel.open(True, refine=searches, prove=searches)
+        self._display.views.comparison.offer(None, self._state.palette)
+        self._display.show_map(self._redraw)
+        self._display.withdraw_result()
+        self._display.show_legend()
+        self._redraw()
 
-    def end(self) -> None:
-        """Let go of map 2, whatever becomes of it."""
-        with self._turn, self._drawing:
-            if self.active:
-                self.active = False
-                self._work.drop()
-                self.panel.open(False)
-                self._maps.let_go()
-                self._stage.flush()
+    def _new_manual(self) -> ManualMerge | None:
+        """What a transform is weighed on; None where an input is missing, or wrong, which is reported."""
+        state, i = self._state, self._state.inputs
+        if i.ref is None or i.mov is None or not i.observations:
+            return None
+        search = self._known_search
+        known = known_answers(search.get(MergeResult)) if search is not None else ()
+        try:
+            return ManualMerge(PairProblem(i.ref, i.mov, i.observations), state.config, known)
+        except MapMergeError as error:
+            self._notices.report(error)
+            return None
 
-    def redraw(self) -> None:
-        """Draw map 2 where it is held."""
+    @property
+    def _known_search(self) -> RunState | None:
+        """The last run of the method, if it ran with the settings of now."""
+        search = self._state.search
+        return search if search is not None and search.config == self._state.config else None
+
+    # --- what the mode does -----------------------------------------------------------------------
+
+    def _end(self) -> None:
+        with self._locks.drawing:
+            self._state.update(hand=None)
+            self._verdict.drop()
+            self._panel.open(False)
+            self._maps.let_go()
+            self._messages.flush()
+
+    def _redraw(self) -> None:
         self._maps.hold(self._at)
-        self.panel.show(self._maps.layout.transform(self._at))
-        self._stage.flush()
-        self._work.ask((self._at, True))
+        self._panel.show(self._maps.layout.transform(self._at))
+        self._messages.flush()
+        self._verdict.ask(self._at, rests=True)
+
+    def _settings_changed(self) -> None:
+        self.begin(self._state.hand)
+
+    def _resume(self, snapshot: PageSnapshot, was_on: bool) -> bool:
+        if snapshot.held and snapshot.other is None:
+            self.begin(snapshot.hand)
+            return True
+        return False
 
     # --- what a person does -----------------------------------------------------------------------
 
     def _toggle(self) -> None:
-        with self._turn:
-            if not self.active:
-                self._host.hand_asked()
-                self.begin()
-                if self.active:
-                    self._host.hand_moved(self._maps.layout.transform(self._at))
-            else:
-                self.end()
-                self._host.hand_leaves()
+        with self._locks.action:
+            if self.active:
+                self._modes.close()  # everything as it was before
+                self._undo.go_to(replace(self._state.snapshot(), outcome=self._known_search))
+                return
+            self._modes.leave()
+            self._runs.thread.stop()
+            self.begin()
+            if self.active:
+                self._note()
 
     def _carry(self, at: Pose2) -> None:
         """Map 2 is on the way; the page draws it by itself."""
-        with self._turn:
+        with self._locks.action:
             if self.active:
-                self._at = at
-                self._maps.carried(at)
-                self.panel.show(self._maps.layout.transform(at))
-                self._work.ask((at, False))
+                self._move(at)
+                self._panel.show(self._maps.layout.transform(at))
+                self._verdict.ask(at, rests=False)
 
     def _put(self, at: Pose2, knew: int) -> None:
         """Map 2 was put down by the hand."""
-        with self._turn:
+        with self._locks.action:
             if self.active:
                 self._rest(at, self._known(knew))
 
     def _nudge(self, x: float, y: float, theta: float, knew: int) -> None:
         """Map 2 was stepped by a key, from where it lies: perhaps not where the page took it to be."""
-        with self._turn:
+        with self._locks.action:
             if self.active:
                 lay = self._at
                 at = Pose2(lay.x + x, lay.y + y, wrap_angle(lay.theta + theta))
@@ -183,7 +159,7 @@ class MapDragController:
 
     def _type(self, field: str, value: float) -> None:
         """One number of T was typed; a turn is about robot 2, so it leaves robot 2 where it is."""
-        with self._turn:
+        with self._locks.action:
             if not self.active:
                 return
             if field == "theta":
@@ -194,86 +170,91 @@ class MapDragController:
             self._rest(at, GLIDE, look=True)
 
     def _known(self, knew: int) -> float | None:
-        """The time in which the page has to be put right, if it went by an older word than the last."""
-        return None if knew == self._stage.placed else GLIDE
+        """The time in which the page has to be put right, if it went by an older message than the last."""
+        return None if knew == self._messages.placed else GLIDE
+
+    def _move(self, at: Pose2) -> None:
+        self._at = at
+        self._state.update(hand=self._maps.layout.transform(at))
+        self._maps.carried(at)
 
     def _rest(self, at: Pose2, glide: float | None, look: bool = False) -> None:
-        """Map 2 lies there from now on; whoever calls has the turn.
+        """Map 2 lies there from now on; whoever calls holds the action lock.
 
         glide : milliseconds in which the page takes it there; None where it did so by itself
         look  : the camera takes it in
         """
-        self._at = at
-        self._maps.carried(at)
-        T = self._maps.layout.transform(at)
-        with self._drawing:
+        self._move(at)
+        with self._locks.drawing:
             if glide is not None:
-                self._stage.place_mov(at, glide)
-            if look and self._host.follows:
-                self._stage.look_down(self._maps.extent(), need=True)
-            self._stage.flush()
-        self.panel.show(T)
-        self._work.ask((at, True))
-        self._host.hand_moved(T)
+                self._messages.place_mov(at, glide)
+            if look and self._panels.run.follow:
+                self._messages.look_down(self._maps.extent(), need=True)
+            self._messages.flush()
+        self._panel.show(self._maps.layout.transform(at))
+        self._verdict.ask(at, rests=True)
+        self._note()
+
+    def _note(self) -> None:
+        self._undo.history.note(self._state.snapshot())
 
     def _refine(self) -> None:
-        with self._turn:
-            if self.active and self._scales is not None:
-                scales, T = self._scales, self._maps.layout.transform(self._at)
-                self.end()
-                self._host.hand_refines(scales, T)
+        """Search from there; where it ends, map 2 is in the hand again."""
+        with self._locks.action:
+            manual, T = self._manual, self._state.hand
+            if manual is None or T is None:
+                return
+            self._modes.close()
+            search = partial(refine, manual, T, self._state.seed)
+            job = self._state.job(pace=self._panels.run.pace, steps=search)
+            if job is not None:
+                self._runs.search(job, partial(self._refined, manual, T))
+
+    def _refined(self, manual: ManualMerge, before: Pose2, run: RunState | None) -> None:
+        result = run.get(MergeResult) if run is not None else None
+        if run is None or result is None:
+            self.take_up(manual, before)
+            return
+        self._panels.charts.show(run, follow=False)
+        self.take_up(manual, result.T_ref_mov)
+        self._undo.history.note(self._state.snapshot(), "refine by hand")
 
     def _snap(self) -> None:
-        with self._turn:
-            if self.active:
-                self.end()
-                self._host.hand_snaps()
-
-    def _take(self) -> None:
-        with self._turn:
-            if not self.active or self._scales is None:
-                return
-            try:
-                result = self._scales.weigh(self._maps.layout.transform(self._at))
-            except MapMergeError as error:
-                self.panel.tell(box(str(error), "refused"))
-                return
-            self.end()
-            self._host.hand_taken(result)
-
-    # --- what the walls say -----------------------------------------------------------------------
-
-    def _weigh(self, wanted: tuple[Pose2, bool]) -> None:
-        """The colours at once; the verdict with them where it is quick, and always where the hand rests."""
-        at, rests = wanted
-        scales, walls = self._scales, self._walls
-        if scales is None or walls is None:
-            return
-        T = self._maps.layout.transform(at)
-        ref, mov = walls
-        told = ref.agreement_with(mov, T.inverse()), mov.agreement_with(ref, T)
-        with self._drawing:
-            if not self.active or not self._host.on_map:
-                return
-            self._maps.touch(walls, told)
-        if not rests and self._work.newer_within(REST if self._slow > PATIENCE else 0.0):
-            return
-        scales.value(T)  # what is made once for a pair of maps is not counted
-        began = perf_counter()
-        try:
-            result = scales.weigh(T)
-        except MapMergeError as error:
-            with self._drawing:
-                if self.active:
-                    self.panel.tell(box(str(error), "refused"))
-                    self._stage.hud(state=str(error), mood="refused")
-                    self._stage.flush()
-            return
-        self._slow = perf_counter() - began
-        with self._drawing:
+        """Take the best of the whole circle: known already, or looked for."""
+        with self._locks.action:
             if not self.active:
                 return
-            self.panel.tell(weighed_html(result, scales.config, self._host.found))
-            mood = words.mood(result.verdict)
-            self._stage.hud(state=words.of_hand(result), mood=mood, progress=None)
-            self._stage.flush()
+            self._modes.close()
+            state, search = self._state, self._known_search
+            result = search.get(MergeResult) if search is not None else None
+            if result is None or not result.proven_optimal:
+                search = None
+                proof = replace(state.config.proof, whole_circle=True)
+                self._runs.set_method(state.method, replace(state.config, proof=proof))
+            snapshot = replace(state.snapshot(), outcome=search, goal="merge")
+            self._undo.go_to(snapshot, "snap to the proven optimum")
+
+    def _take(self) -> None:
+        with self._locks.action:
+            manual, T, state = self._manual, self._state.hand, self._state
+            if manual is None or T is None:
+                return
+            try:
+                result = manual.weigh(T)
+            except MapMergeError as error:
+                self._panel.tell(box(str(error), "refused"))
+                return
+            self._modes.close()
+            run = RunState(state.config)
+            for stage, detail in (
+                ("observe", ObservationDetail(result.encounters)),
+                ("fuse", result.fusion),
+                ("verdict", result),
+            ):
+                run.tell(Step(stage, detail, 0.0))
+            with self._locks.drawing:
+                snapshot = replace(state.snapshot(), hand=result.T_ref_mov)
+                self._undo.history.note(snapshot, "take it by hand")
+                self._runs.show_answer(run, result, state.config, live=False)
+                self._undo.history.amend(run)
+                self._messages.flush()

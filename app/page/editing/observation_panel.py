@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import degrees, radians
 from typing import Any
 
@@ -19,7 +18,7 @@ from app.drawing.palette import LIGHT, QUIET
 from app.model import status_text as words
 from app.model.merge_inputs import MergeInputs
 from app.model.observation_draft import ObservationDraft
-from app.page.panels.html_widgets import box, table
+from app.page.panels.html_widgets import box, put, table
 from app.report.result_rows import sighting_rows
 
 # field -> label, hint, least, most, step; angles in degrees
@@ -41,18 +40,6 @@ FIELDS: dict[str, tuple[str, str, float, float, float]] = {
     "turn2": ("robot 2: heading (°)", "From map 2's x axis; the method does not need it.", -360, 360, 0.1),
 }
 ANGLES = {"turn1", "bearing", "sigma_bearing", "turn2"}
-
-
-@dataclass(frozen=True)
-class PlacingWishes:
-    """What a person can ask for here."""
-
-    toggle: Callable[[], None]
-    typed: Callable[[str, float], None]  # a field and its new value; metres, radians; in viser's loop
-    choose: Callable[[int], None]
-    add: Callable[[], None]
-    remove: Callable[[], None]
-    save: Callable[[], None]
 
 
 class ObservationPanel:
@@ -86,26 +73,41 @@ class ObservationPanel:
                 hint="observation.yaml, to be loaded again.",
             )
 
-    def listen(self, wishes: PlacingWishes) -> None:
-        """Ask here for what a person wants."""
-        self._toggle.on_click(lambda _: wishes.toggle())
-        self._add.on_click(lambda _: wishes.add())
-        self._remove.on_click(lambda _: wishes.remove())
-        self._save.on_click(lambda _: wishes.save())
+    def connect(
+        self,
+        toggle: Callable[[], None],
+        typed: Callable[[str, float], None],
+        choose: Callable[[int], None],
+        add: Callable[[], None],
+        remove: Callable[[], None],
+        save: Callable[[], None],
+    ) -> None:
+        """What is done where a person begins or ends to place the robots, and meanwhile.
+
+        typed  : a field and its new value; metres, radians; called in viser's loop
+        choose : the number of an observation, from 0
+        """
+        for button, action in (
+            (self._toggle, toggle),
+            (self._add, add),
+            (self._remove, remove),
+            (self._save, save),
+        ):
+            button.on_click(lambda _, action=action: action())
 
         @self._which.on_update
         def _(event: viser.GuiEvent[Any]) -> None:
             if event.client_id is not None:
-                wishes.choose(int(self._which.value) - 1)
+                choose(int(self._which.value) - 1)
 
         for name, handle in self._fields.items():
 
-            async def typed(event: viser.GuiEvent[Any], name: str = name) -> None:  # before it is overwritten
+            async def read(event: viser.GuiEvent[Any], name: str = name) -> None:  # before it is overwritten
                 if event.client_id is not None:  # not set from here
                     value = float(event.target.value)
-                    wishes.typed(name, radians(value) if name in ANGLES else value)
+                    typed(name, radians(value) if name in ANGLES else value)
 
-            handle.on_update(typed)
+            handle.on_update(read)
 
     def show(self, inputs: MergeInputs) -> None:
         """Show the numbers of these inputs; nothing is being placed."""
@@ -130,18 +132,15 @@ class ObservationPanel:
         self._step.content = (box(trouble, "refused") if trouble else "") + step
         self._step.visible = True
         options = tuple(str(number) for number in range(1, len(drafts) + 1))
-        if self._which.options != options:
-            self._which.options = options
-        if self._which.value != str(chosen + 1):
-            self._which.value = str(chosen + 1)
+        put(self._which, options=options)
+        put(self._which, value=str(chosen + 1))
         self._which.visible = several
         for name, value in fields_of(draft).items():
             handle = self._fields[name]
             if value is not None:
                 shown = degrees(value) if name in ANGLES else value
                 handle.value = round(shown, 3)
-            if handle.visible != (value is not None):
-                handle.visible = value is not None
+            put(handle, visible=value is not None)
         whole = draft.missing is None
         self._add.visible, self._remove.visible = whole, several or draft.observer is not None
         self._save.visible = all(one.missing is None for one in drafts)
@@ -169,8 +168,8 @@ def observations_html(inputs: MergeInputs) -> str:
     """HTML of a table per sighting, each under what is odd about it."""
     parts = []
     total = len(inputs.observations)
-    told = zip(inputs.observations, inputs.encounters, inputs.doubts(), strict=True)
-    for number, (o, at, doubt) in enumerate(told, 1):
+    rows = zip(inputs.observations, inputs.encounters, inputs.doubts(), strict=True)
+    for number, (o, at, doubt) in enumerate(rows, 1):
         head = (f"Observation {number} of {total}", "") if total > 1 else ()
         parts.append((box(doubt, "refused") if doubt else "") + table(sighting_rows(o, at), head))
     return "".join(parts) or box("No observation yet.", "plain")

@@ -2,126 +2,125 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
-from threading import RLock
-from typing import Protocol
 
 import numpy as np
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import FloatArray, Pose2
+from algorithms.files.observation_file import OBSERVATION_FILE, observations_to_bytes
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.observation import Observation
-from app.drawing.browser_messages import BrowserMessages
+from app.drawing.legend import legend
 from app.drawing.scene import robot_symbols as signs
-from app.drawing.scene.map_view import MapView
-from app.drawing.scene_layout import SceneLayout, lay_out
+from app.drawing.scene_layout import lay_out
 from app.model import status_text as words
 from app.model.observation_draft import ObservationDraft, Part
-from app.page.editing.observation_panel import ObservationPanel, PlacingWishes
-from app.page.host import MapHost, PageHost
-from app.web.browser_events import BrowserEvents, Numbers
+from app.model.run_state import RunState
+from app.model.view_modes import MAP
+from app.page.inputs_controller import InputsController
+from app.page.modes import Mode
+from app.page.run_controller import RunController
+from app.page.tab import Tab
+from app.page.undo.page_snapshot import PageSnapshot
+from app.page.undo.undo_controller import UndoController
+from app.web.browser_events import Numbers
 
 PARTS: tuple[Part, ...] = ("observer", "seen", "observed")
 
 
-class Host(PageHost, MapHost, Protocol):
-    """The page, as far as it is asked from here."""
-
-    def placing_asked(self) -> None:
-        """The robots are to be placed: whatever else is going on ends."""
-
-    def placing_begins(self, layout: SceneLayout) -> None:
-        """The maps are shown side by side, and stay so."""
-
-    def observed(self, observations: tuple[Observation, ...]) -> None:
-        """These are the observations now."""
-
-    def placing_ends(self) -> None:
-        """Everything as usual, with the observations there are."""
-
-    def save_observations(self, observations: tuple[Observation, ...]) -> None:
-        """Send a file."""
-
-
 class PlacementController:
-    """Of one tab. ``turn`` and ``drawing`` as in the page: the first is taken before the second."""
+    """Of one tab."""
 
-    def __init__(
-        self,
-        panel: ObservationPanel,
-        channel: BrowserEvents,
-        stage: BrowserMessages,
-        maps: MapView,
-        turn: RLock,
-        drawing: RLock,
-        host: Host,
-    ) -> None:
-        self._panel, self._stage, self._maps, self._host = panel, stage, maps, host
-        self._turn, self._drawing = turn, drawing
+    def __init__(self, tab: Tab, undo: UndoController, runs: RunController, inputs: InputsController) -> None:
+        self._state, self._display, self._modes = tab.state, tab.display, tab.modes
+        self._messages, self._maps = tab.display.messages, tab.display.views.map
+        self._panels, self._panel, self._locks = tab.panels, tab.panels.observation, tab.state.locks
+        self._undo, self._runs, self._inputs = undo, runs, inputs
         self._drafts: list[ObservationDraft] = [ObservationDraft()]
         self._chosen = 0
         self._layout = lay_out(None, None, None)
-        self.active = False
-        typed = partial(channel.then, self._type)  # in order with what the page tells of the signs
-        panel.listen(PlacingWishes(self._toggle, typed, self._choose, self._add, self._remove, self._save))
+        self._mode = tab.modes.add(Mode(self._end, leave=self._leave, redraw=self._show, resume=self._resume))
+        typed = partial(tab.events.then, self._type)  # in order with what the page tells of the signs
+        self._panel.connect(self._toggle, typed, self._choose, self._add, self._remove, self._save)
         sign = {"id": PARTS, "at": Numbers(2, 2), "heading": Numbers(0, 1)}
-        channel.on("drag", lambda **to: self._move(**to, rests=False), latest=True, **sign)
-        channel.on("drop", lambda **to: self._move(**to, rests=True), **sign)
-        channel.on("cancel", self._cancel)
+        tab.events.on("drag", lambda **to: self._move(**to, rests=False), latest=True, **sign)
+        tab.events.on("drop", lambda **to: self._move(**to, rests=True), **sign)
+        tab.events.on("cancel", self._cancel)
 
-    def end(self) -> None:
-        """Leave it, with what there is."""
-        with self._turn, self._drawing:
-            if self.active:
-                self.active = False
-                self._stage.hand(None)
-                for layer in ("robots", "sight"):
-                    self._stage.layer(layer, None)
+    @property
+    def active(self) -> bool:
+        return self._modes.current is self._mode
 
-    def redraw(self) -> None:
-        """Draw the signs as they are now; whoever calls is drawing."""
-        self._show()
+    # --- what the mode does -----------------------------------------------------------------------
+
+    def _end(self) -> None:
+        with self._locks.drawing:
+            self._messages.hand(None)
+            for layer in ("robots", "sight"):
+                self._messages.layer(layer, None)
+
+    def _leave(self) -> None:
+        """Everything as usual, with the observations there are."""
+        with self._locks.action, self._locks.drawing:
+            self._modes.close()
+            self._inputs.show(self._state.inputs)
+            self._undo.restore_current()
+
+    def _resume(self, snapshot: PageSnapshot, was_on: bool) -> bool:
+        """Who takes a step back while placing goes on placing."""
+        if was_on and snapshot.goal is None:
+            self.begin()
+        return self.active
 
     # --- what a person does -----------------------------------------------------------------------
 
     def _toggle(self) -> None:
-        with self._turn:
+        with self._locks.action:
             if self.active:
-                self.end()
-                self._host.placing_ends()
+                self._leave()
                 return
-            self._host.placing_asked()
+            self._modes.leave()
+            self._runs.thread.stop()
             self.begin()
 
     def begin(self) -> None:
-        """Offer the robots of the inputs, or none yet, to be placed."""
-        with self._turn:
-            inputs = self._host.inputs
-            if inputs.ref is None or inputs.mov is None:
+        """Offer the robots of the inputs, or none yet, to be placed: both maps side by side."""
+        state = self._state
+        with self._locks.action:
+            i = state.inputs
+            if i.ref is None or i.mov is None:
                 return
-            self._drafts = [ObservationDraft.of(o) for o in inputs.observations] or [ObservationDraft()]
-            self._chosen, self.active = 0, True
-            with self._drawing:
-                self._layout = lay_out(inputs.ref, inputs.mov, None)
-                self._host.placing_begins(self._layout)
+            self._drafts = [ObservationDraft.of(o) for o in i.observations] or [ObservationDraft()]
+            self._chosen = 0
+            self._modes.enter(self._mode)
+            with self._locks.drawing:
+                self._layout = lay_out(i.ref, i.mov, None)
+                self._display.views.comparison.clear()
+                self._display.withdraw_result()
+                self._display.show_map(self._show)
+                self._maps.load(replace(i, observations=()), self._layout, state.palette)
+                self._display.clear_read_out()
+                shown = {"frames": self._layout.frames(), "legend": legend(state.palette, MAP, RunState())}
+                self._messages.hud(mood="idle", progress=None, **shown)
                 self._show()
 
     def _choose(self, number: int) -> None:
-        with self._turn, self._drawing:
+        with self._locks.action, self._locks.drawing:
             if self.active and 0 <= number < len(self._drafts):
                 self._chosen = number
                 self._show()
 
     def _add(self) -> None:
-        with self._turn, self._drawing:
+        with self._locks.action, self._locks.drawing:
             if self.active and self._drafts[-1].missing is None:
                 self._drafts.append(ObservationDraft())
                 self._chosen = len(self._drafts) - 1
                 self._show()
 
     def _remove(self) -> None:
-        with self._turn, self._drawing:
+        with self._locks.action, self._locks.drawing:
             if not self.active:
                 return
             del self._drafts[self._chosen]
@@ -131,23 +130,23 @@ class PlacementController:
 
     def _cancel(self) -> None:
         """Escape: a half-placed observation goes."""
-        with self._turn:
+        with self._locks.action:
             if self.active and self._drafts[self._chosen].missing is not None:
                 self._remove()
 
     def _type(self, field: str, value: float) -> None:
-        with self._turn, self._drawing:
+        with self._locks.action, self._locks.drawing:
             if self.active:
                 self._drafts[self._chosen] = self._drafts[self._chosen].typed(field, value)
                 self._settle()
 
     def _move(self, id: Part, at: list[float], heading: list[float], rests: bool) -> None:  # noqa: A002
         """A sign was put somewhere: relative to the anchor of the map it belongs to."""
-        with self._turn, self._drawing:
+        with self._locks.action, self._locks.drawing:
             if not self.active:
                 return
             before = self._drafts[self._chosen]
-            inputs, layout = self._host.inputs, self._layout
+            inputs, layout = self._state.inputs, self._layout
             grid, number, anchor = inputs.ref, 1, layout.anchor_ref
             if id == "observed":
                 grid, number, anchor = inputs.mov, 2, layout.anchor_mov
@@ -170,39 +169,45 @@ class PlacementController:
             self._settle() if rests else self._show()
 
     def _save(self) -> None:
-        with self._turn:
-            told = self._told() if self.active else self._host.inputs.observations
-            if told:
-                self._host.save_observations(told)
+        with self._locks.action:
+            made = self._made() if self.active else self._state.inputs.observations
+            if made:
+                self._panels.send(OBSERVATION_FILE, observations_to_bytes(made))
 
     # --- what comes of it -------------------------------------------------------------------------
 
-    def _told(self) -> tuple[Observation, ...]:
+    def _made(self) -> tuple[Observation, ...]:
         made = (draft.observation for draft in self._drafts)
         return tuple(one for one in made if one is not None)
 
     def _settle(self) -> None:
         """The hand rests: the observations that are whole are the page's."""
         try:
-            told = self._told()
+            made = self._made()
         except MapMergeError as error:  # a number that no observation can have
             self._show(str(error))
             return
-        if told != self._host.inputs.observations:
-            self._host.observed(told)
+        if made != self._state.inputs.observations:
+            inputs = replace(self._state.inputs, observations=made)
+            self._inputs.forget_results(inputs)
+            self._panels.charts.clear()
+            self._panels.run.merge.disabled = not inputs.complete
+            self._undo.history.note(self._state.snapshot())
         self._show()
 
     def _show(self, trouble: str = "") -> None:
         draft = self._drafts[self._chosen]
         self._panel.edit(self._drafts, self._chosen, trouble)
-        if not self._host.on_map:
+        if self._state.view != MAP:
             return
         others = [one for number, one in enumerate(self._drafts) if number != self._chosen]
-        items = signs.drafts(draft, others, self._layout, self._host.palette)
-        self._stage.layer("robots", items)
-        self._stage.hud(state=trouble or words.PLACING[draft.missing], mood="refused" if trouble else "idle")
-        self._stage.hand({"grips": self._grips(draft), **self._place(draft)})
-        self._stage.flush()
+        items = signs.drafts(draft, others, self._layout, self._state.palette)
+        self._messages.layer("robots", items)
+        self._messages.hud(
+            state=trouble or words.PLACING[draft.missing], mood="refused" if trouble else "idle"
+        )
+        self._messages.hand({"grips": self._grips(draft), **self._place(draft)})
+        self._messages.flush()
 
     def _place(self, draft: ObservationDraft) -> dict[str, object]:
         if draft.missing is None:

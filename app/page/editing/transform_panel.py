@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import degrees, isfinite, radians
 from typing import Any
 
@@ -24,22 +23,10 @@ SMALL = "margin:2px 12px 6px;font-size:12px;line-height:1.45;opacity:.85"
 FAR = 1e5  # metres
 
 
-@dataclass(frozen=True)
-class HandWishes:
-    """What a person can ask for here."""
-
-    toggle: Callable[[], None]
-    typed: Callable[[str, float], None]  # x, y or theta: its new value; metres, radians; in viser's loop
-    refine: Callable[[], None]
-    snap: Callable[[], None]
-    take: Callable[[], None]
-
-
 class TransformPanel:
     """Widgets; they know nothing of maps."""
 
-    def __init__(self, gui: viser.GuiApi, wishes: HandWishes) -> None:
-        self._typed = wishes.typed
+    def __init__(self, gui: viser.GuiApi) -> None:
         self._folder = gui.add_folder("By hand", order=62.0, visible=False)
         with self._folder:
             self._begin = gui.add_button(
@@ -48,7 +35,6 @@ class TransformPanel:
                 color=QUIET,
                 hint="Drag and turn it over map 1, or mend what the method found.",
             )
-            self._begin.on_click(lambda _: wishes.toggle())
             self._how = gui.add_html(f'<p style="{SMALL}">{HOW}</p>', visible=False)
             number = {"min": -FAR, "max": FAR, "visible": False}
             self._x = gui.add_number("T: Δx (m)", 0.0, step=0.01, hint="Right, in map 1.", **number)
@@ -56,8 +42,6 @@ class TransformPanel:
             self._turn = gui.add_number(
                 "T: Δθ (°)", 0.0, step=0.1, hint="Counter-clockwise, about robot 2.", **number
             )
-            for handle in (self._x, self._y, self._turn):
-                handle.on_update(self._read)
             self._says = gui.add_html("", visible=False)
             self._refine = gui.add_button(
                 "Refine from here",
@@ -65,18 +49,38 @@ class TransformPanel:
                 visible=False,
                 hint="The method's own search, in its box around this place.",
             )
-            self._refine.on_click(lambda _: wishes.refine())
             self._snap = gui.add_button(
                 "Snap to proven optimum",
                 color=QUIET,
                 visible=False,
                 hint="The best of the whole circle: it is the method's answer, no longer yours.",
             )
-            self._snap.on_click(lambda _: wishes.snap())
             self._take = gui.add_button(
                 "Take this as the answer", color=LIGHT.ref, visible=False, hint="Its verdict stays with it."
             )
-            self._take.on_click(lambda _: wishes.take())
+
+    def connect(
+        self,
+        toggle: Callable[[], None],
+        typed: Callable[[str, float], None],
+        refine: Callable[[], None],
+        snap: Callable[[], None],
+        take: Callable[[], None],
+    ) -> None:
+        """What is done where a person takes map 2 in hand, and then wants something of it.
+
+        typed : x, y or theta and its new value; metres, radians; called in viser's loop
+        """
+        for button, action in (
+            (self._begin, toggle),
+            (self._refine, refine),
+            (self._snap, snap),
+            (self._take, take),
+        ):
+            button.on_click(lambda _, action=action: action())
+        self._typed = typed
+        for handle in (self._x, self._y, self._turn):
+            handle.on_update(self._read)
 
     def offer(self, possible: bool) -> None:
         """Whether there is anything to move."""
@@ -90,12 +94,10 @@ class TransformPanel:
         self._refine.visible, self._snap.visible = yes and refine, yes and prove
 
     def show(self, T: Pose2) -> None:
-        """Show a transform in the fields."""
         for handle, value in ((self._x, T.x), (self._y, T.y), (self._turn, degrees(T.theta))):
             handle.value = round(value, 3)
 
     def tell(self, html: str) -> None:
-        """Show what the walls say."""
         self._says.content = html
 
     async def _read(self, event: viser.GuiEvent[Any]) -> None:  # in the loop: nothing overwrites it before

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from threading import RLock
 from typing import Any
-
-import viser
 
 from algorithms.common.errors import MapMergeError
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
@@ -17,34 +14,32 @@ from app.jobs.runner import TappedRunner
 from app.model.merge_inputs import MergeInputs
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
+from app.model.view_modes import LESSON
 from app.page.lesson.figures.figure_registry import PICTURES
-from app.page.lesson.hosts import Host
 from app.page.lesson.lesson_display import LessonDisplay
-from app.page.lesson.lesson_panel import LessonPanel, LessonWishes
 from app.page.lesson.lesson_run import LessonRun, keep
 from app.page.lesson.lesson_texts import StepText, files, read_step, with_settings
 from app.page.lesson.placeholders import NUMBERS
-from app.page.panels.settings_panel import SettingsPanel
+from app.page.modes import Mode
+from app.page.run_controller import RunController
+from app.page.tab import Tab
+from app.page.undo.undo_controller import UndoController
 
 
 class LessonController:
-    """Goes through the steps; listens to a session of its own.
+    """Goes through the steps; listens to a job thread of its own.
 
-    turn : held while a person's wish is carried out
+    folder : of its texts
     """
 
-    def __init__(
-        self, host: Host, gui: viser.GuiApi, tuning: SettingsPanel, turn: RLock, folder: Path
-    ) -> None:
-        self._host, self._tuning, self._turn, self._folder = host, tuning, turn, folder
-        wishes = LessonWishes(
-            go=self.go, move=self.move, leave=self.leave, turn=self._dialled, try_=self._try
-        )
-        self._panel = LessonPanel(gui, wishes)
-        self._display = LessonDisplay(host, self._panel)
-        self._session = JobThread(self, TappedRunner(host.session.bench, self._record), beside=host.session)
-        self.open = False
-        self._own: tuple[str, Any] = (DEFAULT_METHOD, METHODS[DEFAULT_METHOD].defaults)
+    def __init__(self, tab: Tab, undo: UndoController, runs: RunController, folder: Path) -> None:
+        self._state, self._panels, self._panel = tab.state, tab.panels, tab.panels.lesson
+        self._modes, self._notices, self._locks = tab.modes, tab.notices, tab.state.locks
+        self._undo, self._runs, self._folder = undo, runs, folder
+        self._display = LessonDisplay(tab.state, tab.display, self._panel)
+        runner = TappedRunner(runs.thread.runner, self._record)
+        self._thread = JobThread(self, runner, tab.state.locks.drawing)
+        self._own: tuple[str, Any] = (tab.state.method, tab.state.config)
         self._files: list[Path] = []
         self._index = 0
         self._text: StepText | None = None
@@ -52,118 +47,121 @@ class LessonController:
         self._study = LessonRun(MergeInputs(), None)
         self._done = False  # whether the run has come to its end
         self._tried: tuple[int, Any] | None = None  # which thing to try, and the settings before it
-        self._told: set[int] = set()  # whose answers are shown
-        self._wish = 0  # the newest turn of a dial: older ones need not be drawn any more
+        self._answered: set[int] = set()  # whose answers are shown
+        self._slid = 0  # how often a slider was moved: older values need not be drawn any more
+        self._mode = tab.modes.add(
+            Mode(self._end, leave=self.leave, changed=self._settings_changed, reopen=self.enter)
+        )
+        self._panel.connect(self.go, self.move, self.leave, self._slide, self._try)
+        tab.state.subscribe("palette", lambda: self._show(fresh=True))
 
     def close(self) -> None:
-        """The tab is gone."""
-        self._session.close()
+        self._thread.close()
+
+    @property
+    def open(self) -> bool:
+        return self._modes.current is self._mode
 
     # --- what a person asks for -------------------------------------------------------------------
 
+    def toggle(self) -> None:
+        (self.leave if self.open else self.enter)()
+
     def enter(self) -> None:
         """Begin where one was the last time."""
-        with self._turn:
+        with self._locks.action:
             if self.open:
                 return
             try:
                 self._files = files(self._folder)
             except MapMergeError as error:
-                self._host.report(error)
+                self._notices.report(error)
                 return
-            self._host.session.stop()
-            self.open = True
-            self._own = self._tuning.method, self._tuning.config
-            proof = getattr(self._tuning.config, "proof", None)
+            self._modes.enter(self._mode)
+            self._runs.thread.stop()
+            self._own = self._state.method, self._state.config
+            proof = getattr(self._state.config, "proof", None)
             if proof is None or not proof.whole_circle:  # the lesson ends with a proof
-                self._set(DEFAULT_METHOD, METHODS[DEFAULT_METHOD].defaults)
+                self._runs.set_method(DEFAULT_METHOD, METHODS[DEFAULT_METHOD].defaults)
             self._panel.contents([self._title(path) for path in self._files])
-            with self._host.session.drawing:
-                self._host.entered(True)
-                self._panel.visible(True)
+            self._dock(True)
             self._begin()
             self.go(min(self._index, len(self._files) - 1))
 
     def leave(self) -> None:
         """Put everything back as it was."""
-        with self._turn:
-            if not self.open:
-                return
-            self.shut()
-            self._host.came_back()
+        with self._locks.action:
+            if self.open:
+                self._modes.close()
+                self._undo.restore_current()
 
-    def shut(self) -> None:
-        """Close the dock and put the settings back; what the map shows is the caller's business."""
-        with self._turn:
-            if not self.open:
-                return
-            self._session.stop()
-            self.open = False
-            self._tried = None
-            self._set(*self._own)
-            with self._host.session.drawing:
-                self._panel.visible(False)
-                self._host.entered(False)
+    def _end(self) -> None:
+        """Close the dock and put the settings back."""
+        self._thread.stop()
+        self._tried = None
+        self._runs.set_method(*self._own)
+        self._dock(False)
 
-    def changed(self) -> None:
+    def _dock(self, open_: bool) -> None:
+        with self._locks.drawing:
+            self._panels.run.open(LESSON, open_)
+            self._panels.charts.visible(not open_)
+            self._display.dock(open_)
+
+    def _settings_changed(self) -> None:
         """A setting was moved by hand."""
-        with self._turn:
+        with self._locks.action:
             if self.open:
                 self._begin()
                 self._show(fresh=False)
 
-    def recolour(self) -> None:
-        """Light has become dark, or the other way round."""
-        if self.open:
-            self._show(fresh=True)
-
     def go(self, index: int) -> None:
         """Go to a step; beyond the first and the last nowhere."""
-        with self._turn:
+        with self._locks.action:
             if not self.open or not 0 <= index < len(self._files):
                 return
             self._put_back()
-            self._index, self._display.places, self._told = index, (), set()
+            self._index, self._display.places, self._answered = index, (), set()
             try:
                 self._text = read_step(self._files[index], PICTURES, NUMBERS)
             except MapMergeError as error:
                 self._text = None
-                with self._host.session.drawing:
+                with self._locks.drawing:
                     self._panel.broken(index, self._files[index].name, str(error))
-                    self._host.present(RunState(), f"Lesson: {error}", [], None, True, False)
+                    self._display.run(RunState(), f"Lesson: {error}", look=True)
                 return
             self._show(fresh=True)
 
     def move(self, by: int) -> None:
         """Go on or back by so many steps; pressed quickly, each press counts."""
-        with self._turn:
+        with self._locks.action:
             self.go(self._index + by)
 
-    def _dialled(self) -> None:
-        self._wish += 1
-        mine = self._wish
-        with self._turn:
-            if self.open and mine == self._wish:
+    def _slide(self) -> None:
+        self._slid += 1
+        mine = self._slid
+        with self._locks.action:
+            if self.open and mine == self._slid:
                 self._display.places = self._panel.places
                 self._show(fresh=False, moved=True)
 
     def _try(self, number: int) -> None:
-        with self._turn:
+        with self._locks.action:
             text = self._text
             if not self.open or text is None or number >= len(text.trials):
                 return
-            trial, shown = text.trials[number], number in self._told
+            trial, shown = text.trials[number], number in self._answered
             if trial.button:
                 self._put_back()
-                self._told.clear()
+                self._answered.clear()
             if shown:
-                self._told.discard(number)
+                self._answered.discard(number)
             else:
-                self._told.add(number)
+                self._answered.add(number)
                 if trial.button:
-                    method, config = self._tuning.method, self._tuning.config
+                    config = self._state.config
                     self._tried = number, config
-                    self._set(method, with_settings(config, trial.settings))
+                    self._runs.set_method(self._state.method, with_settings(config, trial.settings))
                     self._begin()
             self._show(fresh=False)
 
@@ -171,29 +169,24 @@ class LessonController:
         if self._tried is not None:
             _, config = self._tried
             self._tried = None
-            self._set(self._tuning.method, config)
+            self._runs.set_method(self._state.method, config)
             self._begin()
-
-    def _set(self, method: str, config: Any) -> None:
-        self._tuning.restore(method, config)
-        self._host.method_shown(method)
 
     # --- the run ----------------------------------------------------------------------------------
 
     def _begin(self) -> None:
         """Run the method on what is loaded, as it is set now."""
-        i, config = self._host.inputs, self._tuning.config
-        self._session.stop()
+        state = self._state
+        self._thread.stop()
         self._done = False
-        self._study = LessonRun(i, config, self._host.seed)
-        if self._study.possible and i.ref is not None and i.mov is not None:
-            job = MergeJob(i.ref, i.mov, i.observations, config, self._tuning.method, self._host.seed)
-            self._session.request(job)
+        self._study = LessonRun(state.inputs, state.config, state.seed)
+        job = state.job()
+        if self._study.possible and job is not None:
+            self._thread.request(job)
 
-    def _record(self, told: Iterator[Step]) -> Iterator[Step]:
-        """Keep the steps of a run."""
+    def _record(self, run: Iterator[Step]) -> Iterator[Step]:
         self._steps = steps = []
-        for step in told:
+        for step in run:
             keep(steps, step)
             yield step
 
@@ -217,7 +210,6 @@ class LessonController:
         """Other tabs' runs are at work; the picture says that it is being worked out."""
 
     def ended(self, job: MergeJob, story: RunState) -> None:
-        """The run came to its end."""
         had = bool(self._study.steps)
         self._study = LessonRun(self._study.inputs, job.config, job.seed, tuple(self._steps))
         self._done = True
@@ -227,7 +219,6 @@ class LessonController:
         """The run is no longer wanted."""
 
     def failed(self, job: MergeJob, story: RunState, error: Exception) -> None:
-        """The run could not go on."""
         self._done = True
         self._panel.picture(f"These maps cannot be merged: {error}")
 
@@ -245,11 +236,11 @@ class LessonController:
         fresh : look at the map anew
         moved : only a dial was: the words stay
         """
-        with self._host.session.drawing:
+        with self._locks.drawing:
             text, study = self._text, self._study
             if text is None or not self.open:
                 return
             if not moved:
-                self._display.words(self._index, text, study, self._told)
+                self._display.words(self._index, text, study, self._answered)
             says = f"Lesson, step {self._index + 1} of {len(self._files)}: {text.title}"
             self._display.picture(text, study, says, fresh, self._done)

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from app.drawing.draw_items import Item
 from app.model.run_state import RunState
+from app.model.view_modes import MAP
 from app.page.lesson.figures.figure_registry import PICTURES, FigureSlider
-from app.page.lesson.hosts import Host
 from app.page.lesson.lesson_panel import LessonPanel
 from app.page.lesson.lesson_run import LessonRun
 from app.page.lesson.lesson_texts import StepText, filled
 from app.page.lesson.placeholders import numbers_of
+from app.page.page_display import PageDisplay
+from app.page.page_state import PageState
 
 OWN = "Your own settings and results come back when you leave."
 WAIT = "Working it out on these maps …"
@@ -24,18 +27,29 @@ class LessonDisplay:
     places : where the dials of the picture stand; empty: where they begin
     """
 
-    def __init__(self, host: Host, panel: LessonPanel) -> None:
-        self._host, self._panel = host, panel
+    def __init__(self, state: PageState, display: PageDisplay, panel: LessonPanel) -> None:
+        self._state, self._display, self._panel = state, display, panel
         self.places: tuple[int, ...] = ()
 
-    def words(self, index: int, text: StepText, study: LessonRun, told: Collection[int]) -> None:
+    def dock(self, open_: bool) -> None:
+        self._panel.visible(open_)
+        self._display.views.comparison.clear()
+        self._display.clear_read_out()
+        self._display.messages.layer("lesson", None)
+        if open_:
+            self._display.show_map()
+        self._display.show_buttons()
+
+    def words(self, index: int, text: StepText, study: LessonRun, answered: Collection[int]) -> None:
         """Show what a step says.
 
-        told : numbers of the things to try whose answers are shown
+        answered : numbers of the things to try whose answers are shown
         """
         numbers = numbers_of(study) if study.possible else {}
         self._panel.text(index, text.title, filled(text.body, numbers), text.equations, OWN)
-        answers = [filled(trial.answer, numbers) if k in told else "" for k, trial in enumerate(text.trials)]
+        answers = [
+            filled(trial.answer, numbers) if k in answered else "" for k, trial in enumerate(text.trials)
+        ]
         self._panel.trials(text.trials, answers)
 
     def picture(self, text: StepText, study: LessonRun, says: str, fresh: bool, done: bool) -> None:
@@ -45,27 +59,45 @@ class LessonDisplay:
         fresh : look at the map anew
         done  : the run has come to its end
         """
-        host, picture = self._host, PICTURES.get(text.picture)
+        state, picture = self._state, PICTURES.get(text.picture)
         ready = picture is not None and study.possible and study.reached(*picture.needs)
         if picture is None or not ready:
             waiting = "" if picture is None else NO_MAPS if not study.inputs.complete else WAIT
             over = done or not study.possible
             self._panel.picture(NOT_HERE if waiting == WAIT and over else waiting)
             self._panel.dials((), ())
-            host.present(RunState(study.config), says, [], None, fresh, waiting == WAIT and not over)
+            self.run(RunState(study.config), says, fresh, busy=waiting == WAIT and not over)
             return
         dials = picture.dials(study)
         places = self._placed(dials)
         self._panel.dials(dials, places)
-        self._panel.picture(picture.draw(study, places, host.palette))
-        host.present(
-            picture.story(study, places),
-            says,
-            picture.ink(study, places, host.layout, host.palette),
-            picture.turn(study, places) if picture.turn else None,
-            fresh,
-            False,
-        )
+        self._panel.picture(picture.draw(study, places, state.palette))
+        ink = picture.ink(study, places, self._display.views.map.layout, state.palette)
+        turn = picture.turn(study, places) if picture.turn else None
+        self.run(picture.story(study, places), says, fresh, ink, turn)
+
+    def run(
+        self,
+        run: RunState,
+        says: str,
+        look: bool,
+        ink: list[Item] | None = None,
+        turn: float | None = None,
+        busy: bool = False,
+    ) -> None:
+        """Show a run on the map, and what the lesson draws over it.
+
+        look : the camera goes there, too
+        turn : by which map 2 is turned beside map 1; None: not at all
+        """
+        state, messages = self._state, self._display.messages
+        state.update(run=run)
+        with self._display.together():
+            self._display.show_lesson_step(look, turn)
+            messages.layer("lesson", ink if state.view == MAP else None)
+            messages.hud(state=says, mood="running" if busy else "idle", progress=None)
+            self._display.show_legend()
+            messages.flush()
 
     def _placed(self, dials: tuple[FigureSlider, ...]) -> tuple[int, ...]:
         """Where the dials stand, or where they begin."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from functools import partial
 from html import escape
+from typing import Any
 
 import viser
 
@@ -20,37 +21,16 @@ WIDTH = 424
 MOST_TRIALS, MOST_DIALS = 3, 2
 
 
-@dataclass(frozen=True)
-class LessonWishes:
-    """What a person can ask for here.
-
-    go    : to the step of this number, from 0
-    move  : by so many steps from where one is
-    leave : the lesson
-    turn  : a dial was moved
-    try_  : the thing to try of this number
-    """
-
-    go: Callable[[int], None]
-    move: Callable[[int], None]
-    leave: Callable[[], None]
-    turn: Callable[[], None]
-    try_: Callable[[int], None]
-
-
 class LessonPanel:
     """Widgets; they know nothing of the method."""
 
-    def __init__(self, gui: viser.GuiApi, wishes: LessonWishes) -> None:
-        self._wishes = wishes
+    def __init__(self, gui: viser.GuiApi) -> None:
         self._titles: tuple[str, ...] = ("…",)
         self._dials: tuple[FigureSlider, ...] = ()
         self._panel = gui.add_panel(visible=False)
         with self._panel.add_tab("Lesson", icon=viser.Icon.SCHOOL):
-            moves = gui.add_button_group("", (BACK, NEXT, LEAVE))
-            moves.on_click(lambda event: self._move(event.target.value))
+            self._moves = gui.add_button_group("", (BACK, NEXT, LEAVE))
             self._step = gui.add_dropdown("Step", self._titles)
-            self._step.on_update(lambda event: self._jump() if event.client_id is not None else None)
             self._title = gui.add_html("")
             self._body = gui.add_markdown("")
             self._equations = gui.add_html("")
@@ -59,45 +39,54 @@ class LessonPanel:
                 gui.add_slider(f"dial {k + 1}", min=0, max=1, step=1, initial_value=0, visible=False)
                 for k in range(MOST_DIALS)
             ]
-            for slider in self._sliders:
-                slider.on_update(lambda event: wishes.turn() if event.client_id is not None else None)
             self._asks, self._buttons = [], []
-            for k in range(MOST_TRIALS):
+            for _ in range(MOST_TRIALS):
                 self._asks.append(gui.add_html("", visible=False))
-                button = gui.add_button("…", color=QUIET, visible=False)
-                button.on_click(lambda _, k=k: wishes.try_(k))
-                self._buttons.append(button)
+                self._buttons.append(gui.add_button("…", color=QUIET, visible=False))
             self._foot = gui.add_html("")
         self._panel.dock_left()
         self._panel.set_width(WIDTH)
 
+    def connect(
+        self,
+        go: Callable[[int], None],
+        move: Callable[[int], None],
+        leave: Callable[[], None],
+        slide: Callable[[], None],
+        try_: Callable[[int], None],
+    ) -> None:
+        """What is done where a person goes through the lesson.
+
+        go    : to the step of this number, from 0
+        move  : by so many steps from where one is
+        slide : a slider of the picture was moved
+        try_  : the thing to try of this number
+        """
+        moves = {BACK: partial(move, -1), NEXT: partial(move, 1), LEAVE: leave}
+        self._moves.on_click(lambda event: moves[event.target.value]())
+
+        @self._step.on_update
+        def _(event: viser.GuiEvent[Any]) -> None:
+            if event.client_id is not None and self._step.value in self._titles:
+                go(self._titles.index(self._step.value))
+
+        for slider in self._sliders:
+            slider.on_update(lambda event: slide() if event.client_id is not None else None)
+        for k, button in enumerate(self._buttons):
+            button.on_click(lambda _, k=k: try_(k))
+
     def visible(self, yes: bool) -> None:
-        """Open or close the dock."""
-        if self._panel.visible != yes:
-            self._panel.visible = yes
+        put(self._panel, visible=yes)
         if yes:
             self._panel.set_width(WIDTH)
 
-    def _move(self, where: str) -> None:
-        if where == LEAVE:
-            self._wishes.leave()
-        else:
-            self._wishes.move(1 if where == NEXT else -1)
-
-    def _jump(self) -> None:
-        if self._step.value in self._titles:
-            self._wishes.go(self._titles.index(self._step.value))
-
     def contents(self, titles: Sequence[str]) -> None:
-        """The titles of all steps, in their order."""
         self._titles = tuple(f"{k}. {title}" for k, title in enumerate(titles, 1))
-        if tuple(self._step.options) != self._titles:
-            self._step.options = self._titles
+        put(self._step, options=self._titles)
 
     def text(self, index: int, title: str, body: str, equations: Sequence[str], foot: str = "") -> None:
         """Show the words of a step."""
-        if self._step.value != self._titles[index]:
-            self._step.value = self._titles[index]
+        put(self._step, value=self._titles[index])
         dots = "".join(f"<i{' data-on' if k <= index else ''}></i>" for k in range(len(self._titles)))
         step, last = index + 1, len(self._titles)
         where = f"step {step} of {last}"
@@ -133,10 +122,8 @@ class LessonPanel:
                 dial = dials[k]
                 slider.min, slider.max = shown(dial, 0), shown(dial, dial.count - 1)
                 slider.step, slider.label = dial.step, dial.label
-                if slider.value != shown(dial, places[k]):
-                    slider.value = shown(dial, places[k])
-            if slider.visible != there:
-                slider.visible = there
+                put(slider, value=shown(dial, places[k]))
+            put(slider, visible=there)
 
     @property
     def places(self) -> tuple[int, ...]:

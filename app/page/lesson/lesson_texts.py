@@ -1,7 +1,7 @@
 """The texts of the lesson and of the museum: one Markdown file each, with a front matter in YAML.
 
 A teacher rewrites, reorders, adds or translates them without touching code: the order is that of the file
-names. What is wrong with a file is told by its name; the files beside it are shown all the same.
+names. What is wrong with a file is reported with its name; the files beside it are shown all the same.
 """
 
 from __future__ import annotations

@@ -3,75 +3,91 @@
 from __future__ import annotations
 
 from pathlib import Path
-from threading import RLock
 from typing import Any
-
-import viser
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import pose_error
-from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
-from app.model.merge_inputs import MergeInputs
+from app.model.merge_inputs import Files, MergeInputs
 from app.model.settings import settings_of, value_at, word_for
 from app.model.status_text import apart_by
-from app.page.lesson.hosts import Hall
-from app.page.lesson.lesson_texts import Exhibit, Settings, exhibit_case, files, read_exhibit, with_settings
-from app.page.lesson.museum_panel import MuseumPanel, MuseumWishes
-from app.page.page_snapshot import PageSnapshot
+from app.model.view_modes import MUSEUM
+from app.page.inputs_controller import InputsController
+from app.page.lesson.lesson_texts import (
+    Exhibit,
+    Settings,
+    exhibit_case,
+    files,
+    museum_folder,
+    read_exhibit,
+    with_settings,
+)
+from app.page.run_controller import RunController
+from app.page.tab import Tab
+from app.page.undo.page_snapshot import PageSnapshot
+from app.page.undo.undo_controller import UndoController
 
 
 class MuseumController:
-    """Knows the exhibit at hand, and what there was before the visit.
+    """Knows the exhibit at hand, and what there was before the visit."""
 
-    turn : held while a person's wish is carried out
-    """
-
-    def __init__(self, hall: Hall, gui: viser.GuiApi, turn: RLock, folder: Path) -> None:
-        self._hall, self._turn, self._folder = hall, turn, folder
-        self._panel = MuseumPanel(gui, MuseumWishes(self.pick, self.cure, self._again, self.leave))
+    def __init__(self, tab: Tab, undo: UndoController, runs: RunController, inputs: InputsController) -> None:
+        self._state, self._display, self._panels = tab.state, tab.display, tab.panels
+        self._modes, self._notices, self._panel = tab.modes, tab.notices, tab.panels.museum
+        self._undo, self._runs, self._inputs = undo, runs, inputs
         self.open = False
         self._before: PageSnapshot | None = None
         self._files: list[Path] = []
         self._index = 0
         self._exhibit: Exhibit | None = None
-        self._inputs = MergeInputs()
+        self._pair = MergeInputs()
+        again = lambda: self.pick(self._index)  # noqa: E731
+        self._panel.connect(self.pick, self.cure, again, self.leave)
+        tab.state.subscribe("result", self._result_shown)
+
+    def toggle(self) -> None:
+        (self.leave if self.open else self.enter)()
 
     def enter(self) -> None:
         """Begin where one was the last time."""
-        with self._turn:
+        with self._state.locks.action:
             if self.open:
                 return
             try:
-                self._files = files(self._folder)
+                self._files = files(museum_folder())
             except MapMergeError as error:
-                self._hall.report(error)
+                self._notices.report(error)
                 return
-            self._before, self.open = self._hall.desk, True
+            self._modes.leave()
+            self._before = self._undo.history.snapshot
             self._panel.contents([self._title(path) for path in self._files])
-            self._panel.visible(True)
-            self._hall.museum_entered(True)
+            self._show(True)
             self.pick(min(self._index, len(self._files) - 1))
 
     def leave(self) -> None:
         """Put everything back as it was before the visit."""
-        with self._turn:
+        with self._state.locks.action:
             if not self.open:
                 return
-            before, self._before, self.open, self._exhibit = self._before, None, False, None
-            self._panel.visible(False)
-            self._hall.museum_entered(False)
-            self._hall.museum_left(before)
+            before, self._before, self._exhibit = self._before, None, None
+            self._show(False)
+            if before is not None:
+                self._undo.go_to(before, "leave the museum")
+
+    def _show(self, open_: bool) -> None:
+        self.open = open_
+        self._panel.visible(open_)
+        self._panels.run.open(MUSEUM, open_)
+        self._display.show_buttons()
 
     def pick(self, index: int) -> None:
-        """Go to an exhibit."""
-        with self._turn:
+        with self._state.locks.action:
             if not self.open or not 0 <= index < len(self._files):
                 return
             self._index, self._exhibit = index, None
             try:
                 exhibit = read_exhibit(self._files[index])
-                self._inputs = MergeInputs.of(exhibit_case(exhibit))
+                self._pair = MergeInputs.of(exhibit_case(exhibit))
             except MapMergeError as error:
                 self._panel.broken(index, str(error))
                 return
@@ -79,34 +95,41 @@ class MuseumController:
             method, config = self._failing(exhibit)
             self._panel.exhibit(index, exhibit.body)
             self._panel.settings(rows(exhibit, config))
-            self._hall.hang(self._inputs, method, config, f"exhibit: {exhibit.title}")
+            self._runs.thread.stop()
+            self._modes.close()
+            self._runs.set_method(method, config, seed=0)
+            self._panels.files.restore(Files(self._pair.name))
+            with self._state.locks.drawing:
+                if self._inputs.show(self._pair):
+                    self._undo.history.note(self._state.snapshot(), f"exhibit: {exhibit.title}")
 
     def cure(self) -> None:
         """Apply the cure, and merge."""
-        with self._turn:
+        with self._state.locks.action:
             if self.open and self._exhibit is not None:
-                if self._hall.desk is None or self._hall.desk.inputs is not self._inputs:
+                if self._state.inputs is not self._pair:
                     self.pick(self._index)
                 self._panel.settings(self._changes(self._exhibit))
-                self._hall.treat(*self._cured(self._exhibit))
+                self._runs.set_method(*self._cured(self._exhibit), seed=0)
+                self._runs.merge()
 
-    def _again(self) -> None:
-        self.pick(self._index)
-
-    def told(self, inputs: MergeInputs, method: str, config: Any, result: MergeResult) -> None:
+    def _result_shown(self) -> None:
         """A merge came to its end: if it was the exhibit's, or its cure's, say what happened."""
-        exhibit, truth = self._exhibit, self._inputs.truth
-        if exhibit is None or inputs is not self._inputs or truth is None or truth.T_ref_mov is None:
+        exhibit, truth, result = self._exhibit, self._pair.truth, self._state.result
+        if exhibit is None or result is None or self._state.inputs is not self._pair:
+            return
+        if truth is None or truth.T_ref_mov is None:
             return
         distance, angle = pose_error(result.T_ref_mov, truth.T_ref_mov, result.encounter.x_mov)
         right = truth.allows(distance, angle)
         verdict = "accepted" if result.verdict.accepted else "refused"
+        ran = result.method, self._state.result_config
         where = apart_by(distance, angle)
-        if (method, config) == self._failing(exhibit) and not right:
+        if ran == self._failing(exhibit) and not right:
             noticed = "The verdict saw it." if verdict == "refused" else "The verdict did not see it."
-            self._panel.settings(rows(exhibit, config))
+            self._panel.settings(rows(exhibit, self._state.result_config))
             self._panel.failed(exhibit.why, f"Wrong: {where} from the truth. {noticed}", exhibit.cure)
-        elif (method, config) == self._cured(exhibit) and right:
+        elif ran == self._cured(exhibit) and right:
             self._panel.settings(self._changes(exhibit))
             self._panel.cured(exhibit.cured, f"Cured: {where} from the truth, and {verdict}.")
 
@@ -130,8 +153,8 @@ class MuseumController:
 def rows(exhibit: Exhibit, config: Any) -> list[tuple[str, ...]]:
     """What is loaded and set for an exhibit, as a person reads it."""
     sample = exhibit.case + (", badly measured" if exhibit.rough else "")
-    told = [("sample", sample), ("method", METHODS[exhibit.method].title)]
-    return told + _settings(exhibit.settings, config)
+    shown = [("sample", sample), ("method", METHODS[exhibit.method].title)]
+    return shown + _settings(exhibit.settings, config)
 
 
 def changes(exhibit: Exhibit, failing: Any, cured: Any) -> list[tuple[str, ...]]:
@@ -139,9 +162,9 @@ def changes(exhibit: Exhibit, failing: Any, cured: Any) -> list[tuple[str, ...]]
     titles = [METHODS[method].title for method in (exhibit.method, exhibit.cure_method)]
     touched = tuple(dict((*exhibit.settings, *exhibit.cure_settings)).items())
     before, after = dict(_settings(touched, failing)), _settings(touched, cured)
-    told = [("method", _change(*titles))]
-    told += [(label, _change(before.get(label, words), words)) for label, words in after]
-    return [rows(exhibit, failing)[0], *told]
+    shown = [("method", _change(*titles))]
+    shown += [(label, _change(before.get(label, words), words)) for label, words in after]
+    return [rows(exhibit, failing)[0], *shown]
 
 
 def _change(old: str, new: str) -> str:

@@ -3,71 +3,58 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from typing import Any
 
 import viser
 
 from app.drawing.palette import LIGHT, QUIET
-from app.page.panels.html_widgets import box, table
+from app.page.panels.html_widgets import box, put, table
 
 Row = tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class MuseumWishes:
-    """What a person can ask for here.
-
-    pick  : the exhibit of this number, from 0
-    cure  : apply the cure, and merge
-    again : the exhibit as it was, uncured
-    leave : the museum
-    """
-
-    pick: Callable[[int], None]
-    cure: Callable[[], None]
-    again: Callable[[], None]
-    leave: Callable[[], None]
 
 
 class MuseumPanel:
     """Widgets; they know nothing of the exhibits."""
 
-    def __init__(self, gui: viser.GuiApi, wishes: MuseumWishes) -> None:
+    def __init__(self, gui: viser.GuiApi) -> None:
         self._titles: tuple[str, ...] = ("…",)
         self._folder = gui.add_folder("Museum", order=4.8, visible=False)
         with self._folder:
             self._exhibit = gui.add_dropdown("Exhibit", self._titles)
-            self._exhibit.on_update(
-                lambda event: (
-                    wishes.pick(self._titles.index(self._exhibit.value))
-                    if event.client_id is not None and self._exhibit.value in self._titles
-                    else None
-                )
-            )
             self._body = gui.add_markdown("")
             self._settings = gui.add_html("")
             self._told = gui.add_html("")
             self._cure = gui.add_button("Cure", color=LIGHT.mov, icon=viser.Icon.BANDAGE, visible=False)
-            self._cure.on_click(lambda _: wishes.cure())
             self._again = gui.add_button("Once more, uncured", color=QUIET, visible=False)
-            self._again.on_click(lambda _: wishes.again())
-            gui.add_button("Leave the museum", color=QUIET).on_click(lambda _: wishes.leave())
+            self._leave = gui.add_button("Leave the museum", color=QUIET)
+
+    def connect(
+        self,
+        pick: Callable[[int], None],
+        cure: Callable[[], None],
+        again: Callable[[], None],
+        leave: Callable[[], None],
+    ) -> None:
+        """What is done where a person picks an exhibit by its number from 0, cures it, or leaves."""
+
+        @self._exhibit.on_update
+        def _(event: viser.GuiEvent[Any]) -> None:
+            if event.client_id is not None and self._exhibit.value in self._titles:
+                pick(self._titles.index(self._exhibit.value))
+
+        for button, action in ((self._cure, cure), (self._again, again), (self._leave, leave)):
+            button.on_click(lambda _, action=action: action())
 
     def visible(self, yes: bool) -> None:
-        """Open or close the folder."""
-        if self._folder.visible != yes:
-            self._folder.visible = yes
+        put(self._folder, visible=yes)
 
     def contents(self, titles: Sequence[str]) -> None:
-        """The titles of all exhibits, in their order."""
         self._titles = tuple(f"{k}. {title}" for k, title in enumerate(titles, 1))
-        if tuple(self._exhibit.options) != self._titles:
-            self._exhibit.options = self._titles
+        put(self._exhibit, options=self._titles)
 
     def exhibit(self, index: int, body: str) -> None:
         """Show an exhibit before its merge."""
-        if self._exhibit.value != self._titles[index]:
-            self._exhibit.value = self._titles[index]
+        put(self._exhibit, value=self._titles[index])
         self._body.content = body
         self._settings.content = ""
         self._told.content = ""
@@ -96,5 +83,4 @@ class MuseumPanel:
         if cure and self._cure.label != f"Cure: {cure}":
             self._cure.label = f"Cure: {cure}"
         for button, there in ((self._cure, bool(cure)), (self._again, again)):
-            if button.visible != there:
-                button.visible = there
+            put(button, visible=there)

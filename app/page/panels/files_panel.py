@@ -17,15 +17,15 @@ from algorithms.files.map_file import map_from_bytes, parse_meta
 from algorithms.files.observation_file import observations_from_bytes
 from algorithms.maps.grid_map import GridMap
 from app.drawing.palette import QUIET
-from app.model.merge_inputs import Files, MergeInputs, Upload
+from app.model.merge_inputs import Files, MapSlot, MergeInputs, Upload
 from app.page.cancellable_task import CancellableTask
+from app.page.panels.html_widgets import put
 from app.page.panels.image_form import ImageForm
 from app.system import data_paths as paths
 from app.system.cancellation import CancellableReader, Cancelled, Check, unwatched
 
 NONE = "(choose)"
 TAKEN = viser.UploadedFile("", b"")  # what a button holds that holds no file any more
-Report = Callable[[MapMergeError], None]
 
 
 # key -> label of the button, what the picker offers
@@ -38,6 +38,10 @@ SLOTS = {
 }
 
 MAPS = (1, 2)
+NO_YAML = (
+    "Map {}'s image has no YAML file yet: load it, or fill in the form below the image and press “Use this "
+    "map”."
+)
 LARGE = 1_000_000  # bytes; to read less takes no time to speak of
 
 
@@ -71,39 +75,29 @@ def inputs_from(
     """
     known = {} if known is None else known
     now: Known = {}
-    imageless: dict[int, str] = {}
-    unnamed: list[str] = []
 
-    def grid(number: int):  # type: ignore[no-untyped-def]
+    def read(number: int) -> MapSlot:
         text, image = uploads.get(f"yaml{number}"), uploads.get(f"image{number}")
-        named = _short(parse_meta(text.name, text.content).image) if text is not None else ""
-        if text is not None and image is None:  # what is wrong with it is told at once
-            imageless[number] = named
-        if text is None or image is None:
-            return None
-        if named != image.name and not text.by_form:
-            unnamed.append(
-                f"{text.name} names the image {named}; loaded is {image.name}. Do they belong together?"
-            )
-        found = known.get((text, image))
-        if found is None:
-            found = map_from_bytes(
-                text.name, text.content, image.name, CancellableReader(image.content, check)
-            )
-        now[text, image] = found
-        return found
+        if text is None:
+            return MapSlot(missing=NO_YAML.format(number) if image is not None else "")
+        named = _short(parse_meta(text.name, text.content).image)  # what is wrong with it is reported at once
+        if image is None:
+            return MapSlot(missing=f"Map {number}'s YAML file is here. Load its image, too: {named}.")
+        grid = known.get((text, image))
+        if grid is None:
+            content = CancellableReader(image.content, check)
+            grid = map_from_bytes(text.name, text.content, image.name, content)
+        now[text, image] = grid
+        if named == image.name or text.by_form:
+            return MapSlot(grid)
+        doubt = f"{text.name} names the image {named}; loaded is {image.name}. Do they belong together?"
+        return MapSlot(grid, doubt=doubt)
 
     seen = uploads.get("observation")
-    bare = tuple(n for n in MAPS if f"image{n}" in uploads and f"yaml{n}" not in uploads)
-    ref, mov = grid(1), grid(2)
     inputs = MergeInputs(
-        ref=ref,
-        mov=mov,
+        maps=tuple(read(number) for number in MAPS),
         observations=observations_from_bytes(seen.name, seen.content) if seen else (),
         name="your files" if uploads else "",
-        bare=bare,
-        imageless=imageless,
-        unnamed=tuple(unnamed),
     )
     known.clear()  # of what is not there any more
     known.update(now)
@@ -111,28 +105,27 @@ def inputs_from(
 
 
 class FilesPanel:
-    """Chooses what is merged. ``load`` gets the inputs, ``report`` what is wrong with a file."""
+    """Chooses what is merged.
+
+    save   : sends a file to the person
+    action : held while an action of the person is carried out
+    task   : says what is being done, where it takes a while, and lets it be left
+    """
 
     def __init__(
         self,
         gui: viser.GuiApi,
-        load: Callable[[MergeInputs], None],
-        report: Report,
         chosen: str,
         save: Callable[[str, bytes], None],
-        turn: RLock | None = None,
-        task: CancellableTask | None = None,
+        action: RLock,
+        task: CancellableTask,
     ) -> None:
-        """save : sends a file to the person
-        task : says what is being done, where it takes a while, and lets it be left
-        """
-        self._load, self._report, self._task = load, report, task
         self._uploads: dict[str, Upload] = {}
         self._known: Known = {}
         self._placed = False
         # viser calls back from a thread of its own for each file: two that were dropped together must
         # not be read, and shown, across each other
-        self._turn = turn or RLock()
+        self._action, self._task = action, task
         samples = paths.samples()
         names = [chosen] if chosen and chosen not in samples else []
         with gui.add_folder("Maps", order=10.0):
@@ -152,10 +145,14 @@ class FilesPanel:
                     if key.startswith("image"):
                         number = int(key[-1])
                         use = partial(self._take, f"yaml{number}")
-                        self._forms[number] = ImageForm(gui, number, self._turn, use, save)
+                        self._forms[number] = ImageForm(gui, number, self._action, use, save)
                 self._forget_them = gui.add_button("Forget uploads", color=QUIET, visible=False)
                 self._forget_them.on_click(lambda _: self._forget())
         self._taken = chosen or NONE
+
+    def connect(self, load: Callable[[MergeInputs], None], report: Callable[[MapMergeError], None]) -> None:
+        """What is done with the inputs that were chosen, and where a file cannot be used."""
+        self._load, self._report = load, report
 
     @property
     def files(self) -> Files:
@@ -164,13 +161,12 @@ class FilesPanel:
 
     def restore(self, files: Files) -> None:
         """Show again where inputs came from, and load nothing."""
-        with self._turn:
+        with self._action:
             self._uploads = dict(files.uploads)
             self._offer_forms()
             self._tell()
             self._taken = files.sample or NONE
-            if self._sample.value != self._taken:
-                self._sample.value = self._taken
+            put(self._sample, value=self._taken)
 
     def placed(self, yes: bool) -> None:
         """Whether there is an observation, wherever it came from."""
@@ -179,7 +175,7 @@ class FilesPanel:
             self._tell()
 
     def _take_sample(self) -> None:
-        with self._turn:
+        with self._action:
             name = self._sample.value
             folder = paths.samples().get(name)
             if folder is None or name == self._taken:
@@ -207,7 +203,7 @@ class FilesPanel:
         self._take(key, Upload(_short(file.name) or key, file.content))
 
     def _take(self, key: str, upload: Upload) -> None:
-        with self._turn:
+        with self._action:
             before = dict(self._uploads)
             self._uploads[key] = upload
             text = self._uploads.get(key.replace("image", "yaml"))
@@ -229,7 +225,7 @@ class FilesPanel:
 
     def _read(self, upload: Upload) -> MergeInputs:
         """What the files make up now that this one has come; raises Cancelled where Stop was pressed."""
-        if self._task is None or not _large(upload):
+        if not _large(upload):
             self._offer_forms()
             return inputs_from(self._uploads, self._known)
         with self._task(f"Reading {upload.name}, {len(upload.content) / 1e6:.3g} MB.") as check:
@@ -242,7 +238,7 @@ class FilesPanel:
             form.show(self._uploads.get(f"image{number}"), self._uploads.get(f"yaml{number}"), check)
 
     def _forget(self) -> None:
-        with self._turn:
+        with self._action:
             self._uploads.clear()
             self._offer_forms()
             self._show(MergeInputs())
@@ -251,15 +247,13 @@ class FilesPanel:
         """What was on the page gives way to the uploads: nobody merges other maps than they think."""
         self._tell()
         self._taken = NONE
-        if self._sample.value != NONE:
-            self._sample.value = NONE
+        put(self._sample, value=NONE)
         self._load(inputs)
 
     def _tell(self, bad: str = "") -> None:
         """Show which files are there; bad: the one that cannot be used."""
         self._status.content = self._table(bad)
-        if self._forget_them.visible != bool(self._uploads):
-            self._forget_them.visible = bool(self._uploads)
+        put(self._forget_them, visible=bool(self._uploads))
 
     def _table(self, bad: str = "") -> str:
         rows = []

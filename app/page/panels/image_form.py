@@ -25,7 +25,7 @@ from app.drawing import grid_pixels as render
 from app.drawing.palette import LIGHT, QUIET, Rgb, css
 from app.drawing.png import data_uri
 from app.model.merge_inputs import Upload
-from app.page.panels.html_widgets import box
+from app.page.panels.html_widgets import box, put
 from app.system.cancellation import CancellableReader, Check, unwatched
 
 RESOLUTION = 0.05  # metres per cell: what most robots' maps have
@@ -186,7 +186,7 @@ class ImageForm:
         try:
             return Upload(f"{PurePath(self._image.name).stem}.yaml", meta_to_bytes(self.meta), by_form=True)
         except SettingError:
-            return None  # it is told below the picture
+            return None  # it is said below the picture
 
     # --- drawing ------------------------------------------------------------------------------------
 
@@ -196,8 +196,7 @@ class ImageForm:
         values = (meta.resolution, o.x, o.y, round(degrees(o.theta), 6), shading.mode)
         wanted = (*values, shading.occupied_thresh, shading.free_thresh, shading.negate)
         for widget, value in zip(self._widgets(), wanted, strict=True):
-            if widget.value != value:
-                widget.value = value
+            put(widget, value=value)
 
     def _draw(self) -> None:
         assert self._image is not None
@@ -215,13 +214,15 @@ class ImageForm:
             self._says.content = box(str(error), "refused")
             self._go.disabled = self._file.disabled = True
             return
-        cells, told = self._grey.read(meta.shading)
+        cells, remarks = self._grey.read(meta.shading)
         picture = render.sheet(cells, self._colour, LIGHT, PREVIEW)
         self._picture.content = f'<img alt="what each pixel means" src="{data_uri(picture.pixels)}" {_FRAME}>'
         used = self._used == meta_to_bytes(meta)
         note = "In use." if used else "Not in use yet." if self._used is None else "Changed: not in use yet."
         share = shares(cells)
-        doubt = doubt_about(share, meta.shading) or " ".join(f"{say[:1].upper()}{say[1:]}." for say in told)
+        doubt = doubt_about(share, meta.shading) or " ".join(
+            f"{say[:1].upper()}{say[1:]}." for say in remarks
+        )
         counted = _counted(share, cells.shape, meta.resolution, self._colour)
         self._says.content = counted + _small(note) + (box(doubt, "refused") if doubt else "")
         self._file.disabled = False

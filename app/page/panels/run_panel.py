@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from threading import Lock
 
 import viser
@@ -12,53 +11,34 @@ from algorithms.methods.registry import METHODS
 from app.drawing.palette import LIGHT, QUIET
 from app.model.playback import PACES
 from app.model.view_modes import HEIGHTS, LESSON, MAP, MUSEUM, SWARM
+from app.page.panels.html_widgets import put
 
-
-@dataclass(frozen=True)
-class Wishes:
-    """What a person can ask for here."""
-
-    merge: Callable[[], None]
-    stop: Callable[[], None]
-    speed: Callable[[], None]
-    view: Callable[[], None]
-    method: Callable[[str], None]
-    changed: Callable[[], None]
-    fit: Callable[[], None]
-    dark: Callable[[bool], None]
-    learn: Callable[[str], None]
+NAMES = {method.title: name for name, method in METHODS.items()}
 
 
 class RunPanel:
     """Widgets; they know nothing of a run."""
 
-    def __init__(self, gui: viser.GuiApi, wishes: Wishes) -> None:
+    def __init__(self, gui: viser.GuiApi) -> None:
         self.merge = gui.add_button("Merge", color=LIGHT.ref, icon=viser.Icon.ARROWS_JOIN, order=1)
-        self.merge.on_click(lambda _: wishes.merge())
         self._at_work: set[str] = set()  # who can be stopped
         self._counting = Lock()  # they begin and end in threads of their own
         self.stop = gui.add_button(
             "Stop", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, disabled=True, order=2
         )
-        self.stop.on_click(lambda _: wishes.stop())
         hint = "How long each step stays. Instant: as fast as it is computed."
         self._speed = gui.add_button_group("Speed", tuple(PACES), order=3, hint=hint)
         self._speed.value = "Normal"
-        self._speed.on_click(lambda _: wishes.speed())
         self._view = gui.add_button_group("View", (MAP, HEIGHTS, SWARM), order=4)
-        self._view.on_click(lambda _: wishes.view())
         hint = (
             "Lesson: the method step by step on these maps. Museum: where it goes wrong, and what cures it."
         )
         self._learn = gui.add_button_group("Learn", (LESSON, MUSEUM), order=4.7, hint=hint)
-        self._learn.on_click(lambda _: wishes.learn(self._learn.value))
         self._open: list[str] = []  # which of them are
         with gui.add_folder("Run", order=50):
-            titles = {method.title: name for name, method in METHODS.items()}
             self._method = gui.add_dropdown(
-                "Method", tuple(titles), hint="The way to merge; each has its own defaults."
+                "Method", tuple(NAMES), hint="The way to merge; each has its own defaults."
             )
-            self._method.on_update(lambda _: wishes.method(titles[self._method.value]))
             self._seed = gui.add_number(
                 "Seed",
                 0,
@@ -67,22 +47,44 @@ class RunPanel:
                 step=1,
                 hint="Random seed: the same seed gives the same answer.",
             )
-            # where it is set from here, nobody has wished for anything
-            self._seed.on_update(lambda event: wishes.changed() if event.client_id is not None else None)
             self._follow = gui.add_checkbox("Camera follows", True, hint="The camera goes with the run.")
-            gui.add_button("Show everything", color=QUIET).on_click(lambda _: wishes.fit())
+            self._fit = gui.add_button("Show everything", color=QUIET)
             self._dark = gui.add_checkbox("Dark", False, hint="Light writing on a dark page.")
-            self._dark.on_update(lambda _: wishes.dark(self._dark.value))
+
+    def connect_run(
+        self,
+        merge: Callable[[], None],
+        stop: Callable[[], None],
+        speed: Callable[[], None],
+        method: Callable[[str], None],
+        seed: Callable[[], None],
+    ) -> None:
+        """What is done where a person wants a merge, or another speed, method or seed of it."""
+        self.merge.on_click(lambda _: merge())
+        self.stop.on_click(lambda _: stop())
+        self._speed.on_click(lambda _: speed())
+        self._method.on_update(lambda _: method(NAMES[self._method.value]))
+        self._seed.on_update(lambda event: seed() if event.client_id is not None else None)
+
+    def connect_view(
+        self, view: Callable[[str], None], fit: Callable[[], None], dark: Callable[[bool], None]
+    ) -> None:
+        """What is done where a person wants to see it otherwise."""
+        self._view.on_click(lambda event: view(self._view.value) if event.client_id is not None else None)
+        self._fit.on_click(lambda _: fit())
+        self._dark.on_update(lambda _: dark(self._dark.value))
+
+    def connect_learn(self, lesson: Callable[[], None], museum: Callable[[], None]) -> None:
+        """What is done where a person opens or closes the lesson or the museum."""
+        self._learn.on_click(lambda _: lesson() if self._learn.value == LESSON else museum())
 
     @property
     def view(self) -> str:
-        """Map, Heights or Swarm space."""
         return self._view.value
 
     @view.setter
     def view(self, view: str) -> None:
-        if self._view.value != view:
-            self._view.value = view
+        put(self._view, value=view)
 
     @property
     def pace(self) -> float:
@@ -91,47 +93,37 @@ class RunPanel:
 
     @property
     def speed(self) -> str:
-        """Name of the pace."""
         return str(self._speed.value)
 
     @speed.setter
     def speed(self, name: str) -> None:
-        if name in PACES and self._speed.value != name:
-            self._speed.value = name
+        if name in PACES:
+            put(self._speed, value=name)
 
     @property
     def seed(self) -> int:
-        """Random seed of a run; the same seed gives the same answer."""
         return int(self._seed.value)
 
     @property
     def dark(self) -> bool:
-        """Whether the page is dark."""
         return self._dark.value
 
     @dark.setter
     def dark(self, dark: bool) -> None:
-        if self._dark.value != dark:
-            self._dark.value = dark
+        put(self._dark, value=dark)
 
     def restore(self, method: str, seed: int) -> None:
-        """Show this method and this seed."""
-        title = METHODS[method].title
-        if self._method.value != title:
-            self._method.value = title
-        if self._seed.value != seed:
-            self._seed.value = seed
+        put(self._method, value=METHODS[method].title)
+        put(self._seed, value=seed)
 
     def stoppable(self, who: str, yes: bool) -> None:
         """Whether a run, or the reading or sending of a file, can be stopped now."""
         with self._counting:
             (self._at_work.add if yes else self._at_work.discard)(who)
-            if self.stop.disabled == bool(self._at_work):
-                self.stop.disabled = not self._at_work
+            put(self.stop, disabled=not self._at_work)
 
     @property
     def follow(self) -> bool:
-        """Whether the camera goes along."""
         return self._follow.value
 
     def open(self, what: str, yes: bool) -> None:
@@ -140,5 +132,4 @@ class RunPanel:
 
     @property
     def pressed(self) -> list[str]:
-        """The chosen button of each group."""
         return [self._speed.value, self._view.value, *self._open]

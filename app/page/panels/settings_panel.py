@@ -12,6 +12,7 @@ from algorithms.common.errors import MapMergeError, SettingError
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from app.drawing.palette import QUIET
 from app.model.settings import Path, Setting, in_cells, settings_of, value_at, with_value, word_for
+from app.page.panels.html_widgets import put
 
 # Group of the config -> folder; what is not named goes to "Search".
 FOLDERS = {
@@ -63,40 +64,37 @@ def _in_metres(setting: Setting) -> bool:
 
 
 class SettingsPanel:
-    """Owns the config. ``changed`` is called after every change by the person, in the same turn: nobody else
-    gets one before everything that goes by the config has heard of it.
+    """Shows a config, and makes another one as its sliders are moved.
+
+    action : held while a change by the person is carried out, ``changed`` included: nobody else gets it
+             before everything that goes by the config knows of it
     """
 
-    def __init__(
-        self,
-        gui: viser.GuiApi,
-        changed: Callable[[], None],
-        report: Callable[[MapMergeError], None],
-        turn: RLock | None = None,
-    ) -> None:
-        self._gui, self._changed, self._report = gui, changed, report
+    def __init__(self, gui: viser.GuiApi, action: RLock) -> None:
+        self._gui, self._action = gui, action
         self._handles: dict[Path, Any] = {}
         self._settings: dict[Path, Setting] = {}
         self._folders: dict[str, Any] = {}
         self._notes: dict[str, Any] = {}
         self._cells: tuple[float, ...] = ()
-        self._turn = turn or RLock()  # widgets call back from many threads
         self._writer = 0  # a value that is written calls back at once, half-way through the others
         self.method = DEFAULT_METHOD
         self.config: Any = METHODS[self.method].defaults
         self._build()
 
+    def connect(self, changed: Callable[[], None], report: Callable[[MapMergeError], None]) -> None:
+        """What is done where a person has changed a setting, or set what cannot be."""
+        self._changed, self._report = changed, report
+
     def choose(self, method: str) -> None:
-        """Take another method, at its defaults."""
-        with self._turn:
+        with self._action:
             if method == self.method:
                 return
             self._take(method, METHODS[method].defaults)
             self._changed()
 
     def restore(self, method: str, config: Any) -> None:
-        """Show this method with these settings."""
-        with self._turn:
+        with self._action:
             if method != self.method:
                 self._take(method, METHODS[method].defaults)
             self.config = config
@@ -178,7 +176,7 @@ class SettingsPanel:
         return int(value) if setting.whole else round(float(value), 6)
 
     def read(self) -> Any:
-        """The config as the panel stands: every widget is asked, none is trusted to have told."""
+        """The config as the panel stands: every widget is asked, since a message of one may be lost."""
         config = self.config
         for path in self._handles:
             value = self._wanted(path)
@@ -197,7 +195,7 @@ class SettingsPanel:
     def _read(self) -> None:
         if self._writer == get_ident():
             return
-        with self._turn:
+        with self._action:
             try:
                 config = self.read()
             except SettingError as error:
@@ -212,7 +210,7 @@ class SettingsPanel:
             self._changed()
 
     def _reset(self, mine: tuple[Path, ...]) -> None:
-        with self._turn:
+        with self._action:
             config = self.config
             if not self._settings.keys() >= set(mine):  # of a method that has given way meanwhile
                 return
@@ -230,8 +228,7 @@ class SettingsPanel:
             for path, handle in self._handles.items():
                 value, setting = value_at(config, path), self._settings[path]
                 shown = word_for(setting, value) if setting.choices is not None else value
-                if handle.value != shown:
-                    handle.value = shown
+                put(handle, value=shown)
         finally:
             self._writer = 0
         self._show_cells()
@@ -241,13 +238,11 @@ class SettingsPanel:
         """Show the settings that do something, and the folders that hold one."""
         for path, handle in self._handles.items():
             shown = not idle(self.config, path)
-            if handle.visible != shown:
-                handle.visible = shown
+            put(handle, visible=shown)
         for title, folder in self._folders.items():
             mine = [path for path in self._handles if FOLDERS.get(path[0], "Search") == title]
             shown = not all(idle(self.config, path) for path in mine)
-            if folder.visible != shown:
-                folder.visible = shown
+            put(folder, visible=shown)
 
     def _show_cells(self) -> None:
         """Lengths in cells below the sliders of a folder; the maps may differ in resolution."""

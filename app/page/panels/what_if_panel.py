@@ -84,15 +84,17 @@ def supposed(result: MergeResult, rules: VerdictConfig, changed: Mapping[str, fl
     if "rigid_agreeing" in changed:  # more wall that agrees agrees when patches slip, too
         more = changed["rigid_agreeing"] - named.evidence.rigid_agreeing
         changed["agreeing"] = max(0.0, named.evidence.agreeing + more)
-    told: Evidence = replace(
+    evidence: Evidence = replace(
         named.evidence, **{name: value for name, value in changed.items() if hasattr(named.evidence, name)}
     )
     deviations = list(named.deviations)
     if DEVIATION in changed and deviations:
         deviations[deviations.index(max(deviations))] = changed[DEVIATION]
-    quantities = quantities_of(Fit(told, misfit_of(deviations, WINDOW_EDGE)))
+    quantities = quantities_of(Fit(evidence, misfit_of(deviations, WINDOW_EDGE)))
     score = shipped_model().score(quantities)
-    other = replace(named, evidence=told, deviations=tuple(deviations), quantities=quantities, score=score)
+    other = replace(
+        named, evidence=evidence, deviations=tuple(deviations), quantities=quantities, score=score
+    )
     if OTHER in changed:
         others = _with_best(others, named, changed[OTHER] / 100)
     return judge(result.fusion, other, others, result.encounter.x_mov, rules)

@@ -32,19 +32,6 @@ State = Literal["idle", "waits", "runs", "done"]
 
 
 @dataclass(frozen=True)
-class CompareWishes:
-    """What a person can ask for here; what is pressed in a card comes by the channel.
-
-    group : all methods of a group, and no others
-    """
-
-    run: Callable[[], None]
-    stop: Callable[[], None]
-    group: Callable[[str], None]
-    save: Callable[[], None]
-
-
-@dataclass(frozen=True)
 class Card:
     """All that a card shows.
 
@@ -66,16 +53,13 @@ class Card:
 class ComparePanel:
     """Widgets; they know nothing of a run."""
 
-    def __init__(self, gui: viser.GuiApi, wishes: CompareWishes) -> None:
+    def __init__(self, gui: viser.GuiApi) -> None:
         gui.add_html(f'<p style="{SMALL}">{INTRO}</p>')
-        groups = gui.add_button_group("", (OURS, PAPER, RIVALS, ALL, NONE), hint=HINT)
-        groups.on_click(lambda _: wishes.group(groups.value))
+        self._groups = gui.add_button_group("", (OURS, PAPER, RIVALS, ALL, NONE), hint=HINT)
         self._run = gui.add_button("Compare methods", color=LIGHT.ref, icon=viser.Icon.SCALE, disabled=True)
-        self._run.on_click(lambda _: wishes.run())
         self._stop = gui.add_button(
             "Stop comparing", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, visible=False
         )
-        self._stop.on_click(lambda _: wishes.stop())
         self._says = gui.add_html(says_html(""))
         self._cards: dict[str, viser.GuiHtmlHandle] = {}
         for family, (title, _) in FAMILIES.items():
@@ -90,7 +74,21 @@ class ComparePanel:
             visible=False,
             hint="A zip: a table of the methods, every transform, the merged maps side by side.",
         )
-        self._save.on_click(lambda _: wishes.save())
+
+    def connect(
+        self,
+        run: Callable[[], None],
+        stop: Callable[[], None],
+        group: Callable[[str], None],
+        save: Callable[[], None],
+    ) -> None:
+        """What is done where a person compares; what is pressed in a card comes by the browser's events.
+
+        group : ticks all methods of a group, and no others
+        """
+        for button, action in ((self._run, run), (self._stop, stop), (self._save, save)):
+            button.on_click(lambda _, action=action: action())
+        self._groups.on_click(lambda _: group(self._groups.value))
 
     def possible(self, count: int, ready: bool, busy: bool, harvest: bool) -> None:
         """How many methods are chosen, whether there is a pair, whether they run, whether any has ended."""
@@ -100,7 +98,6 @@ class ComparePanel:
         put(self._save, visible=harvest and not busy)
 
     def say(self, words: str, share: float | None = None) -> None:
-        """How far the run is."""
         self._says.content = says_html(words, share)
 
     def show(self, cards: Mapping[str, Card]) -> None:
@@ -132,19 +129,19 @@ def card_html(name: str, card: Card) -> str:
 
 
 def _body(name: str, card: Card) -> str:
-    told = card.outcome
+    summary = card.outcome
     if card.state in ("waits", "runs"):
         word = "Merging …" if card.state == "runs" else "Waits for its turn."
         return f'<div class="mm-card"><i class="mm-thumb"></i><span><small>{word}</small></span></div>'
-    if told is None:
+    if summary is None:
         return ""
-    numbers = " · ".join(part for part in (told.numbers, card.note, card.old) if part)
+    numbers = " · ".join(part for part in (summary.numbers, card.note, card.old) if part)
     words = (
-        f'<span><b data-mood="{told.mood}">{escape(typeset(told.says))}</b>'
-        f"<small>{escape(typeset(told.verdict))}</small>"
+        f'<span><b data-mood="{summary.mood}">{escape(typeset(summary.says))}</b>'
+        f"<small>{escape(typeset(summary.verdict))}</small>"
         f"<em>{escape(typeset(numbers))}</em></span>"
     )
-    old, verdict = " data-old" if card.old else "", escape(told.verdict)
+    old, verdict = " data-old" if card.old else "", escape(summary.verdict)
     if not card.picture:
         return f'<div class="mm-card"{old} title="{verdict}"><i class="mm-thumb">–</i>{words}</div>'
     back = "Press again to go back to your own." if card.shown else "Press to lay it over map 1."

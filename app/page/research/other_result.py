@@ -35,7 +35,6 @@ class OtherResult:
 
     @property
     def title(self) -> str:
-        """What the method is called."""
         return METHODS[self.method].title
 
     @property
@@ -44,15 +43,15 @@ class OtherResult:
         assert self.trial.pose is not None
         return self.trial.pose
 
-    def story(self, ref: GridMap, mov: GridMap, seen: tuple[Observation, ...], own: RunState) -> RunState:
+    def run(self, ref: GridMap, mov: GridMap, seen: tuple[Observation, ...], own: RunState) -> RunState:
         """The end of a run that found this; raises TooLargeError.
 
         own : of the page's own run, whose levels are kept: they do not depend on the answer
         """
-        story = RunState(self.config)
+        run = RunState(self.config)
         augmented = own.get(AugmentDetail)
         if augmented is not None:
-            story.tell(Step("augment", augmented, 0.0))
+            run.tell(Step("augment", augmented, 0.0))
         encounters = encounters_of(seen, ref, mov)
         answers = AnswersDetail((Answer(self.pose, 0.0, "of another method"),))
         for stage, detail in (
@@ -60,18 +59,18 @@ class OtherResult:
             ("search", answers),
             ("fuse", fuse((ref, mov), (Pose2(), self.pose))),
         ):
-            story.tell(Step(stage, detail, 0.0))  # type: ignore[arg-type]
-        return story
+            run.tell(Step(stage, detail, 0.0))  # type: ignore[arg-type]
+        return run
 
     def sentence(self) -> str:
         """What is said of it above the map: the truth first, the verdict always."""
-        told = outcome_of(self.trial)
-        says = f" {told.says.rstrip('.')}." if self.trial.right is not None else ""
-        return f"{self.title}:{says} {told.verdict}"
+        summary = outcome_of(self.trial)
+        says = f" {summary.says.rstrip('.')}." if self.trial.right is not None else ""
+        return f"{self.title}:{says} {summary.verdict}"
 
     def html(self) -> str:
         """HTML of the same for the dock."""
-        told = outcome_of(self.trial)
+        summary = outcome_of(self.trial)
         rows = [
             ("T: Δx", f"{self.pose.x:.3f} m"),
             ("T: Δy", f"{self.pose.y:.3f} m"),
@@ -80,9 +79,9 @@ class OtherResult:
             ("time of the merge", f"{self.trial.seconds:.2f} s"),
             ("seed", f"{self.seed}"),
         ]
-        says = "" if self.trial.right is None else f" {told.says}"
+        says = "" if self.trial.right is None else f" {summary.says}"
         return (
-            box(f"{self.title}.{says}", told.mood)
-            + box(told.verdict, verdict_mood(self.trial), NOT_YOURS)
+            box(f"{self.title}.{says}", summary.mood)
+            + box(summary.verdict, verdict_mood(self.trial), NOT_YOURS)
             + table(rows)
         )

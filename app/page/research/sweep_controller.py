@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from threading import RLock
-from typing import Any, Protocol
-
-import viser
+from typing import Any
 
 from algorithms.common.errors import SettingError
 from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS
+from app.drawing.browser_messages import BrowserMessages
 from app.evaluation import sweep_axes as axes
 from app.evaluation.checkpoint import Checkpoint
 from app.evaluation.evaluation_archive import sweep_archive
@@ -19,46 +17,41 @@ from app.jobs.background_job import BackgroundJob, beside_the_page
 from app.jobs.executor import Executor
 from app.model.merge_inputs import MergeInputs
 from app.model.settings import Setting, settings_of
+from app.page.cancellable_task import DownloadTask
+from app.page.page_state import PageState
 from app.page.panels.settings_panel import FRONT, idle
 from app.page.research import sweep_curves as curves
+from app.page.research.comparison_controller import MAKING
 from app.page.research.heatmap import heat_svg
-from app.page.research.host import ResearchHost
 from app.page.research.run_summary import sentence
-from app.page.research.sweep_panel import NOTHING, SweepPanel, SweepWishes
+from app.page.research.sweep_panel import NOTHING, AxisFields, SweepPanel
 from app.page.research.sweep_request import labelled, planned, suggestion
+from app.page.run_controller import RunController
 from app.web.browser_events import BrowserEvents
 
 Swept = tuple[MergeInputs, Case | None, SweepPlan | None, dict[int, SweepPoint], Checkpoint]
 """A pair, and what was swept on it as far as it came; with the journal, to go on from there."""
 
 
-class Host(ResearchHost, Protocol):
-    """The page, as far as it is asked from here."""
-
-    @property
-    def method(self) -> str:
-        """The method of the panel."""
-
-    def mark(self, measure: str) -> None:
-        """Let the button of this measure be seen to be the chosen one."""
-
-    def load_settings(self, method: str, config: Any) -> None:
-        """Put settings into the sliders, as if a person had moved them."""
-
-
 class SweepController:
-    """Of one tab. ``turn`` and ``drawing`` as in the page: the first is taken before the second."""
+    """Of one tab.
+
+    deliver  : sends a file, once it is made
+    executor : makes what the points run on
+    """
 
     def __init__(
         self,
-        gui: viser.GuiApi,
-        channel: BrowserEvents,
-        turn: RLock,
-        drawing: RLock,
-        host: Host,
+        state: PageState,
+        panel: SweepPanel,
+        messages: BrowserMessages,
+        events: BrowserEvents,
+        runs: RunController,
+        deliver: DownloadTask,
         executor: Callable[[int], Executor] = beside_the_page,
     ) -> None:
-        self._host, self._turn, self._drawing, self._executor = host, turn, drawing, executor
+        self._state, self._panel, self._messages, self._runs = state, panel, messages, runs
+        self._deliver, self._executor, self._locks = deliver, executor, state.locks
         self._settings: dict[str, Setting] = {}
         self._offered: Any = None
         self._pair = MergeInputs()
@@ -69,23 +62,24 @@ class SweepController:
         self._configs: list[Any] = []  # there
         self._journal = Checkpoint()  # what was swept before in this tab is not merged again
         self._known = 0
-        self._panel = SweepPanel(gui, SweepWishes(self._run, self._stop, self._chose, self._draw, self._save))
-        self._work = BackgroundJob(self, drawing, "sweep", self._panel.say)
-        channel.on("point", self._load, n=int)
-        channel.on("along", self._along, share=float)
-        self.loaded(MergeInputs())
+        self._work = BackgroundJob(self, self._locks.drawing, "sweep", panel.say)
+        panel.connect(self._run, self._stop, self._choose, self._draw, self._save)
+        events.on("point", self._load, n=int)
+        events.on("along", self._along, share=float)
+        state.subscribe("setup", self._setup_changed)
+        state.subscribe("palette", self._draw)
+        self._setup_changed()
 
     def close(self) -> None:
-        """The tab is gone."""
         self._work.stop()
 
     # --- what the page tells ----------------------------------------------------------------------
 
-    def loaded(self, inputs: MergeInputs) -> None:
-        """These inputs are on the page, these settings in its panel; a sweep of others is forgotten."""
-        with self._drawing:
-            old, self._pair = self._pair, inputs
-            if not inputs.same_pair(old):
+    def _setup_changed(self) -> None:
+        """A sweep of other inputs is forgotten; of other settings it is drawn beside those of now."""
+        with self._locks.drawing:
+            old, self._pair = self._pair, self._state.inputs
+            if not self._pair.same_pair(old):
                 self._work.stop()
                 self._case = self._plan = None
                 self._points.clear()
@@ -93,10 +87,6 @@ class SweepController:
                 self._panel.say("")
             self._offer()
             self._draw()
-
-    def recoloured(self) -> None:
-        """The page is dark, or light again."""
-        self._draw()
 
     @property
     def swept(self) -> Swept:
@@ -116,8 +106,7 @@ class SweepController:
 
     def _offer(self) -> None:
         """The settings of the method that do anything, by their labels."""
-        method = self._host.method
-        config = self._host.settings_for(method)
+        method, config = self._state.method, self._state.config
         found = [each for each in settings_of(config) if not idle(config, each.path)]
         offered = (method, tuple(each.path for each in found))
         if offered == self._offered:
@@ -140,18 +129,17 @@ class SweepController:
 
     # --- what a person asks for -------------------------------------------------------------------
 
-    def _chose(self, which: int) -> None:
-        with self._turn, self._drawing:
-            self._suggest(self._panel.axes[which])
+    def _choose(self, fields: AxisFields) -> None:
+        with self._locks.action, self._locks.drawing:
+            self._suggest(fields)
 
-    def _suggest(self, fields: Any) -> None:
+    def _suggest(self, fields: AxisFields) -> None:
         setting = self._settings.get(fields.setting.value)
-        config = self._host.settings_for(self._host.method)
-        fields.suggest(setting, *suggestion(setting, config))
+        fields.suggest(setting, *suggestion(setting, self._state.config))
 
     def _run(self) -> None:
-        with self._turn, self._drawing:
-            case = self._host.inputs.case()
+        with self._locks.action, self._locks.drawing:
+            case = self._state.inputs.case()
             if case is None:
                 return
             try:
@@ -177,22 +165,22 @@ class SweepController:
     def _planned(self) -> SweepPlan:
         """What the fields ask for; raises SettingError."""
         x, y = (fields.wanted for fields in self._panel.axes)
-        method, seed = self._host.method, self._host.seed
+        method, seed = self._state.method, self._state.seed
         seeds = tuple(range(seed, seed + self._panel.seeds))
-        return planned(method, self._host.settings_for(method), self._settings, x, y, seeds)
+        return planned(method, self._state.config, self._settings, x, y, seeds)
 
     def _stop(self) -> None:
-        with self._turn, self._drawing:
+        with self._locks.action, self._locks.drawing:
             if self._work.stop():
                 self._panel.say(f"Stopped. {self._count()} Sweep again to go on.")
             self._draw()
 
     def _load(self, n: int) -> None:
         """A point was pressed: its settings go into the sliders."""
-        with self._turn:
+        with self._locks.action:
             plan = self._plan
             if plan is not None and n in self._points:
-                self._host.load_settings(plan.method, self._configs[n])
+                self._runs.load_settings(plan.method, self._configs[n])
 
     def _along(self, share: float) -> None:
         """The chart was pressed, so far along its axis."""
@@ -205,12 +193,11 @@ class SweepController:
     def _save(self) -> None:
         case, plan, points = self._case, self._plan, list(self._points.values())
         if case is not None and plan is not None and points:
-            self._host.save("sweep.zip", lambda: sweep_archive(case, plan, points))
+            self._deliver(MAKING, "sweep.zip", lambda check: sweep_archive(case, plan, points))
 
     # --- what the work tells ----------------------------------------------------------------------
 
     def told(self, part: SweepPoint) -> None:
-        """A point is there."""
         self._points[self._numbers[part.x, part.y]] = part
         done, total = len(self._points), len(self._numbers)
         fresh, seconds = done - self._known, self._work.seconds
@@ -221,7 +208,6 @@ class SweepController:
         self._draw()
 
     def over(self, why: str) -> None:
-        """All points are there, or no further one can be."""
         lost = next((point.failed for point in self._points.values() if point.failed), "")
         said = f"{self._count()} It took {self._work.seconds:.1f} s."
         self._panel.say(why or (f"{said} Could not be run: {sentence(lost)}" if lost else said))
@@ -241,21 +227,21 @@ class SweepController:
     def _here(self) -> int | None:
         """The point whose settings the sliders have."""
         plan = self._plan
-        if plan is None or plan.method != self._host.method:
+        if plan is None or plan.method != self._state.method:
             return None
-        config = self._host.settings_for(plan.method)
-        return next((n for n, found in enumerate(self._configs) if found == config), None)
+        return next((n for n, found in enumerate(self._configs) if found == self._state.config), None)
 
     def _draw(self) -> None:
-        with self._drawing:
+        with self._locks.drawing:
             plan, points = self._plan, self._points
             self._panel.possible(self._pair.complete, self._work.busy, bool(points))
             if plan is None:
                 return
             here, measure = self._here, self._panel.measure
-            self._host.mark(measure)
+            self._messages.hud(measure=measure)  # the button that is seen to be pressed
+            self._messages.flush()
             if plan.y is not None:
-                palette = self._host.palette
+                palette = self._state.palette
                 self._panel.heat(heat_svg(plan, points, measure, self._judged, here, palette))
                 self._panel.points((), (), None)
                 return
@@ -278,5 +264,5 @@ class SweepController:
 
     def _numbers_of(self, point: SweepPoint, counted: str) -> list[str]:
         listed = curves.AGREEMENT, counted, curves.TIME
-        told = [(measure, curves.reading(point, measure)) for measure in listed]
-        return ["–" if found is None else curves.text_of(found.middle, measure) for measure, found in told]
+        values = [(measure, curves.reading(point, measure)) for measure in listed]
+        return ["–" if found is None else curves.text_of(found.middle, measure) for measure, found in values]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from html import escape
 from typing import Any
 
@@ -27,30 +26,13 @@ Row = tuple[int, Sequence[str]]
 MARK = '<div class="mm-curve"></div>'  # research.js finds the chart below it
 
 
-@dataclass(frozen=True)
-class SweepWishes:
-    """What a person can ask for here; what is pressed in the pictures comes by the channel.
-
-    chose : another setting was chosen: the first (0) or the second (1)
-    """
-
-    run: Callable[[], None]
-    stop: Callable[[], None]
-    chose: Callable[[int], None]
-    measure: Callable[[], None]
-    save: Callable[[], None]
-
-
 class AxisFields:
     """The fields of one setting; which of them are there depends on what kind of setting it is."""
 
-    def __init__(
-        self, gui: viser.GuiApi, label: str, none: bool, chose: Callable[[], None], hint: str
-    ) -> None:
+    def __init__(self, gui: viser.GuiApi, label: str, none: bool, hint: str) -> None:
         self._none = (NOTHING,) if none else ()
         self._suggested = (0.0, 1.0)
         self.setting = gui.add_dropdown(label, self._none or ("…",), hint=hint)
-        self.setting.on_update(lambda event: chose() if event.client_id is not None else None)
         self._range = gui.add_vector2(
             "from, to", (0.0, 1.0), step=0.01, visible=False, hint="First and last value."
         )
@@ -64,10 +46,8 @@ class AxisFields:
     def offer(self, labels: Sequence[str], chosen: str) -> None:
         """The settings there are to choose from."""
         options = (*self._none, *labels)
-        if tuple(self.setting.options) != options:
-            self.setting.options = options
-        if self.setting.value != chosen:
-            self.setting.value = chosen
+        put(self.setting, options=options)
+        put(self.setting, value=chosen)
 
     def suggest(self, setting: Setting | None, low: float, high: float, by_factor: bool) -> None:
         """Show the fields that this setting has, with these values; None: no setting."""
@@ -82,8 +62,7 @@ class AxisFields:
             (self._count, bounds is not None),
             (self._factor, bounds is not None and bounds.high > 0),
         ):
-            if handle.visible != there:
-                handle.visible = there
+            put(handle, visible=there)
 
     @property
     def untouched(self) -> bool:
@@ -107,26 +86,23 @@ def _decimals(bounds: Bounds, step: float) -> int:
 class SweepPanel:
     """Widgets; they know nothing of a run."""
 
-    def __init__(self, gui: viser.GuiApi, wishes: SweepWishes) -> None:
+    def __init__(self, gui: viser.GuiApi) -> None:
         self._of = gui.add_html("")
         first = "Which setting changes from merge to merge."
         second = "Another one: every value of it with every value of the first."
         self.axes = (
-            AxisFields(gui, "setting", False, lambda: wishes.chose(0), first),
-            AxisFields(gui, "second", True, lambda: wishes.chose(1), second),
+            AxisFields(gui, "setting", False, first),
+            AxisFields(gui, "second", True, second),
         )
         hint = "Merges per point, each with its own seed."
         self._seeds = gui.add_number("seeds", 5, min=1, max=50, step=1, hint=hint)
         icon = viser.Icon.CHART_DOTS
         self._run = gui.add_button("Run the sweep", color=LIGHT.ref, icon=icon, disabled=True)
-        self._run.on_click(lambda _: wishes.run())
         self._stop = gui.add_button(
             "Stop sweeping", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, visible=False
         )
-        self._stop.on_click(lambda _: wishes.stop())
         self._says = gui.add_html(says_html(""))
         self._measures = gui.add_button_group("", measures(judged=True), visible=False)
-        self._measures.on_click(lambda _: wishes.measure())
         gui.add_html(MARK)
         self._curve = self._chart(gui)
         self._heat = gui.add_html("")
@@ -135,8 +111,27 @@ class SweepPanel:
             "Download tables and figure", color=QUIET, icon=viser.Icon.DOWNLOAD, visible=False,
             hint="A zip: a row per point, a row per merge, the times, and the figure as PNG and SVG.",
         )  # fmt: skip
-        self._save.on_click(lambda _: wishes.save())
         self._drawn: Any = None  # the scales of the chart: it is built anew for others
+
+    def connect(
+        self,
+        run: Callable[[], None],
+        stop: Callable[[], None],
+        choose: Callable[[AxisFields], None],
+        measure: Callable[[], None],
+        save: Callable[[], None],
+    ) -> None:
+        """What is done where a person sweeps; what is pressed in the pictures comes by the browser's events.
+
+        choose : another setting was chosen in these fields
+        """
+        buttons = (self._run, run), (self._stop, stop), (self._measures, measure), (self._save, save)
+        for button, action in buttons:
+            button.on_click(lambda _, action=action: action())
+        for fields in self.axes:
+            fields.setting.on_update(
+                lambda event, fields=fields: choose(fields) if event.client_id is not None else None
+            )
 
     def _chart(self, gui: viser.GuiApi) -> viser.GuiUplotHandle:
         colour, here = css(LIGHT.ref), css(LIGHT.best)
@@ -168,12 +163,10 @@ class SweepPanel:
 
     @property
     def seeds(self) -> int:
-        """Merges per point."""
         return int(self._seeds.value)
 
     @property
     def measure(self) -> str:
-        """What is drawn."""
         return self._measures.value
 
     # --- writing ----------------------------------------------------------------------------------
@@ -197,7 +190,6 @@ class SweepPanel:
         self._says.content = says_html(words, share)
 
     def clear(self) -> None:
-        """There is no sweep."""
         self._heat.content = self._points.content = ""
         self._measures.visible = self._curve.visible = False
 
@@ -232,7 +224,6 @@ class SweepPanel:
         put(self._curve, visible=True)
 
     def heat(self, svg: str) -> None:
-        """Show a field of colours."""
         put(self._heat, content=f'<div class="mm-heat">{svg}</div>')
         put(self._curve, visible=False)
 

@@ -341,3 +341,19 @@ def test_sightings_that_exclude_each_other_leave_no_transform():
     assert state.best is None
     assert state.empty
     assert state.stopped == "the window holds no transform of the lattice"
+
+
+def test_what_is_of_no_interest_as_the_best_is_of_none_as_a_rival_either():
+    objective, window = dusty()
+    usual = last(prove(objective, window, NEAR))
+    worth = float(usual.rival_values[1])
+    state = last(prove(objective, window, NEAR, worth=worth))
+    assert state.floor == worth
+    assert state.best_value == usual.best_value
+    assert state.rival_values.tolist() == usual.rival_values[:1].tolist()
+
+
+def test_once_the_best_is_proven_no_part_of_the_circle_is_told_to_hold_a_better_one():
+    proven = [state for state in prove(*dusty(0, 0), NEAR) if state.proven]
+    assert len(proven) > 1
+    assert all((state.ceilings <= state.best_value).all() for state in proven)

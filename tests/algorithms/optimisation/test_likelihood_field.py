@@ -12,8 +12,8 @@ from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.maps.wall_distance import distance_to_walls, surface
 from algorithms.observations.observation import Encounter, encounter
 from algorithms.observations.search_window import WindowConfig, coupled_window
-from algorithms.optimisation.likelihood_field import AgreementConfig, make_agreement
-from algorithms.optimisation.objective import Lookup
+from algorithms.optimisation.likelihood_field import AgreementConfig, clear, make_agreement
+from algorithms.optimisation.objective import PAD, Lookup
 from algorithms.spectra.augmented_map import AugmentConfig
 
 REF, MOV, SEEN, T = flat_pair()
@@ -271,3 +271,65 @@ def test_no_wall_is_nearer_than_the_distance_says_and_one_is_as_near(walls):
     for row, col in np.ndindex(walls.shape):
         nearest = np.hypot(*(at - (row, col)).T).min() if len(at) else 1e6
         assert distance[row, col] == pytest.approx(nearest, abs=1e-4)
+
+
+def test_a_wall_at_the_edge_of_what_counts_is_looked_up_as_far_again_from_the_encounter():
+    """Where the search has moved map 2 by much, its walls land where map 1 has its own."""
+    lift = AugmentConfig(spread=1.5)  # walls farther off than 3.7 m do not count
+    ref, mov = (hall([(x, 7.0, x + 0.05, 9.0)], side=16.0) for x in (13.0, 10.5))
+    at = Encounter(np.array([8.0, 8.0]), np.array([8.0, 8.0]), np.eye(2) * 0.01)
+    for pair, pose in (((ref, mov), Pose2(2.5, 0.0)), ((mov, ref), Pose2(-2.5, 0.0))):
+        assert value(*pair, pose, lift=lift, encounters=[at]) > 0.3
+        assert value(*pair, lift=lift, encounters=[at]) < 0
+
+
+def test_a_wall_as_near_to_a_robot_as_its_size_is_the_robot_and_one_beyond_is_a_wall():
+    def weigh(away, size):
+        wall = hall([(4.0 - away, 3.9, 4.05 - away, 4.1)])
+        objective = make_agreement(
+            wall, wall, [MIDDLE], WIDE, AgreementConfig(), None, Lookup.NEAREST, robot_size=size
+        )
+        return float(objective(Pose2().array()[None])[0])
+
+    assert weigh(0.5, 0.4) == pytest.approx(weigh(0.5, 0.0), rel=0.01)
+    assert weigh(0.5, 0.4) == pytest.approx(2 * 0.2, rel=0.01)
+    assert weigh(0.3, 0.4) == 0
+
+
+def test_what_one_transform_costs_is_counted_over_both_directions():
+    near, far = hall([(3.0, 4.5, 5.0, 4.55)]), hall([(3.0, 4.5, 4.0, 4.55)])
+    objective = make_agreement(near, far, [MIDDLE], WIDE, AgreementConfig())
+    assert [len(side.points) for side in objective.sides] == [20, 40]
+
+
+def test_walls_that_count_next_to_nothing_are_left_out_and_cost_nothing():
+    lift = AugmentConfig(spread=1.0)  # a wall at 2.4 m counts as 5% of one at the encounter
+    for away, cells in ((2.3, 4), (2.6, 0)):
+        wall = hall([(4.0 + away, 3.9, 4.05 + away, 4.1)])
+        sides = make_agreement(wall, hall(), [MIDDLE], lift, AgreementConfig()).sides
+        assert sum(len(side.points) for side in sides) == cells
+
+
+def test_of_an_uneven_spread_the_longer_axis_says_how_far_walls_are_looked_up():
+    """Along it a wall counts that lies far beyond what counts across it."""
+    lift = AugmentConfig(spread=1.0, aspect=5.0, tilt=0.0)
+    axis = np.argmax(np.diag(lift.covariance()))
+    far = 1.8 * np.sqrt(lift.covariance()[axis, axis])
+    box = [8.0 - 0.5, 8.0 - 0.5, 8.0 + 0.5, 8.0 + 0.5]
+    box[axis], box[axis + 2] = 8.0 + far, 8.05 + far
+    wall = hall([tuple(box)], side=16.0)
+    at = Encounter(np.array([8.0, 8.0]), np.array([8.0, 8.0]), np.eye(2) * 0.01)
+    assert value(wall, wall, lift=lift, encounters=[at]) > 0.25
+
+
+@given(st.floats(1.0, 3.0), st.floats(1.0, 3.0), st.floats(0.2, 0.6))
+def test_what_says_nothing_around_a_robot_is_a_disc_with_the_robot_in_its_middle(x, y, radius):
+    grid = hall(side=4.0)
+    table = np.ones((80 + 2 * PAD, 80 + 2 * PAD), dtype=np.float32)
+    clear(table, grid, np.zeros(2), np.array([[x, y]]), radius)
+    rows, cols = np.indices(grid.cells.shape)
+    away = np.hypot(*(grid.centres(rows.ravel(), cols.ravel()) - (x, y)).T).reshape(rows.shape)
+    inside = table[PAD:-PAD, PAD:-PAD] == 0
+    assert (away[inside] < radius + 1e-9).all()
+    assert (away[~inside] > radius - 1e-9).all()
+    assert table.size - table.sum() == inside.sum()

@@ -171,3 +171,25 @@ def test_the_same_bounds_on_any_number_of_threads(threads, monkeypatch):
         alone = upper_bounds(numbers >> level, level)
         monkeypatch.setattr(kernels, "cores", lambda: threads)
         assert np.array_equal(alone, upper_bounds(numbers >> level, level))
+
+
+def test_a_bound_holds_where_only_a_part_of_a_large_map_can_be_looked_up():
+    """The encounter lies far from the corner of the table, which is cut to what the lattice reaches."""
+    cells = np.where(np.random.default_rng(1).random((400, 400)) < 0.1, 100, 0).astype(np.int8)
+    grid = GridMap(cells, 0.1)
+    met = [Encounter(np.array([20.0, 20.0]), np.array([20.0, 20.0]), np.eye(2) * 0.1**2)]
+    window = coupled_window(met, WindowConfig("coupled"))
+    objective = make_agreement(
+        grid, grid, met, AugmentConfig(spread=2.0), AgreementConfig(), None, Lookup.NEAREST
+    )
+    bounds = UpperBounds(objective, window)
+    lattice = bounds.lattice
+    nodes = np.array([[0, lattice.side // 2, lattice.side // 2]]) + [[k, 0, 0] for k in range(4)]
+    values = bounds(nodes, 0)
+    assert np.isfinite(values).all()
+    for level in range(1, 4):
+        assert (bounds(nodes >> level, level) >= values).all()
+    # no looser than need be: the same walls, no farther from the corner
+    part = GridMap(cells[110:290, 110:290], 0.1, Pose2(11.0, 11.0))
+    near = make_agreement(part, part, met, AugmentConfig(spread=2.0), AgreementConfig(), None, Lookup.NEAREST)
+    assert np.allclose(UpperBounds(near, window)(nodes >> 2, 2), bounds(nodes >> 2, 2), rtol=1e-3)

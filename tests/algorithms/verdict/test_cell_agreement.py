@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.verdict.cell_agreement import AGREES, CONTRADICTS, SILENT, WallLookup
+from algorithms.verdict.wall_map import SAME_WALL
 
 
 def room(origin: Pose2 = Pose2()) -> GridMap:  # noqa: B008 - it is frozen
@@ -41,3 +43,13 @@ def test_nothing_is_told_where_the_maps_do_not_meet_and_frames_do_not_matter(x, 
     moved = WallLookup(room(origin))
     assert (far.agreement_with(moved, origin) == AGREES).all()
     assert (moved.agreement_with(far, origin.inverse()) == AGREES).all()
+
+
+@pytest.mark.parametrize("cell", [0.02, 0.05, 0.1])
+def test_how_far_beside_another_a_wall_is_still_the_same_is_counted_in_metres(cell):
+    cells = np.full((20, round(3.0 / cell)), FREE, dtype=np.int8)
+    cells[:, round(1.5 / cell)] = OCCUPIED
+    walls = WallLookup(GridMap(cells, cell))
+    same, other = (np.floor(SAME_WALL / cell) + beside for beside in (0, 1))
+    assert (walls.agreement_with(walls, Pose2(float(same) * cell, 0.0)) == AGREES).all()
+    assert (walls.agreement_with(walls, Pose2(float(other) * cell, 0.0)) == CONTRADICTS).all()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -79,6 +81,18 @@ def test_most_wall_comes_first_and_no_wall_is_lost_whatever_the_frame(lengths, t
     for place in told.places:  # each stands on a wall of map 1 that the other denies
         col = ref.grid_coordinates(np.array([place.x, place.y]))[0]
         assert (col - 20.5) % 25 == pytest.approx(0, abs=1e-6) or (col - 20.5) % 25 == pytest.approx(25)
+
+
+def test_a_place_is_as_long_as_the_least_that_is_one_and_a_speck_is_shorter():
+    """Five cells of 5 cm are a quarter of a metre to the bit."""
+    places = []
+    for length in (4, 5):
+        ref, mov = (replace(grid, resolution=0.05) for grid in (hall(column(50, 20, length)), hall()))
+        told = found(ref, mov)
+        assert told.wall == pytest.approx(length * 0.05)
+        places.append(len(told.places))
+    assert LEAST == 0.25
+    assert places == [0, 1]
 
 
 def test_swapping_the_maps_swaps_whose_wall_it_is():

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import FREE, OCCUPIED_FROM
 from algorithms.maps.map_fusion import fuse
 from algorithms.observations.observation import encounter, robots_of
 from algorithms.observations.search_window import WindowConfig, coupled_window
@@ -199,3 +200,48 @@ def test_limits_that_make_no_sense_are_refused():
     for wrong in ({"accept_from": 0.2}, {"accept_from": 1.0}, {"bent_from": -0.1}, {"robot_size": 9.0}):
         with pytest.raises(SettingError):
             VerdictConfig(**wrong)
+
+
+LITTLE = Evidence(20.0, 0.5, 20.0, 0.8, across=5.0, floor=15.0)
+
+
+def test_a_merge_as_likely_as_is_asked_for_is_accepted_and_one_a_hair_below_is_not():
+    likely = verdict_on(told(LITTLE)).probability
+    assert 0.5 < likely < 0.99
+    assert verdict_on(told(LITTLE), accept_from=likely).accepted
+    assert not verdict_on(told(LITTLE), accept_from=float(np.nextafter(likely, 1))).accepted
+
+
+def test_the_cells_are_told_as_they_are_counted_on_the_merged_map():
+    beside = Pose2(0.6, 0.4, 0.1) @ T
+    fusion = replace(fuse((REF, MOV), (Pose2(), beside)), cleared=7)
+    verdict = judge(fusion, told(CLEAN, beside), None, AT.x_mov, VerdictConfig())
+    ref, mov = fusion.ref_cells, fusion.mov_cells
+    both = (ref >= FREE) & (mov >= FREE)
+    denied = both & ((ref >= OCCUPIED_FROM) != (mov >= OCCUPIED_FROM))
+    assert verdict.overlap_cells == both.sum() > 1000
+    assert verdict.overlap_area == pytest.approx(both.sum() * 0.05**2)
+    assert verdict.conflicting_cells == denied.sum() > 10
+    assert verdict.cleared_cells == 7
+
+
+def test_a_rival_is_told_by_its_turn_wherever_it_lies_unless_it_does_not_turn():
+    less = replace(CLEAN, agreeing=57.0, rigid_agreeing=57.0, across=18.0, floor=35.0)
+
+    def apart(T_ref_mov):
+        return verdict_on(told(CLEAN), [told(less, T_ref_mov)]).reason
+
+    assert "180° apart" in apart(Pose2(2.0, 0.0) @ TURNED)
+    assert "0° apart" in apart(Pose2(0.3, 0.0) @ T)
+    assert " m apart" not in apart(Pose2(0.3, 0.0) @ T)
+
+
+def test_a_likely_merge_that_is_refused_is_said_to_be_likely_all_the_same():
+    assert "Refused: although" in verdict_on(told(CLEAN), doubts=["it was stopped"]).reason
+    assert "although" not in verdict_on(told(STRANGERS)).reason
+
+
+def test_however_hopeless_an_answer_is_its_odds_are_numbers():
+    verdict = verdict_on(told(STRANGERS, deviations=(1e3,)), [told(CLEAN, TURNED)])
+    assert verdict.probability < 1e-9
+    assert 1 < verdict.ambiguity < np.inf

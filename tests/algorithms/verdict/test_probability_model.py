@@ -134,3 +134,17 @@ def test_every_quantity_is_told_in_one_sentence():
     for quantity in QUANTITIES.values():
         assert quantity.meaning.endswith(".")
         assert len(quantity.title) < 45
+
+
+@given(st.floats(-1e6, 1e6), st.lists(st.floats(-1e6, 1e6), max_size=3))
+def test_however_far_apart_answers_are_their_probability_is_a_number(score, others):
+    assert 0 <= probability(score, others) <= 1
+
+
+def test_a_metre_is_added_before_logarithms_so_that_a_few_cells_say_next_to_nothing():
+    e = np.e
+    bare = dict.fromkeys(QUANTITIES, 0.0)
+    assert quantities_of(Fit(Evidence(0.0, 0.0, 0.0, 0.0), 0.0)) == bare
+    found = Evidence(0.0, e**3 - 1, e - 1, e**2 - 1, across=e**4 - 1, floor=e - 1)
+    told = quantities_of(Fit(found, 5.0))
+    assert told == pytest.approx({"contradiction": 1.0, "unbent": 2.0, "across": 4.0, "misfit": 5.0})

@@ -56,6 +56,7 @@ def test_what_the_walls_say_does_not_depend_on_the_frames(frame_1, frame_2):
     assert found.floor == pytest.approx(usual.floor, rel=0.05)
 
 
+@settings(max_examples=40)
 @given(st.floats(-1, 1), st.floats(-1, 1), st.floats(-0.5, 0.5))
 def test_swapping_the_maps_changes_nothing(x, y, turn):
     beside = T @ Pose2(x, y, turn)
@@ -64,6 +65,7 @@ def test_swapping_the_maps_changes_nothing(x, y, turn):
         assert getattr(there, name) == pytest.approx(getattr(back, name), rel=1e-3, abs=0.2), name
 
 
+@settings(max_examples=40)
 @given(st.floats(-2, 2), st.floats(-2, 2), st.floats(-1, 1))
 def test_letting_patches_slip_never_speaks_against_a_transform(x, y, turn):
     found = weighed(REF, MOV, T @ Pose2(x, y, turn))
@@ -118,6 +120,7 @@ def test_a_wall_that_was_seen_from_opposite_sides_neither_agrees_nor_contradicts
     assert back.contradicting == 0
 
 
+@settings(max_examples=40)
 @given(st.floats(-np.pi, np.pi))
 def test_a_turned_wall_is_still_seen_from_the_side_it_was_seen_from(turn):
     ref, mov = one_sided(True), one_sided(True)
@@ -135,6 +138,15 @@ def test_what_runs_across_a_corridor_is_what_keeps_it_from_sliding():
     assert crossed.across == pytest.approx(along.across + 2 * 2 * 2.0, abs=1.0)  # two sides, two maps
     slid = weighed(hall(stopped), hall(stopped), Pose2(1.0))
     assert slid.across < 2.0
+
+
+@pytest.mark.parametrize("turn", [0.5, -1.2, 2.9])
+def test_how_a_maps_raster_is_turned_in_its_frame_does_not_change_what_runs_across(turn):
+    stopped = hall([(1, 7, 15, 7.1), (1, 9, 15, 9.1), (8, 7, 8.1, 9)])
+    turned = replace(stopped, origin=Pose2(theta=turn))
+    crossed = weighed(stopped, stopped, Pose2()).across
+    assert weighed(stopped, turned, Pose2(theta=-turn)).across == pytest.approx(crossed, rel=0.02)
+    assert weighed(turned, stopped, Pose2(theta=turn)).across == pytest.approx(crossed, rel=0.02)
 
 
 def test_a_speck_is_no_wall():
@@ -156,6 +168,12 @@ def test_what_lies_around_a_robot_says_nothing():
     assert weighed(seen, clean, Pose2(), robots).rigid_contradicting == 0
     far = replace(robots, in_mov=here + 3.0)
     assert weighed(seen, clean, Pose2(), far).rigid_contradicting > 2
+    # whatever the frames of the maps: the ring stands in map 1, and in map 2
+    turned, T_turned = replace(clean, origin=Pose2(20.0, -9.0, 1.0)), Pose2(20.0, -9.0, 1.0)
+    in_mov = replace(robots, in_mov=T_turned.apply(here))
+    assert weighed(seen, turned, T_turned.inverse(), in_mov).rigid_contradicting == 0
+    in_ref = Robots(T_turned.apply(here), np.zeros((0, 2)), 0.4)
+    assert weighed(turned, seen, T_turned, in_ref).rigid_contradicting == 0
 
 
 def test_a_wall_that_is_a_little_off_is_bent_and_one_far_off_is_wrong():
@@ -166,6 +184,8 @@ def test_a_wall_that_is_a_little_off_is_bent_and_one_far_off_is_wrong():
     assert little.contradiction < 0.02
     assert far.contradiction > 0.9
     assert mended(far) < 0.05
+    assert 0.5 * SLIP < little.slip < 0.8 * SLIP  # it stops as soon as the walls are near enough
+    assert weighed(straight, straight, Pose2()).slip == 0
 
 
 def test_where_bent_maps_lie_beside_each_other_is_told_with_how_far():
@@ -176,6 +196,10 @@ def test_where_bent_maps_lie_beside_each_other_is_told_with_how_far():
     assert 8 < worst.x < 15
     assert abs(worst.y - 8) < PATCH / 2
     assert weighed(straight, straight, Pose2()).apart == ()
+    twice = hall([(1, 8, 5, 8.1), (5, 8.3, 10, 8.4), (10, 8.5, 15, 8.6)])
+    slips = [place.metres for place in weighed(straight, twice, Pose2()).apart]
+    assert len(set(slips)) > 1
+    assert slips == sorted(slips, reverse=True)
 
 
 def test_a_bent_map_of_the_same_flat_is_told_from_another_building():

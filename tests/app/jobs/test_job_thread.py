@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from threading import Event, Thread
-from time import sleep
+from time import monotonic, sleep
 
 import numpy as np
 import pytest
@@ -242,7 +242,7 @@ def test_a_closed_session_ends_its_thread(start, ear):
     session.close()
     session._worker.join(PATIENCE)
     assert not session._worker.is_alive()
-    assert session.bench.closed
+    assert session.runner.closed
 
 
 def test_known_steps_are_played_again_only_when_asked_for():
@@ -254,9 +254,17 @@ def test_known_steps_are_played_again_only_when_asked_for():
 
 def test_a_cut_before_the_wait_is_not_missed():
     waiting = InterruptibleWait()
+
+    def waited(seconds: float, mark: int) -> float:
+        begun = monotonic()
+        waiting.wait(seconds, mark)
+        return monotonic() - begun
+
     mark = waiting.mark
+    assert waited(0.2, mark) >= 0.2
     waiting.cut()
-    waiting.wait(1e6, mark)  # returns at once, or this test never ends
+    assert waited(PATIENCE, mark) < PATIENCE / 2
+    assert waited(0.2, waiting.mark) >= 0.2  # a cut ends the waits that had begun, and no later one
 
 
 def test_the_first_iterations_of_the_swarm_are_told_slowest():

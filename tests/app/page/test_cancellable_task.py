@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import viser
+from panels import files_panel
 from PIL import Image
 
 from algorithms.common.errors import InputFileError
@@ -17,7 +18,6 @@ from app.drawing.browser_messages import BrowserMessages
 from app.model.merge_inputs import Upload
 from app.page.cancellable_task import CancellableTask
 from app.page.panels.export_panel import ReplayButton
-from app.page.panels.files_panel import FilesPanel
 from app.system.cancellation import CancellableReader, Cancelled
 from app.web.download import DOWNLOADS
 
@@ -104,7 +104,7 @@ def test_a_file_whose_reading_is_stopped_leaves_everything_as_it_was(server, per
         loaded.append(inputs)
         person.stage.hud(**BEFORE)
 
-    panel = FilesPanel(server.gui, load, reports.append, "", lambda *_: None, task=person.task)
+    panel = files_panel(server.gui, load, reports.append, task=person.task)
     if with_yaml:
         panel._take("yaml1", Upload("m.yaml", YAML))
     panel._take("image1", Upload("first", image(kind)))
@@ -124,7 +124,7 @@ def test_a_file_whose_reading_is_stopped_leaves_everything_as_it_was(server, per
 
 
 def test_a_small_file_is_read_without_a_word_and_a_small_png_of_many_pixels_is_not(server, person):
-    panel = FilesPanel(server.gui, lambda _: None, lambda _: None, "", lambda *_: None, task=person.task)
+    panel = files_panel(server.gui, lambda _: None, lambda _: None, task=person.task)
     panel._take("image1", Upload("small.png", image("png", 100)))
     assert person.could_stop == []
     packed = io.BytesIO()

@@ -15,9 +15,15 @@ import yaml
 from algorithms.common.pose import Pose2
 from algorithms.files.map_file import read_map
 from algorithms.files.observation_file import observations_from_bytes
+from algorithms.maps.map_fusion import fuse
+from algorithms.methods.baselines.base import BaselineConfig
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
+from algorithms.methods.shared_stages import Found, finish_merge
+from algorithms.observations.pair_problem import PairProblem
 from algorithms.verdict.decision import Outcome
+from algorithms.verdict.probability_model import Fit, quantities_of, shipped_model
+from algorithms.verdict.wall_evidence import Evidence
 from app.model.merge_inputs import MergeInputs
 from app.page.panels.html_widgets import box
 from app.report.export import ACTED_UPON, ALONE, ResultFiles
@@ -31,6 +37,12 @@ VOID = {"meta"}
 
 def page_of(result: MergeResult, inputs: MergeInputs, config=DEFAULTS, **named: str) -> str:
     return report_page(result, inputs, config, report_of(result, config, inputs=named)).decode()
+
+
+@pytest.fixture(scope="module")
+def page(result, inputs) -> str:
+    """The page of the sample's merge."""
+    return page_of(result, inputs)
 
 
 def refused(result: MergeResult) -> MergeResult:
@@ -71,8 +83,7 @@ def read(page: str) -> Reader:
     return reader
 
 
-def test_the_page_is_whole_and_fetches_nothing(result, inputs):
-    page = page_of(result, inputs)
+def test_the_page_is_whole_and_fetches_nothing(page):
     told = read(page)
     assert "script" not in told.tags
     assert told.links  # the pictures are in it
@@ -82,8 +93,7 @@ def test_the_page_is_whole_and_fetches_nothing(result, inputs):
     assert told.tags.count("svg") == 5  # sources, merge, contradictions, proof, what speaks for it
 
 
-def test_the_verdict_comes_first_then_pictures_then_numbers(result, inputs):
-    page = page_of(result, inputs)
+def test_the_verdict_comes_first_then_pictures_then_numbers(page, result):
     order = [
         result.verdict.reason,
         "Pictures",
@@ -113,8 +123,8 @@ def test_every_name_is_words_and_never_html(result, inputs):
     read(page)
 
 
-def test_a_setting_that_was_changed_tells_what_it_usually_is(result, inputs):
-    assert "usually" not in page_of(result, inputs)
+def test_a_setting_that_was_changed_tells_what_it_usually_is(page, result, inputs):
+    assert "usually" not in page
     changed = replace(DEFAULTS, augment=replace(DEFAULTS.augment, spread=2.5))
     assert "<td>2.5 (usually 4)</td>" in page_of(result, inputs, changed)
 
@@ -144,16 +154,30 @@ def test_a_proof_that_met_nothing_and_settings_that_are_not_known_still_make_a_p
     assert read(page).tags.count("svg") == 4
 
 
-def test_maps_that_do_not_touch_make_a_page(result, inputs):
-    far = replace(result, T_ref_mov=Pose2(500.0, 0.0, 1.0))
-    fused = replace(
-        result.fusion, layers=(result.fusion.ref_cells, np.full_like(result.fusion.mov_cells, -1))
+def test_maps_that_do_not_touch_make_a_page_that_says_that_nothing_is_shared(page, result, inputs):
+    far, nothing = Pose2(30.0, 0.0) @ result.T_ref_mov, Evidence(0.0, 0.0, 0.0, 0.0)
+    quantities = quantities_of(Fit(nothing, 50.0))
+    named = replace(
+        result.weighed[0],
+        T_ref_mov=far,
+        evidence=nothing,
+        quantities=quantities,
+        score=shipped_model().score(quantities),
     )
-    read(page_of(replace(far, fusion=fused), inputs))
+    problem = PairProblem(inputs.ref, inputs.mov, inputs.observations)
+    found = Found(named, None, result.covariance, result.answers, None)
+    fusion = fuse((inputs.ref, inputs.mov), (Pose2(), far))
+    ended = finish_merge(problem, found, fusion, BaselineConfig(), result.method, 0, {})
+    told = page_of(ended, inputs)
+    read(told)
+    assert told.index("<strong>REFUSED</strong>") < told.lower().index("no wall was seen by both robots")
+    assert "no wall was seen by both robots" not in page.lower()
+    rows = dict(re.findall(r"<t[hd][^>]*>([^<]*)</t[hd]><td[^>]*>([^<]*)</td>", told))
+    assert rows["wall in view of both"] == "0.0 m"
 
 
-def test_the_page_is_the_same_for_the_same_result(result, inputs):
-    assert page_of(result, inputs) == page_of(result, inputs)
+def test_the_page_is_the_same_for_the_same_result(page, result, inputs):
+    assert page_of(result, inputs) == page
 
 
 def test_the_archive_reads_back_to_what_was_merged(result, inputs, tmp_path):

@@ -21,7 +21,7 @@ from app.jobs import worker_pool as workers
 from app.model import status_text as words_of_the_page
 from app.model.run_state import RunState
 from app.page.application import make_server
-from app.page.page import Page
+from app.page.page_state import PageState
 from app.page.panels.files_panel import read_case as real_read_case
 from app.report.export import ResultFiles
 from app.system.logging_setup import JsonFormatter, facts
@@ -74,9 +74,9 @@ class Broken(PipelineConfig):
 def test_a_stage_that_fails_is_told_and_the_next_merge_works(server, tab, monkeypatch, caplog, peaks):
     other = WireTab(server.get_port())
     broken = Broken(candidates=CandidateConfig(peaks=peaks))
-    job = Page._job
+    job = PageState.job
     with monkeypatch.context() as patch:
-        patch.setattr(Page, "_job", lambda page, **how: replace(job(page, **how), config=broken))
+        patch.setattr(PageState, "job", lambda page, **how: replace(job(page, **how), config=broken))
         assert merge(tab) == "failed"
     assert tab.state == words(broken.error)
     assert "within" not in tab.state

@@ -30,6 +30,7 @@ from app.jobs.fair_semaphore import FairSemaphore
 from app.model.merge_job import MergeJob
 from app.page.application import make_server
 from app.page.page import Page
+from app.page.page_state import PageState
 from app.web.cell_quota import CellQuota
 from app.web.download import Downloads
 
@@ -75,15 +76,15 @@ def test_merge_pressed_between_two_loads_gives_no_pair_the_answer_of_another(ser
             assert goes_on.wait(PATIENCE)
         return read_case(folder)
 
-    make = Page._job
+    make = PageState.job
 
-    def late(page: Page, **how: Any) -> MergeJob | None:
+    def late(page: PageState, **how: Any) -> MergeJob | None:
         job = make(page, **how)
         sleep(0.5)  # in which others get their turn where they can
         return job
 
     monkeypatch.setattr("app.page.panels.files_panel.read_case", slowly)
-    monkeypatch.setattr(Page, "_job", late)
+    monkeypatch.setattr(PageState, "job", late)
     tab = WireTab(server.get_port())
     tab.choose("Instant")
     tab.write("Sample", "office_r2_r1")

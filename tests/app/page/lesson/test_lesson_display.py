@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from unittest.mock import Mock
+from unittest.mock import MagicMock, Mock
 
 import pytest
 
 from algorithms.methods.registry import METHODS, run
 from algorithms.methods.steps import HoughDetail, Step
-from app.drawing.palette import LIGHT
+from app.drawing.browser_messages import BrowserMessages
 from app.drawing.scene_layout import lay_out
 from app.model.merge_inputs import MergeInputs
 from app.page.lesson.figures.figure_registry import PICTURES
@@ -18,6 +18,8 @@ from app.page.lesson.lesson_panel import LessonPanel
 from app.page.lesson.lesson_run import LessonRun
 from app.page.lesson.lesson_texts import StepText, files, lesson_folder, read_step
 from app.page.lesson.placeholders import NUMBERS
+from app.page.page_display import PageDisplay
+from app.page.page_state import PageState
 
 CONFIG = METHODS["spectra-proven"].defaults
 
@@ -46,13 +48,16 @@ def panel() -> Mock:
 
 
 @pytest.fixture
-def page(inputs) -> Mock:
-    return Mock(palette=LIGHT, layout=lay_out(inputs.ref, inputs.mov, inputs.at))
+def messages() -> Mock:
+    return Mock(BrowserMessages)
 
 
 @pytest.fixture
-def display(page, panel) -> LessonDisplay:
-    return LessonDisplay(page, panel)
+def display(inputs, panel, messages) -> LessonDisplay:
+    page = MagicMock(PageDisplay, messages=messages)
+    page.views = Mock()
+    page.views.map.layout = lay_out(inputs.ref, inputs.mov, inputs.at)
+    return LessonDisplay(PageState(), page, panel)
 
 
 def drawn(display: LessonDisplay, panel: Mock, text: StepText, study: LessonRun, done: bool = False) -> str:
@@ -61,13 +66,13 @@ def drawn(display: LessonDisplay, panel: Mock, text: StepText, study: LessonRun,
 
 
 def test_what_the_run_has_not_come_to_is_waited_for_and_once_it_is_over_no_more(
-    display, page, panel, hough, inputs
+    display, messages, panel, hough, inputs
 ):
     study = LessonRun(inputs, CONFIG)
     assert drawn(display, panel, hough, study) == WAIT
-    assert page.present.call_args.args[-1] is True  # busy
+    assert messages.hud.call_args.kwargs["mood"] == "running"
     assert drawn(display, panel, hough, study, done=True) == NOT_HERE
-    assert page.present.call_args.args[-1] is False
+    assert messages.hud.call_args.kwargs["mood"] == "idle"
 
 
 def test_without_maps_or_with_a_method_of_other_stages_nothing_is_waited_for(display, panel, hough, inputs):

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
+from tabs import noting_tab
 
 from algorithms.common.errors import InputFileError
 from algorithms.common.pose import pose_error
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS, merge
+from app.page.inputs_controller import InputsController
 from app.page.lesson.lesson_texts import (
     Exhibit,
     exhibit_case,
@@ -18,7 +22,9 @@ from app.page.lesson.lesson_texts import (
     read_exhibit,
     with_settings,
 )
-from app.page.lesson.museum_controller import changes, rows
+from app.page.lesson.museum_controller import MuseumController, changes, rows
+from app.page.run_controller import RunController
+from app.page.undo.undo_controller import UndoController
 
 GOOD = """\
 ---
@@ -116,3 +122,62 @@ def test_what_is_wrong_with_an_exhibit_is_told_with_its_file(tmp_path, old, new,
     with pytest.raises(InputFileError, match=said) as told:
         exhibit_of(tmp_path, GOOD.replace(old, new, 1))
     assert "07-mine.md" in str(told.value)
+
+
+@pytest.fixture
+def tab():
+    return noting_tab()
+
+
+@pytest.fixture
+def museum(tab) -> MuseumController:
+    """A museum whose exhibits are put on the page at once."""
+    runs, loads = Mock(RunController, thread=Mock()), Mock(InputsController)
+    runs.set_method = lambda method, config, seed: tab.state.update(method=method, config=config, seed=seed)
+
+    def show(inputs) -> bool:
+        tab.state.update(inputs=inputs, result=None)
+        return True
+
+    loads.show = show
+    return MuseumController(tab, Mock(UndoController, history=tab.history), runs, loads)
+
+
+def merged(tab, result, right: bool) -> None:
+    """A merge of what is on the page has ended, rightly or not."""
+    true = tab.state.inputs.truth.T_ref_mov
+    T = true if right else replace(true, theta=true.theta + 1.0)
+    found = replace(result, T_ref_mov=T, method=tab.state.method)
+    tab.state.update(result=found, result_config=tab.state.config)
+
+
+def test_an_exhibit_says_what_went_wrong_once_it_has_and_its_cure_that_it_helped(museum, tab, result):
+    panel = tab.panels.museum
+    museum.enter()
+    merged(tab, result, right=True)  # it did not go wrong this time
+    panel.failed.assert_not_called()
+    merged(tab, result, right=False)
+    assert "from the truth" in panel.failed.call_args.args[1]
+    failing = tab.state.method, tab.state.config
+    museum.cure()
+    assert museum._runs.merge.called
+    assert (tab.state.method, tab.state.config) != failing
+    merged(tab, result, right=True)
+    assert panel.cured.called
+
+
+def test_what_is_merged_on_other_maps_is_none_of_the_museums_business(museum, tab, result, inputs):
+    museum.enter()
+    tab.state.update(inputs=inputs)
+    merged(tab, result, right=False)
+    tab.panels.museum.failed.assert_not_called()
+
+
+def test_leaving_puts_back_what_was_there_before_the_visit(museum, tab, inputs):
+    tab.state.update(inputs=inputs)
+    tab.history.note(tab.state.snapshot())
+    before = tab.history.snapshot
+    museum.toggle()
+    assert tab.state.inputs is not inputs
+    museum.toggle()
+    museum._undo.go_to.assert_called_once_with(before, "leave the museum")

@@ -10,13 +10,13 @@ import viser
 from hypothesis import given
 from hypothesis import strategies as st
 from mapfiles import image_map_from_bytes
+from panels import files_panel
 
 from algorithms.common.pose import Pose2
 from algorithms.files.map_file import MapMeta, meta_to_bytes, parse_meta
 from algorithms.files.thresholds import MODES, Shading
 from algorithms.maps.grid_map import COARSEST, FINEST, FREE, MOST_TURN, OCCUPIED, UNKNOWN
 from app.model.merge_inputs import Files
-from app.page.panels.files_panel import FilesPanel
 from app.page.panels.image_form import doubt_about, shares
 
 # 3 x 2 pixels: white, grey, black above; black, white, white below
@@ -37,7 +37,7 @@ class Desk:
 
     def __init__(self, gui: viser.GuiApi) -> None:
         self.loaded, self.reports, self.saved = [], [], {}
-        self.panel = FilesPanel(gui, self.loaded.append, self.reports.append, "", self.saved.__setitem__)
+        self.panel = files_panel(gui, self.loaded.append, self.reports.append, self.saved.__setitem__)
 
     def upload(self, key: str, name: str, content: bytes) -> None:
         self.panel._take_upload(key, viser.UploadedFile(name, content))
@@ -173,7 +173,7 @@ def test_another_image_is_asked_about_anew(desk):
     desk.form(1)._taken()
     desk.upload("image1", "b.pgm", IMAGE)
     assert desk.inputs.ref is None
-    assert desk.inputs.bare == (1,)
+    assert "Map 1's image has no YAML file yet" in desk.inputs.missing()
     assert "b.pgm" in desk.form(1)._about.content
 
 

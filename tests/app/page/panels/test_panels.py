@@ -31,10 +31,10 @@ DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 
 def test_what_is_missing_is_said_in_the_order_of_the_work(inputs):
     assert MergeInputs().missing().startswith("Choose a sample")
-    assert "Load map 2" in MergeInputs(ref=inputs.ref).missing()
-    assert "Load map 1" in MergeInputs(mov=inputs.mov).missing()
-    assert "Load the observation" in MergeInputs(inputs.ref, inputs.mov).missing()
-    assert "two maps" in MergeInputs(observations=inputs.observations).missing()
+    assert "Load map 2" in MergeInputs.pair(ref=inputs.ref).missing()
+    assert "Load map 1" in MergeInputs.pair(mov=inputs.mov).missing()
+    assert "Load the observation" in MergeInputs.pair(inputs.ref, inputs.mov).missing()
+    assert "two maps" in MergeInputs.pair(observations=inputs.observations).missing()
     assert inputs.missing() == ""
     assert inputs.complete
 

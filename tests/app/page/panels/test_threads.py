@@ -12,11 +12,10 @@ from types import SimpleNamespace
 
 import pytest
 import viser
+from panels import files_panel, settings_panel
 
 from algorithms.methods.registry import METHODS
 from app.model.merge_inputs import MergeInputs
-from app.page.panels.files_panel import FilesPanel
-from app.page.panels.settings_panel import SettingsPanel
 from app.web.tab_messages import TabMessages
 
 
@@ -73,7 +72,7 @@ def test_files_that_arrive_together_are_taken_one_after_the_other(server, tmp_pa
         loaded.append(inputs)
         here.release()
 
-    panel = FilesPanel(server.gui, load, reports.append, "", lambda name, content: None)
+    panel = files_panel(server.gui, load, reports.append)
     text = (
         b"image: mine.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
         b"occupied_thresh: 0.65\nfree_thresh: 0.2\n"
@@ -91,7 +90,7 @@ def test_files_that_arrive_together_are_taken_one_after_the_other(server, tmp_pa
 
 def test_a_file_that_cannot_be_used_is_told_and_what_is_loaded_stays(server):
     loaded, reports = [], []
-    panel = FilesPanel(server.gui, loaded.append, reports.append, "", lambda name, content: None)
+    panel = files_panel(server.gui, loaded.append, reports.append)
     panel._take_upload("image1", viser.UploadedFile("mine.pgm", b"P5\n2 2\n255\n\0\1\2\3"))
     assert len(loaded) == 1
     panel._take_upload("yaml1", viser.UploadedFile("mine.yaml", b"image: mine.pgm\n"))
@@ -105,7 +104,7 @@ def test_a_file_that_cannot_be_used_is_told_and_what_is_loaded_stays(server):
 
 def test_a_yaml_file_that_names_another_image_is_taken_with_a_doubt(server):
     loaded = []
-    panel = FilesPanel(server.gui, loaded.append, loaded.append, "", lambda name, content: None)
+    panel = files_panel(server.gui, loaded.append, loaded.append)
     text = (
         b"image: other.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
         b"occupied_thresh: 0.65\nfree_thresh: 0.2\n"
@@ -118,7 +117,7 @@ def test_a_yaml_file_that_names_another_image_is_taken_with_a_doubt(server):
 
 def test_a_reset_that_was_pressed_for_a_method_that_has_given_way_does_nothing(server):
     changes = []
-    panel = SettingsPanel(server.gui, lambda: changes.append(panel.method), changes.append)
+    panel = settings_panel(server.gui, lambda: changes.append(panel.method), changes.append)
     buttons = [
         handle
         for handle in server.gui._gui_input_handle_from_uuid.values()

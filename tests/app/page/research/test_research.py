@@ -181,7 +181,7 @@ def test_only_a_card_with_a_merge_can_be_pressed_and_its_words_are_no_html():
 def test_a_guest_lies_where_its_method_put_it_and_says_the_verdict(small_case):
     trial = replace(FOUND, right=False, accepted=False, reason="Refused: it does not fit.")
     guest = OtherResult(METHOD, DEFAULTS, 0, trial)
-    story = guest.story(small_case.ref, small_case.mov, small_case.observations, RunState())
+    story = guest.run(small_case.ref, small_case.mov, small_case.observations, RunState())
     assert story.answer == Pose2(1.0, 2.0, 0.1)
     for words in (guest.sentence(), guest.html()):
         assert "Wrong" in words

@@ -22,15 +22,15 @@ from algorithms.observations.observation import Observation
 from app.model.merge_inputs import Files, MergeInputs, Upload
 from app.model.run_state import RunState
 from app.model.settings import with_value
-from app.page.page_snapshot import PageSnapshot, change
-from app.page.panels.history_panel import history_html, steps_html
-from app.page.undo_history import MOST, PAUSE, SavedTab, UndoHistory, UndoStep
+from app.page.undo.history_panel import history_html, steps_html
+from app.page.undo.page_snapshot import PageSnapshot, change
+from app.page.undo.undo_history import MOST, PAUSE, SavedTab, UndoHistory
 from app.web.session_store import SessionStore
 
 ROOM = GridMap(np.full((40, 40), FREE, dtype=np.int8), 0.1)
 SEEN = Observation(Pose2(), 0.1, 0.1, 0.1, 0.0)
 START = PageSnapshot(
-    MergeInputs(ROOM, ROOM, (SEEN,), "rooms"),
+    MergeInputs.pair(ROOM, ROOM, (SEEN,), "rooms"),
     Files("rooms"),
     DEFAULT_METHOD,
     METHODS[DEFAULT_METHOD].defaults,
@@ -43,7 +43,8 @@ def seeded(seed: int) -> PageSnapshot:
 
 
 def history(*desks: PageSnapshot, **how: int) -> UndoHistory:
-    told = UndoHistory(UndoStep("start", START), **how)
+    told = UndoHistory(**how)
+    told.record("start", START, now=-1e9)
     for number, desk in enumerate(desks):
         told.record(f"{number}", desk, now=100.0 * number)
     return told
@@ -58,15 +59,15 @@ def test_undo_and_redo_walk_along_what_was_done_and_change_nothing(steps):
         if went is not None:
             at += by
         assert (went is None) == (by == 0 or went is not desks[at])
-        assert told.desk is desks[at]
-    assert [entry.desk for entry in told.entries] == desks
+        assert told.snapshot is desks[at]
+    assert [step.snapshot for step in told.steps] == desks
 
 
 def test_a_new_deed_forgets_what_was_undone():
     told = history(seeded(1), seeded(2))
     told.go(1)
     told.record("other", seeded(9))
-    assert [entry.desk.seed for entry in told.entries] == [0, 1, 9]
+    assert [step.snapshot.seed for step in told.steps] == [0, 1, 9]
     assert told.go(3) is None
 
 
@@ -74,9 +75,9 @@ def test_a_slider_that_moves_on_makes_one_entry_and_undo_goes_to_before_it():
     told = history()
     for k in range(1, 20):
         told.record(f"seed {k - 1} → {k}", seeded(k), "seed", now=10 + 0.3 * k)
-    assert [entry.label for entry in told.entries] == ["start", "seed 0 → 19"]
+    assert [step.label for step in told.steps] == ["start", "seed 0 → 19"]
     told.go(0)
-    assert told.desk is START
+    assert told.snapshot is START
 
 
 @pytest.mark.parametrize("pause", [0.5 * PAUSE, 2 * PAUSE])
@@ -84,9 +85,9 @@ def test_a_pause_or_another_slider_begins_a_new_entry(pause):
     told = history()
     told.record("seed 0 → 1", seeded(1), "seed", now=10.0)
     told.record("seed 1 → 2", seeded(2), "seed", now=10.0 + pause)
-    assert len(told.entries) == (2 if pause < PAUSE else 3)
+    assert len(told.steps) == (2 if pause < PAUSE else 3)
     told.record("other", seeded(3), "other", now=10.0 + pause)
-    assert len(told.entries) == (3 if pause < PAUSE else 4)
+    assert len(told.steps) == (3 if pause < PAUSE else 4)
 
 
 def test_what_was_gone_back_to_is_never_changed_by_moving_on():
@@ -95,15 +96,15 @@ def test_what_was_gone_back_to_is_never_changed_by_moving_on():
     told.record("x", seeded(5), "x", now=10.1)
     told.go(1)
     told.record("seed 1 → 2", seeded(2), "seed", now=10.2)
-    assert [entry.desk.seed for entry in told.entries] == [0, 1, 2]
+    assert [step.snapshot.seed for step in told.steps] == [0, 1, 2]
 
 
 @given(st.integers(1, 3 * MOST), st.integers(2, 12))
 @settings(max_examples=30)
 def test_it_is_bounded_and_the_newest_stays(count, most):
     told = history(*(seeded(k) for k in range(1, count + 1)), most=most)
-    assert len(told.entries) <= most
-    assert told.desk.seed == count
+    assert len(told.steps) <= most
+    assert told.snapshot.seed == count
 
 
 @pytest.fixture
@@ -118,31 +119,31 @@ def test_large_answers_of_long_ago_are_let_go_of_before_any_wish_is(outcome):
     desks = [replace(seeded(k), outcome=deepcopy(outcome)) for k in range(1, 6)]
     one = ROOM.cells.nbytes * 3  # of an answer; both maps come on top, once
     told = history(*desks, most_bytes=ROOM.cells.nbytes + 2 * one)
-    assert len(told.entries) == 6
-    assert [entry.desk.result is not None for entry in told.entries] == [False] * 4 + [True] * 2
+    assert len(told.steps) == 6
+    assert [step.snapshot.result is not None for step in told.steps] == [False] * 4 + [True] * 2
 
 
 def test_uploads_of_long_ago_are_let_go_of_where_they_are_too_many():
     files = [Files("", {"yaml1": Upload("a", bytes(1000))}) for _ in range(5)]
     told = history(*(replace(START, files=one) for one in files), most_bytes=ROOM.cells.nbytes + 2500)
-    assert len(told.entries) == 2
-    assert told.desk.files is files[-1]
+    assert len(told.steps) == 2
+    assert told.snapshot.files is files[-1]
 
 
 def test_what_comes_out_belongs_to_the_entry_it_was_asked_at(outcome):
     told = history(seeded(1))
-    told.amend(replace(told.desk, outcome=outcome))
-    assert told.desk.result is not None
+    told.amend(outcome)
+    assert told.snapshot.result is not None
     told.go(0)
-    assert told.desk.result is None
+    assert told.snapshot.result is None
     told.go(1)
-    assert told.desk.result is not None
+    assert told.snapshot.result is not None
 
 
 def test_every_wish_has_a_name():
     config = with_value(START.config, ("augment", "spread"), 4.5)
     two = with_value(config, ("box", "sigma_x"), 2.0)
-    other = MergeInputs(ROOM, ROOM, (SEEN, SEEN), "rooms")
+    other = MergeInputs.pair(ROOM, ROOM, (SEEN, SEEN), "rooms")
     grid = GridMap(ROOM.cells, 0.2)
     assert change(START, START)[0] == ""
     assert change(START, replace(START, config=config)) == (
@@ -153,7 +154,7 @@ def test_every_wish_has_a_name():
     assert change(START, seeded(3))[0] == "seed 0 → 3"
     assert change(START, replace(START, method="spectra-swarm"))[0].startswith("method: ")
     assert change(START, replace(START, inputs=other))[0] == "2 observations by hand"
-    assert change(START, replace(START, inputs=MergeInputs(grid, ROOM, (), "b")))[0] == "load b"
+    assert change(START, replace(START, inputs=MergeInputs.pair(grid, ROOM, (), "b")))[0] == "load b"
     assert change(START, replace(START, inputs=MergeInputs()))[0] == "forget the files"
     assert change(START, replace(START, hand=Pose2(1, 2, 3)))[0] == "map 2 by hand"
 
@@ -184,7 +185,7 @@ def clock() -> Clock:
 
 
 def kept(seed: int = 0) -> SavedTab:
-    return SavedTab(history(seeded(seed)))
+    return SavedTab(history(seeded(seed)).steps)
 
 
 def test_a_tab_that_comes_back_in_time_finds_what_it_left(clock):

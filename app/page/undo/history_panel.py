@@ -8,7 +8,7 @@ import viser
 
 from algorithms.verdict.decision import Outcome
 from app.page.panels.html_widgets import put
-from app.page.undo_history import UndoHistory, UndoStep
+from app.page.undo.undo_history import UndoHistory, UndoStep
 
 DOTS = {Outcome.MERGED: "#009E73", Outcome.BENT: "#E69F00", Outcome.REFUSED: "#D55E00"}
 
@@ -22,10 +22,9 @@ class HistoryPanel:
             self._list = gui.add_html("")
 
     def show(self, history: UndoHistory) -> None:
-        """Show it as it is now."""
-        entries, at = history.entries, history.position
-        undo = entries[at].label if at > 0 else ""
-        redo = entries[at + 1].label if at + 1 < len(entries) else ""
+        steps, at = history.steps, history.position
+        undo = steps[at].label if at > 0 else ""
+        redo = steps[at + 1].label if at + 1 < len(steps) else ""
         put(self._steps, content=steps_html(undo, redo))
         put(self._list, content=history_html(history))
 
@@ -50,22 +49,22 @@ def steps_html(undo: str, redo: str) -> str:
 
 
 def history_html(history: UndoHistory) -> str:
-    """HTML of a button per entry, newest first; map_viewer.js tells which one was pressed."""
+    """HTML of a button per step, newest first; map_viewer.js tells which one was pressed."""
     rows = []
-    for number, entry in reversed(list(enumerate(history.entries))):
+    for number, step in reversed(list(enumerate(history.steps))):
         here, undone = number == history.position, number > history.position
         style = "font-weight:600;background:#0072B21f" if here else "opacity:.5" if undone else ""
         current = ' aria-current="true"' if here else ""
         rows.append(
             f'<button type="button" class="mm-entry" data-go="{number}"{current} style="{style}">'
-            f"{_dot(entry)}<span>{escape(entry.label)}</span></button>"
+            f"{_dot(step)}<span>{escape(step.label)}</span></button>"
         )
     return f'<div class="mm-history">{"".join(rows)}</div>'
 
 
-def _dot(entry: UndoStep) -> str:
+def _dot(step: UndoStep) -> str:
     """A dot in the colour of the verdict, where there is one."""
-    result = entry.desk.result
+    result = step.snapshot.result
     if result is None:
         return "<i></i>"
     outcome = result.verdict.outcome

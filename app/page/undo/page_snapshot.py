@@ -27,7 +27,7 @@ class PageSnapshot:
     goal    : how far it was asked for; None: nothing was asked for yet
     hand    : where map 2 was put by hand, T_ref_mov; None where a method says it
     outcome : of the run that came to its end with all this; None before
-    guest   : another method's answer that is looked at in its place
+    other   : another method's answer that is looked at in its place
     """
 
     inputs: MergeInputs
@@ -38,7 +38,7 @@ class PageSnapshot:
     goal: Goal | None = None
     hand: Pose2 | None = None
     outcome: RunState | None = field(default=None, repr=False)
-    guest: OtherResult | None = None
+    other: OtherResult | None = None
 
     @property
     def held(self) -> bool:
@@ -50,7 +50,7 @@ class PageSnapshot:
         """The answer; None where there is none (yet)."""
         return self.outcome.get(MergeResult) if self.outcome is not None else None
 
-    def same_wish(self, other: PageSnapshot) -> bool:
+    def same_request(self, other: PageSnapshot) -> bool:
         """Whether both ask for the same, whatever came of it."""
         return not change(self, other)[0] and self.goal == other.goal
 
@@ -60,9 +60,7 @@ class PageSnapshot:
 
     def arrays(self) -> Iterator[Any]:
         """Everything large that it holds."""
-        for grid in (self.inputs.ref, self.inputs.mov):
-            if grid is not None:
-                yield grid.cells
+        yield from (grid.cells for grid in self.inputs.grids)
         for upload in self.files.uploads.values():
             yield upload.content
         if self.result is not None:
@@ -70,21 +68,23 @@ class PageSnapshot:
             yield from (fusion.merged.cells, fusion.ref_cells, fusion.mov_cells)
 
 
-def weight(desk: PageSnapshot) -> dict[int, int]:
-    """Bytes by the identity of what holds them, so that what two desks share counts once."""
-    return {id(held): held.nbytes if isinstance(held, np.ndarray) else len(held) for held in desk.arrays()}
+def weight(snapshot: PageSnapshot) -> dict[int, int]:
+    """Bytes by the identity of what holds them, so that what two snapshots share counts once."""
+    return {
+        id(held): held.nbytes if isinstance(held, np.ndarray) else len(held) for held in snapshot.arrays()
+    }
 
 
-def first_label(desk: PageSnapshot) -> str:
-    """What to call the desk that a tab begins with."""
-    return f"load {desk.inputs.name}" if desk.inputs.name else "an empty page"
+def first_label(snapshot: PageSnapshot) -> str:
+    """What to call the snapshot that a tab begins with."""
+    return f"load {snapshot.inputs.name}" if snapshot.inputs.name else "an empty page"
 
 
 def change(before: PageSnapshot, after: PageSnapshot) -> tuple[str, Hashable]:
-    """What a person did between two desks, and what to call doing more of the same; "" for nothing."""
+    """What a person did between two snapshots, and what more of the same is called; "" for nothing."""
     old, new = before.inputs, after.inputs
     if old is not new:
-        if old.ref is new.ref and old.mov is new.mov:
+        if old.grids == new.grids:
             count = len(new.observations)
             said = "observation by hand" if count == 1 else f"{count} observations by hand"
             return (said if count else "no observation"), "observation"
@@ -97,8 +97,8 @@ def change(before: PageSnapshot, after: PageSnapshot) -> tuple[str, Hashable]:
         return f"seed {before.seed} → {after.seed}", "seed"
     if before.hand != after.hand:
         return ("map 2 by hand" if after.hand is not None else "not by hand"), "hand"
-    if before.guest is not after.guest:
-        return (f"look at {after.guest.title}" if after.guest is not None else "back to one's own"), None
+    if before.other is not after.other:
+        return (f"look at {after.other.title}" if after.other is not None else "back to one's own"), None
     return "", None
 
 

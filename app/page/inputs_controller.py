@@ -1,0 +1,70 @@
+"""What is merged: loads it in place of everything there was."""
+
+from __future__ import annotations
+
+from algorithms.common.errors import MapMergeError
+from app.drawing.scene_layout import lay_out
+from app.model.merge_inputs import MergeInputs
+from app.model.run_state import RunState
+from app.model.view_modes import MAP
+from app.page.run_controller import RunController
+from app.page.tab import Tab
+from app.web.cell_quota import CellQuota
+
+
+class InputsController:
+    """Of one tab; ``quota`` is shared by all tabs."""
+
+    def __init__(self, tab: Tab, runs: RunController, quota: CellQuota) -> None:
+        self._state, self._display, self._panels = tab.state, tab.display, tab.panels
+        self._modes, self._history, self._notices = tab.modes, tab.history, tab.notices
+        self._runs, self._quota = runs, quota
+        tab.panels.files.connect(self.load, tab.notices.report)
+
+    def close(self) -> None:
+        self._quota.release(self)
+
+    def load(self, inputs: MergeInputs) -> None:
+        """Show these inputs as an action of the person; a lesson goes on with them."""
+        self._runs.thread.stop()
+        with self._state.locks.action:
+            mode = self._modes.close()
+            with self._state.locks.drawing:
+                if self.show(inputs):
+                    self._history.note(self._state.snapshot())
+            if mode is not None and mode.reopen is not None:
+                mode.reopen()
+
+    def show(self, inputs: MergeInputs) -> bool:
+        """Show these inputs, and nothing that was found on others; whoever calls is drawing.
+
+        Whether they could be shown: too large ones are reported.
+        """
+        if self._state.closed:
+            return False
+        self._runs.thread.stop()  # a run of others may have been asked for while this waited for its turn
+        try:
+            self._quota.claim(self, sum(grid.cells.size for grid in inputs.grids))
+            layout = lay_out(inputs.ref, inputs.mov, inputs.at)
+        except MapMergeError as error:
+            self._notices.report(error)
+            return False
+        self._notices.clear()
+        self._modes.close()
+        self.forget_results(inputs, view=MAP, files=self._panels.files.files)
+        self._display.show_inputs(layout)
+        self._display.messages.flush()
+        return True
+
+    def forget_results(self, inputs: MergeInputs, **more: object) -> None:
+        """These are the inputs now; what was found with others no longer counts."""
+        self._state.update(
+            inputs=inputs,
+            result=None,
+            result_config=None,
+            contradictions=None,
+            run=RunState(),
+            search=None,
+            goal=None,
+            **more,
+        )

@@ -1,0 +1,282 @@
+"""Draws the state of a tab: its pictures, the words above them, and its panels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+
+import viser
+
+from algorithms.common.errors import NoAnswerError
+from algorithms.methods.manual_merge import BY_HAND
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.steps import AugmentDetail
+from app.drawing.browser_messages import BrowserMessages
+from app.drawing.legend import in_hand, legend
+from app.drawing.palette import LIGHT
+from app.drawing.scene.height_view import HeightsView
+from app.drawing.scene.map_comparison import MapComparison
+from app.drawing.scene.map_view import MapView
+from app.drawing.scene.run_view import RunView
+from app.drawing.scene.swarm_view import SwarmView
+from app.drawing.scene_layout import SceneLayout
+from app.model import status_text, verdict_text
+from app.model.view_modes import HEIGHTS, MAP, SWARM
+from app.page.page_state import PageState
+from app.page.panel_set import Panels
+from app.page.panels.html_widgets import box
+from app.page.panels.result_panel import result_html
+from app.report.export import ResultFiles
+
+LARGE = 2_000_000  # cells of a map that takes a while to draw
+
+
+class Views:
+    """The pictures of a tab."""
+
+    def __init__(self, client: viser.ClientHandle, messages: BrowserMessages) -> None:
+        self.map = MapView(client, messages)
+        self.run = RunView(self.map, messages)
+        self.heights = HeightsView(client, messages)
+        self.swarm = SwarmView(messages)
+        self.comparison = MapComparison(messages, self.map)
+
+
+class PageDisplay:
+    """Of one tab; whoever calls holds the drawing lock."""
+
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        state: PageState,
+        views: Views,
+        panels: Panels,
+        messages: BrowserMessages,
+    ) -> None:
+        self._client, self._state, self._panels = client, state, panels
+        self.views, self.messages = views, messages
+
+    def together(self) -> AbstractContextManager[None]:
+        """What is drawn in this context is seen at once."""
+        return self._client.atomic()
+
+    # --- inputs -----------------------------------------------------------------------------------
+
+    def show_inputs(self, layout: SceneLayout) -> None:
+        """Both maps side by side, as they were loaded."""
+        state, panels, inputs = self._state, self._panels, self._state.inputs
+        panels.transform.offer(inputs.complete)
+        panels.observation.show(inputs)
+        panels.charts.clear()
+        self.views.heights.hide()
+        self.views.comparison.clear()
+        if any(grid.cells.size >= LARGE for grid in inputs.grids):
+            self.messages.hud(state="Drawing the maps.", mood="running", progress=0.6)
+            self.messages.flush()
+        self.views.map.load(inputs, layout, state.palette)
+        self.show_view()
+        self.views.map.apart()
+        self.clear_read_out()
+        panels.settings.resolutions(*(grid.resolution for grid in inputs.grids))
+        panels.run.merge.disabled = not inputs.complete
+        panels.export.offer(None)
+        panels.what_if.offer(None)
+        panels.files.placed(bool(inputs.observations))
+        doubt = inputs.doubt()
+        self.messages.hud(
+            case=inputs.name,
+            state=" ".join(filter(None, (inputs.missing(), doubt))) or status_text.READY,
+            mood="refused" if doubt else "idle",
+            progress=None,
+            frames=layout.frames(),
+            measure=bool(inputs.grids),
+            legend=legend(state.palette, MAP, state.run),
+        )
+
+    # --- a run ------------------------------------------------------------------------------------
+
+    def show_step(self, live: bool, follow: bool) -> None:
+        """The newest step of a run.
+
+        live   : the run is shown step by step, not only its end
+        follow : turn to the charts of the stage at hand
+        """
+        run = self._state.run
+        with self.together():
+            if live or self._state.view == SWARM:
+                self.draw(live=live)
+            self._panels.charts.show(run, follow=follow)
+            self.messages.hud(
+                pressed=self._pressed(),
+                state=status_text.sentence(run),
+                mood="running",
+                progress=status_text.progress(run),
+            )
+            self.messages.flush()
+
+    def show_candidates(self) -> None:
+        """What a changed setting does, up to the candidates; the maps stay where they lie."""
+        state = self._state
+        self._panels.charts.show(state.run, follow=False)
+        if state.view == MAP:
+            self.views.run.preview(state.run, state.run.config)
+            self.messages.hud(legend=legend(state.palette, MAP, state.run, preview=True))
+        elif state.view == HEIGHTS:
+            self.draw(live=False)
+        self.messages.hud(state=status_text.UP_TO_DATE, mood="idle", progress=None)
+
+    def show_answer(self, result: MergeResult, html: str, live: bool) -> None:
+        """An answer and everything that led to it."""
+        state, panels = self._state, self._panels
+        panels.charts.show(state.run, follow=True)
+        panels.charts.tell(html)
+        panels.export.offer(ResultFiles(result, state.inputs, state.result_config))
+        panels.what_if.offer(result)
+        self.draw(live=live)
+        self.views.comparison.offer(state.contradictions, state.palette)
+        self.messages.hud(mood=verdict_text.mood(result.verdict), progress=None)
+        self._say_verdict(result)
+
+    def show_no_answer(self, error: NoAnswerError) -> None:
+        """The method found no transform: the maps go back to where they were, with the reason."""
+        with self.together():
+            self.views.comparison.clear()
+            self._panels.export.offer(None)
+            self._panels.what_if.offer(None)
+            self._panels.charts.show(self._state.run, follow=True)
+            self._panels.charts.tell(box(str(error), "refused"))
+            self.views.map.apart()
+            self.draw(live=False)
+            self.messages.hud(state=str(error), mood="refused", progress=None)
+            self.messages.flush()
+
+    def show_result_text(self, result: MergeResult | None, faded: bool = False) -> None:
+        """The numbers of a result; faded where it is out of date."""
+        state = self._state
+        if result is not None:
+            html = result_html(result, state.inputs, state.result_config, state.contradictions, faded=faded)
+            self._panels.charts.tell(html)
+
+    def mark_outdated(self) -> None:
+        """A setting was changed after the result was found."""
+        if self._state.result is not None:
+            self.show_result_text(self._state.result, faded=True)
+            self.views.comparison.outdate()
+            self._panels.export.outdate()
+
+    def withdraw_result(self) -> None:
+        """The maps no longer lie as they were found: nothing of the result can be taken."""
+        self.show_result_text(self._state.result, faded=True)
+        self._panels.export.offer(None)
+        self._panels.what_if.offer(None)
+
+    def _say_verdict(self, result: MergeResult) -> None:
+        """The verdict; over the swarm whether it found the proven optimum, and the verdict's first word."""
+        found, reason = status_text.found_it(self._state.run), result.verdict.reason
+        if result.method == BY_HAND:
+            reason = verdict_text.of_hand(result, taken=True)
+        if found and self._state.view == SWARM:
+            reason = f"{found} {reason.split(':')[0]}."
+        self.messages.hud(state=status_text.typeset(reason))
+
+    # --- views ------------------------------------------------------------------------------------
+
+    def draw(self, live: bool, look: bool = False) -> None:
+        """The run in the chosen view.
+
+        look : the camera goes there, too
+        """
+        state, view = self._state, self._state.view
+        if view == MAP:
+            self.views.run.show(state.run, state.config, self._panels.run.follow or look, live)
+        elif view == HEIGHTS:
+            self.views.heights.show(state.run.get(AugmentDetail), state.palette, look)
+        else:
+            self.views.swarm.show(state.run, state.palette, look)
+        self.messages.hud(pressed=self._pressed())
+        self.show_legend()
+
+    def show_view(self, draw_map: Callable[[], None] | None = None) -> None:
+        """The chosen view of the newest state.
+
+        draw_map : draws the map where a mode does; None: the run is drawn
+        """
+        state, view = self._state, self._state.view
+        self._panels.run.view = view
+        self.views.map.visible(view == MAP)
+        if view != HEIGHTS:
+            self.views.heights.hide()
+        if view != SWARM:
+            self.views.swarm.hide()
+        if view == MAP and draw_map is not None:
+            self.messages.look_down(self.views.map.extent())
+            draw_map()
+            self.messages.hud(pressed=self._pressed())
+            self.show_legend()
+        else:
+            self.draw(live=False, look=True)
+        result = state.run.get(MergeResult)
+        if result is not None and self.messages.mood in verdict_text.MOODS.values():
+            self._say_verdict(result)
+        self.messages.flush()
+
+    def show_map(self, draw_map: Callable[[], None] | None = None) -> None:
+        """The map, where another view is shown; ``draw_map`` as in ``show_view``."""
+        if self._state.view != MAP:
+            self._state.update(view=MAP)
+            self.show_view(draw_map)
+
+    def show_legend(self) -> None:
+        """What the colours of the picture mean."""
+        state, mode = self._state, self.views.comparison.mode
+        if state.hand is not None and state.view == MAP and mode == "overlay":
+            self.messages.hud(legend=in_hand(state.palette))
+        else:
+            self.messages.hud(legend=legend(state.palette, state.view, state.run, mode=mode))
+
+    def show_lesson_step(self, look: bool, turn: float | None) -> None:
+        """A run on the map, as far as a step of the lesson goes.
+
+        turn : by which map 2 is turned beside map 1; None: not at all
+        """
+        state, maps, run = self._state, self.views.map, self._state.run
+        if state.view != MAP:
+            self.draw(live=False)
+        elif run.reached(AugmentDetail):
+            self.views.run.show(run, state.config, camera=look, live=True)
+        else:
+            maps.apart()
+        if turn is not None and state.view == MAP:
+            maps.turned(turn)
+
+    def clear_read_out(self) -> None:
+        """What was read out at a click goes: the picture is another."""
+        self.messages.hud(readout="")
+        self.messages.layer("readout", None)
+
+    def show_buttons(self) -> None:
+        """Which button of each group is the chosen one."""
+        self.messages.hud(pressed=self._pressed())
+        self.messages.flush()
+
+    def _pressed(self) -> list[str]:
+        return [*self._panels.run.pressed, self._panels.charts.page]
+
+    # --- colours ----------------------------------------------------------------------------------
+
+    def show_theme(self) -> None:
+        palette = self._state.palette
+        self._client.gui.configure_theme(
+            show_logo=False,
+            show_share_button=False,
+            control_width="medium",
+            dark_mode=palette.dark,
+            brand_color=LIGHT.ref,
+        )
+        self.messages.theme(palette)
+
+    def recolour(self) -> None:
+        state = self._state
+        self.show_theme()
+        self.views.map.recolour(state.palette, state.run)
+        self.views.comparison.recolour(state.palette)

@@ -1,0 +1,68 @@
+"""All panels of a tab."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import viser
+
+from app.drawing.browser_messages import BrowserMessages
+from app.page.cancellable_task import CancellableTask
+from app.page.editing.observation_panel import ObservationPanel
+from app.page.editing.transform_panel import TransformPanel
+from app.page.lesson.lesson_panel import LessonPanel
+from app.page.lesson.museum_panel import MuseumPanel
+from app.page.page_state import PageState
+from app.page.panels.charts_panel import ChartsPanel
+from app.page.panels.export_panel import ExportPanel
+from app.page.panels.files_panel import FilesPanel
+from app.page.panels.run_panel import RunPanel
+from app.page.panels.settings_panel import SettingsPanel
+from app.page.panels.what_if_panel import WhatIfPanel
+from app.page.research.comparison_panel import ComparePanel
+from app.page.research.sweep_panel import SweepPanel
+from app.page.undo.history_panel import HistoryPanel
+from app.web.download import DOWNLOADS
+
+
+class Panels:
+    """Widgets only: what they do is connected by the controllers.
+
+    turned : is called when a person turns to another page of the charts
+    """
+
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        state: PageState,
+        messages: BrowserMessages,
+        sample: str,
+        turned: Callable[[], None],
+    ) -> None:
+        gui = client.gui
+        gui.set_panel_label("mapmeld")
+        gui.main_panel.dock_right()
+        self.run = RunPanel(gui)
+        self.task = CancellableTask(messages, state.locks.drawing, partial(self.run.stoppable, "task"))
+        self.send = partial(DOWNLOADS.send, client)
+        self.files = FilesPanel(gui, sample, self.send, state.locks.action, self.task)
+        self.observation = ObservationPanel(gui)
+        self.settings = SettingsPanel(gui, state.locks.action)
+        self.export = ExportPanel(client, self.task)
+        self.what_if = WhatIfPanel(gui, lambda: state.config.verdict)
+        self.transform = TransformPanel(gui)
+        self.history = HistoryPanel(gui)
+        self.charts = ChartsPanel(client, turned)
+        with self.charts.add_tab("Compare", viser.Icon.SCALE):
+            self.comparison = ComparePanel(gui)
+        with self.charts.add_tab("Sweep", viser.Icon.CHART_DOTS):
+            self.sweep = SweepPanel(gui)
+        self.lesson = LessonPanel(gui)
+        self.museum = MuseumPanel(gui)
+
+    def show_method(self, method: str, config: Any, seed: int) -> None:
+        """Show these settings, and load nothing."""
+        self.settings.restore(method, config)
+        self.run.restore(method, seed)

@@ -1,0 +1,1 @@
+"""What a person did on the page, and the way back."""

@@ -1,0 +1,302 @@
+"""Every module has the test file of its path, or stands here with the one that exercises it instead.
+
+The lists only get shorter: a module that gets a file of its own goes from them.
+"""
+
+from __future__ import annotations
+
+import ast
+from functools import cache
+from pathlib import Path
+
+import pytest
+from repository import ROOT
+
+# test file below tests/ -> what it exercises beside the module that it is named after
+EXERCISED_BY = {
+    "algorithms/files/test_bad_files.py": {
+        "algorithms.common.errors",
+        "algorithms.files.yaml_fields",
+    },
+    "algorithms/files/test_case_folder.py": {
+        "algorithms.files.observation_file",
+        "algorithms.files.truth_file",
+    },
+    "algorithms/files/test_cell_rules.py": {
+        "algorithms.files.image_decoder",
+        "algorithms.files.netpbm",
+        "algorithms.files.thresholds",
+    },
+    "algorithms/maps/test_map_fusion.py": {
+        "algorithms.maps.robots",
+    },
+    "algorithms/methods/test_merge_result.py": {
+        "algorithms.methods.shared_stages",
+    },
+    "algorithms/methods/test_proven.py": {
+        "algorithms.methods.spectra_answer",
+        "algorithms.methods.steps",
+    },
+    "algorithms/methods/test_rivals.py": {
+        "algorithms.methods.baselines.bilateral",
+        "algorithms.methods.baselines.carpin_spectra",
+        "algorithms.methods.baselines.distance_image",
+        "algorithms.methods.baselines.feature_detectors",
+        "algorithms.methods.baselines.feature_matching",
+        "algorithms.methods.baselines.mse_registration",
+        "algorithms.methods.baselines.overlap_error",
+        "algorithms.methods.baselines.phase_correlation",
+        "algorithms.methods.registry",
+    },
+    "algorithms/methods/test_spectra_method.py": {
+        "algorithms.methods.spectra_config",
+        "algorithms.methods.spectra_stages",
+    },
+    "algorithms/observations/test_search_window.py": {
+        "algorithms.optimisation.search_box",
+    },
+    "algorithms/optimisation/test_branch_and_bound.py": {
+        "algorithms.optimisation.transform_lattice",
+    },
+    "algorithms/optimisation/test_optimiser.py": {
+        "algorithms.optimisation.monte_carlo",
+        "algorithms.optimisation.particle_swarm",
+    },
+    "algorithms/simulator/test_hardships.py": {
+        "algorithms.simulator.changes",
+        "algorithms.simulator.odometry_drift",
+        "algorithms.simulator.training_pairs",
+        "algorithms.simulator.wear",
+    },
+    "algorithms/simulator/test_simulator.py": {
+        "algorithms.simulator.buildings.apartment",
+        "algorithms.simulator.buildings.building_types",
+        "algorithms.simulator.buildings.corridor",
+        "algorithms.simulator.buildings.floor_plan",
+        "algorithms.simulator.buildings.furniture",
+        "algorithms.simulator.buildings.office",
+        "algorithms.simulator.buildings.warehouse",
+        "algorithms.simulator.lidar",
+        "algorithms.simulator.path_planning",
+        "algorithms.simulator.portable_random",
+        "algorithms.simulator.robot",
+        "algorithms.simulator.room_tours",
+        "algorithms.simulator.samples",
+        "algorithms.simulator.scenario",
+        "algorithms.simulator.sighting",
+        "algorithms.simulator.wrong_pairs",
+    },
+    "algorithms/spectra/test_hough_spectra.py": {
+        "algorithms.spectra.candidates",
+    },
+    "algorithms/verdict/test_model_fit.py": {
+        "algorithms.verdict.calibration",
+    },
+    "algorithms/verdict/test_wall_evidence.py": {
+        "algorithms.verdict.slipping_patches",
+    },
+    "algorithms/verdict/test_whole_maps.py": {
+        "algorithms.verdict.ranking",
+    },
+    "app/cli/commands/test_merge.py": {
+        "app.system.data_paths",
+        "app.system.hardware",
+    },
+    "app/cli/commands/test_serve.py": {
+        "app.cli.open_browser",
+    },
+    "app/cli/commands/test_sweep.py": {
+        "app.cli.commands.compare",
+        "app.cli.progress_bar",
+        "app.evaluation.comparison_files",
+        "app.evaluation.csv_tables",
+        "app.evaluation.sweep_files",
+    },
+    "app/cli/test_main.py": {
+        "app.cli.argument_parser",
+        "app.cli.setting_flags",
+    },
+    "app/drawing/scene/test_search_symbols.py": {
+        "app.drawing.draw_items",
+    },
+    "app/drawing/scene/test_swarm_view.py": {
+        "app.drawing.browser_messages",
+    },
+    "app/drawing/scene/test_zoom_crop.py": {
+        "app.drawing.scene.grid_image",
+    },
+    "app/drawing/test_legend.py": {
+        "app.drawing.palette",
+    },
+    "app/evaluation/test_dataset_evaluation.py": {
+        "app.cli.commands.evaluate",
+    },
+    "app/evaluation/test_figures.py": {
+        "app.evaluation.comparison_figure",
+        "app.evaluation.figure_style",
+        "app.evaluation.reliability_figure",
+        "app.evaluation.sweep_figure",
+    },
+    "app/evaluation/test_parameter_sweep.py": {
+        "app.evaluation.checkpoint",
+        "app.system.version",
+    },
+    "app/jobs/test_executor.py": {
+        "app.cli.executor_flags",
+        "app.jobs.process_executor",
+    },
+    "app/jobs/test_forked_start.py": {
+        "app.jobs.warm_up",
+    },
+    "app/jobs/test_job_thread.py": {
+        "app.jobs.runner",
+        "app.model.merge_job",
+        "app.model.playback",
+    },
+    "app/jobs/test_worker_pool.py": {
+        "app.jobs.incremental_pickle",
+        "app.jobs.worker_process",
+        "app.system.memory",
+    },
+    "app/model/test_contradiction_text.py": {
+        "app.drawing.scene.map_comparison",
+    },
+    "app/model/test_settings.py": {
+        "algorithms.common.setting_bounds",
+    },
+    "app/model/test_status_text.py": {
+        "app.model.objective_label",
+        "app.model.run_state",
+    },
+    "app/page/lesson/figures/test_figure_registry.py": {
+        "app.drawing.svg.map_raster",
+        "app.drawing.svg.svg_canvas",
+    },
+    "app/page/panels/test_panels.py": {
+        "app.model.merge_inputs",
+        "app.report.result_rows",
+    },
+    "app/page/panels/test_threads.py": {
+        "app.web.tab_messages",
+    },
+    "app/page/research/test_research.py": {
+        "app.drawing.svg.thumbnail",
+        "app.evaluation.evaluation_archive",
+        "app.jobs.background_job",
+    },
+    "app/page/test_cancellable_task.py": {
+        "app.system.cancellation",
+    },
+    "app/page/test_undo_history.py": {
+        "app.web.session_store",
+    },
+    "app/report/replay/test_recorder.py": {
+        "app.cli.commands.replay",
+        "app.drawing.png",
+        "app.drawing.scene.map_view",
+        "app.drawing.scene.run_view",
+        "app.report.replay.chart_recorder",
+        "app.report.replay.html_page",
+        "app.report.replay.image_recorder",
+        "app.report.replay.make_replay",
+        "app.report.replay.metadata",
+    },
+    "app/report/test_html_report.py": {
+        "app.drawing.svg.map_plot",
+        "app.drawing.svg.verdict_bars",
+        "app.report.export",
+        "app.report.report_figures",
+        "app.report.ros_transform",
+    },
+    "app/web/test_attacks.py": {
+        "app.web.security.frame_limit",
+        "app.web.security.message_schema",
+        "app.web.viser_server",
+    },
+    "app/web/test_load.py": {
+        "app.jobs.fair_semaphore",
+        "app.jobs.preloaded",
+        "app.model.view_modes",
+        "app.web.cell_quota",
+        "app.web.download",
+    },
+}
+BY_NO_TEST = {
+    "app.cli.verdict_training": "an hour of work: make verdict",
+}
+# the parts of one tab have a file each where they stand alone; all together they are driven by whoever
+# presses whatever there is (support/play.py), and by a browser
+THE_PAGE = ("app/web/test_load.py", "browser/test_page.py")
+MOST_OF_THE_PAGE = 46
+
+
+@cache
+def imports_of(path: Path) -> frozenset[str]:
+    """Names of modules that a source may import, names within modules and names in quotes among them."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            found |= {f"{node.module}.{alias.name}" for alias in node.names} | {str(node.module)}
+        elif isinstance(node, ast.Constant) and node.value in modules():
+            found.add(node.value)
+    if path == modules()["app.cli.main"]:  # a command is loaded by the word that a person types
+        found |= {module for module in modules() if module.startswith("app.cli.commands.")}
+    return frozenset(found)
+
+
+@cache
+def modules() -> dict[str, Path]:
+    """The file of every module of the product, entry points left out."""
+    found = [path for package in ("algorithms", "app") for path in sorted((ROOT / package).rglob("*.py"))]
+    return {
+        ".".join(path.relative_to(ROOT).with_suffix("").parts): path
+        for path in found
+        if path.stem not in ("__init__", "__main__")
+    }
+
+
+@cache
+def without_their_own() -> frozenset[str]:
+    """Modules that have no test file of their path."""
+    return frozenset(
+        module
+        for module, path in modules().items()
+        if not (ROOT / "tests" / path.relative_to(ROOT).parent / f"test_{path.stem}.py").is_file()
+    )
+
+
+def reach(path: Path) -> set[str]:
+    """Modules of the product that a test imports, by way of others, too."""
+    helpers = {helper.stem: helper for helper in (ROOT / "tests" / "support").glob("*.py")}
+    seen: set[str] = set()
+    todo = [path, ROOT / "tests" / "conftest.py"]
+    while todo:
+        for name in imports_of(todo.pop()) - seen:
+            seen.add(name)
+            if name in modules() or name in helpers:
+                todo.append(modules().get(name) or helpers[name])
+    return seen & set(modules())
+
+
+def test_every_module_has_the_test_file_of_its_path_or_stands_in_a_list():
+    listed = {module for named in EXERCISED_BY.values() for module in named} | set(BY_NO_TEST)
+    without = {module for module in without_their_own() if not module.startswith("app.page.")}
+    assert without - listed == set(), "give each a test file of its path"
+    assert listed - without == set(), "take these from the list: they have a file of their own, or are gone"
+    assert sum(map(len, EXERCISED_BY.values())) + len(BY_NO_TEST) == len(listed), "once each"
+
+
+def test_of_the_parts_of_the_page_no_more_are_without_a_test_of_their_own():
+    without = {module for module in without_their_own() if module.startswith("app.page.")}
+    assert len(without) <= MOST_OF_THE_PAGE, sorted(without)
+    for name in THE_PAGE:
+        assert (ROOT / "tests" / name).is_file()
+
+
+@pytest.mark.parametrize("test", EXERCISED_BY)
+def test_a_test_that_is_named_for_a_module_comes_to_it(test):
+    path = ROOT / "tests" / test
+    assert path.is_file()
+    assert EXERCISED_BY[test] - reach(path) == set()
