@@ -13,7 +13,7 @@ from strangers import PATIENCE, Visitor
 from algorithms.common.pose import Pose2
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from algorithms.verdict.decision import Outcome
-from app.page.editing.transform_panel import HandWishes, TransformPanel, weighed_html
+from app.page.editing.transform_panel import TransformPanel, weighed_html
 
 DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 BEGIN, REFINE, SNAP = "Move map 2 by hand", "Refine from here", "Snap to proven optimum"
@@ -27,15 +27,10 @@ class Hand:
     def __init__(self, gui) -> None:
         self.asked: Queue[tuple[object, ...]] = Queue()
         self.controls = Controls(gui)
-        self.panel = TransformPanel(
-            self.controls,
-            HandWishes(
-                toggle=lambda: self.asked.put(("toggle",)),
-                typed=lambda name, value: self.asked.put((name, value)),
-                refine=lambda: self.asked.put(("refine",)),
-                snap=lambda: self.asked.put(("snap",)),
-                take=lambda: self.asked.put(("take",)),
-            ),
+        self.panel = TransformPanel(self.controls)
+        ask = lambda name: lambda *value: self.asked.put((name, *value))  # noqa: E731
+        self.panel.connect(
+            ask("toggle"), lambda *typed: self.asked.put(typed), ask("refine"), ask("snap"), ask("take")
         )
 
     def shown(self) -> set[str]:
