@@ -30,6 +30,9 @@ EXERCISED_BY = {
     "algorithms/maps/test_map_fusion.py": {
         "algorithms.maps.robots",
     },
+    "algorithms/methods/test_merge_result.py": {
+        "algorithms.methods.shared_stages",
+    },
     "algorithms/methods/test_proven.py": {
         "algorithms.methods.spectra_answer",
         "algorithms.methods.steps",
@@ -259,9 +262,7 @@ EXERCISED_BY = {
         "app.web.download",
     },
 }
-BY_NO_TEST = {
-    "algorithms.simulator.large_pair": "only the benchmarks are so large",
-}
+BY_NO_TEST = {}
 
 
 @cache

@@ -9,10 +9,16 @@ class MapMergeError(Exception):
     """A mistake the user can mend. The message names the place, the finding and the remedy.
 
     It may hold what a stranger wrote: hidden characters stand there as their numbers.
+
+    made_of : what it is made of again in another process
     """
 
-    def __init__(self, message: str) -> None:
+    def __init__(self, message: str, *made_of: str) -> None:
         super().__init__(show_hidden(message))
+        self._made_of = made_of or self.args
+
+    def __reduce__(self) -> tuple[type[MapMergeError], tuple[str, ...]]:
+        return type(self), self._made_of
 
 
 class InputFileError(MapMergeError):
@@ -25,11 +31,7 @@ class InputFileError(MapMergeError):
 
     def __init__(self, source: object, found: str, remedy: str) -> None:
         self.source, self.found, self.remedy = map(show_hidden, (str(source), found, remedy))
-        super().__init__(f"{source}: {found}; {remedy}")
-
-    def __reduce__(self) -> tuple[type[InputFileError], tuple[str, str, str]]:
-        """What travels from another process: an error is made of its message alone unless told so."""
-        return type(self), (self.source, self.found, self.remedy)
+        super().__init__(f"{source}: {found}; {remedy}", self.source, self.found, self.remedy)
 
 
 def unreadable(source: object, error: Exception, remedy: str) -> InputFileError:
@@ -56,11 +58,7 @@ class NoAnswerError(MapMergeError):
 
     def __init__(self, why: str) -> None:
         self.why = why
-        super().__init__(f"Refused: {why}.")
-
-    def __reduce__(self) -> tuple[type[NoAnswerError], tuple[str]]:
-        """As for InputFileError."""
-        return type(self), (self.why,)
+        super().__init__(f"Refused: {why}.", why)
 
 
 class TooLargeError(MapMergeError):
@@ -77,8 +75,4 @@ class OutputError(MapMergeError):
 
     def __init__(self, target: object, cause: str, remedy: str) -> None:
         self.target, self.cause, self.remedy = str(target), cause, remedy
-        super().__init__(f"{target}: {cause}; {remedy}")
-
-    def __reduce__(self) -> tuple[type[OutputError], tuple[str, str, str]]:
-        """As for InputFileError."""
-        return type(self), (self.target, self.cause, self.remedy)
+        super().__init__(f"{target}: {cause}; {remedy}", self.target, cause, remedy)

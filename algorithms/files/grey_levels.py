@@ -101,7 +101,7 @@ def _third_grey(shading: Shading, counts: Counts, free: BoolArray) -> str:
     spikes = np.flatnonzero(free & (counts >= SPIKE * counts.sum()))
     if shading.mode == "raw" or len(spikes) < 2 or counts[spikes].sum() < FEW_GREYS * counts[free].sum():
         return ""
-    occupied = np.arange(256) / 255 if shading.negate else 1 - np.arange(256) / 255
+    occupied = _occupied(np.arange(256), shading.negate)
     floors = sorted(spikes.tolist(), key=lambda grey: float(occupied[grey]))
     grey = floors[-1]
     if occupied[grey] - occupied[floors[0]] < NEARLY_ONE:

@@ -21,22 +21,6 @@ from algorithms.files.image_decoder import read_pixels
 from algorithms.files.thresholds import MODES, GreyArray, Shading, cells_of, greys_of
 from algorithms.maps.grid_map import COARSEST, FINEST, CellArray, GridMap
 
-__all__ = [
-    "GreyImage",
-    "MapMeta",
-    "Shading",
-    "grey_image",
-    "image_map_from_bytes",
-    "map_from_bytes",
-    "map_to_bytes",
-    "meta_to_bytes",
-    "parse_meta",
-    "read_bytes",
-    "read_image",
-    "read_map",
-    "write_map",
-]
-
 YAML_SUFFIXES = (".yaml", ".yml")
 AT_ZERO = Pose2()
 USUAL = Shading()
@@ -76,8 +60,8 @@ class GreyImage:
         counts = count_greys(self.grey, self.alpha)
         shading, meant = as_meant(shading, counts)
         cells = cells_of(self.grey, self.alpha, shading)
-        told = remarks(shading, counts, cells)
-        return cells, (meant, *told) if meant else told
+        odd = remarks(shading, counts, cells)
+        return cells, (meant, *odd) if meant else odd
 
 
 def read_map(path: Path | str, unknown_grey: int | None = None) -> GridMap:
@@ -124,18 +108,6 @@ def map_from_bytes(yaml_name: str, yaml_bytes: bytes, image_name: str, image: by
     """
     meta = parse_meta(yaml_name, yaml_bytes)
     return _to_map(image_name, _opened(image), meta, PurePath(yaml_name).stem)
-
-
-def image_map_from_bytes(
-    name: str,
-    data: bytes,
-    resolution: float,
-    origin: Pose2 = AT_ZERO,
-    shading: Shading = USUAL,
-) -> GridMap:
-    """``read_image`` for an upload."""
-    meta = MapMeta(name, resolution, origin, shading)
-    return _to_map(name, io.BytesIO(data), meta, PurePath(name).stem)
 
 
 def grey_image(name: str, data: bytes | BinaryIO) -> GreyImage:
@@ -257,8 +229,8 @@ def _read_image(path: Path, meta: MapMeta, name: str) -> GridMap:
 
 
 def _to_map(source: str, stream: BinaryIO, meta: MapMeta, name: str) -> GridMap:
-    cells, told = GreyImage(*read_pixels(source, stream)).read(meta.shading)
-    return GridMap(cells, meta.resolution, meta.origin, show_hidden(name) or "map", told)
+    cells, odd = GreyImage(*read_pixels(source, stream)).read(meta.shading)
+    return GridMap(cells, meta.resolution, meta.origin, show_hidden(name) or "map", odd)
 
 
 def _opened(data: bytes | BinaryIO) -> BinaryIO:

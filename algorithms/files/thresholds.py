@@ -36,26 +36,19 @@ class Shading:
     unknown_grey: int | None = None  # a grey that stands for unknown, whatever the thresholds say
 
     def __post_init__(self) -> None:
-        fault = self.fault()
-        if fault:
-            raise SettingError("; ".join(fault))
-
-    def fault(self) -> tuple[str, str] | None:
-        """(finding, remedy) where the fields do not fit together, else None."""
+        occupied, free = self.occupied_thresh, self.free_thresh
         if self.mode not in MODES:
-            return f"mode is {self.mode!r}", f"it must be one of {', '.join(MODES)}"
+            raise SettingError(f"mode is {self.mode!r}; it must be one of {', '.join(MODES)}")
         if self.mode == "raw":
-            return None
-        for name in ("occupied_thresh", "free_thresh"):
-            value = getattr(self, name)
+            return
+        for name, value in (("occupied_thresh", occupied), ("free_thresh", free)):
             if not 0 <= value <= 1:
-                return f"{name} is {value:g}", "it must lie in [0, 1]"
-        if not self.free_thresh < self.occupied_thresh:
-            return (
-                f"free_thresh is {self.free_thresh:g} and occupied_thresh {self.occupied_thresh:g}",
-                "free_thresh must be the smaller one",
+                raise SettingError(f"{name} is {value:g}; it must lie in [0, 1]")
+        if not free < occupied:
+            raise SettingError(
+                f"free_thresh is {free:g} and occupied_thresh {occupied:g}; "
+                "free_thresh must be the smaller one"
             )
-        return None
 
     def table(self) -> CellArray:
         """(256,) int8: the cell value of each grey. In float32, as Nav2 computes it: the last bit

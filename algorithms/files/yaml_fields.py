@@ -86,7 +86,6 @@ class Fields:
     prefix: str = ""
 
     def error(self, key: str, found: str, remedy: str) -> InputFileError:
-        """The error about one key."""
         return InputFileError(self.source, f"{self.prefix}{key} {found}", remedy)
 
     def get(self, key: str, remedy: str) -> Any:
@@ -103,32 +102,25 @@ class Fields:
         return value
 
     def number(self, key: str, remedy: str) -> float:
-        """A finite number."""
         value = self.get(key, remedy)
         number = as_number(value)
         if number is None:
             raise self.error(key, f"is {shown(value)}, not a finite number", remedy)
         return number
 
-    def numbers(self, key: str, lengths: tuple[int, ...], remedy: str) -> list[float]:
-        """A list of finite numbers, of one of the given lengths."""
+    def pose(self, key: str, lengths: tuple[int, ...], remedy: str) -> list[float]:
+        """[x, y] or [x, y, yaw] within FARTHEST and MOST_TURN, as lengths allow; metres, metres, radians."""
         value = self.get(key, remedy)
         numbers = [as_number(item) for item in value] if isinstance(value, list) else []
-        finite = [number for number in numbers if number is not None]
-        if len(finite) != len(numbers) or len(finite) not in lengths:
-            wanted = " or ".join(str(length) for length in lengths)
-            raise self.error(key, f"is {shown(value)}, not {wanted} finite numbers", remedy)
-        return finite
-
-    def pose(self, key: str, lengths: tuple[int, ...], remedy: str) -> list[float]:
-        """[x, y] or [x, y, yaw] within FARTHEST and MOST_TURN; metres, metres, radians."""
-        pose = self.numbers(key, lengths, remedy)
-        if any(abs(metres) > FARTHEST for metres in pose[:2]):
-            found = f"is {shown(self.values[key])}, which is more than {FARTHEST / 1000:,.0f} km away"
-            raise self.error(key, found, remedy)
-        if any(abs(yaw) > MOST_TURN for yaw in pose[2:]):
-            found = f"is {shown(self.values[key])}, which turns by more than {MOST_TURN:,.0f} rad"
-            raise self.error(key, found, remedy)
+        pose, fault = [number for number in numbers if number is not None], ""
+        if len(pose) != len(numbers) or len(pose) not in lengths:
+            fault = f"not {' or '.join(map(str, lengths))} finite numbers"
+        elif any(abs(metres) > FARTHEST for metres in pose[:2]):
+            fault = f"which is more than {FARTHEST / 1000:,.0f} km away"
+        elif any(abs(yaw) > MOST_TURN for yaw in pose[2:]):
+            fault = f"which turns by more than {MOST_TURN:,.0f} rad"
+        if fault:
+            raise self.error(key, f"is {shown(value)}, {fault}", remedy)
         return pose
 
     def flag(self, key: str, remedy: str) -> bool:
@@ -143,7 +135,6 @@ class Fields:
         raise self.error(key, f"is {shown(value)}", remedy)
 
     def section(self, key: str, remedy: str) -> Fields:
-        """A mapping inside this one."""
         value = self.get(key, remedy)
         if not isinstance(value, dict):
             raise self.error(key, f"is {shown(value)}, not a mapping", remedy)
@@ -282,7 +273,6 @@ def quoted(text: str) -> str:
 
 
 def _cause(error: Exception) -> str:
-    """One line of what the parser found."""
     if isinstance(error, RecursionError):
         return "it is nested too deeply"
     if isinstance(error, yaml.MarkedYAMLError) and error.problem:

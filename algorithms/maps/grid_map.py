@@ -95,12 +95,10 @@ class GridMap:
 
     @property
     def height(self) -> int:
-        """Number of rows."""
         return int(self.cells.shape[0])
 
     @property
     def width(self) -> int:
-        """Number of columns."""
         return int(self.cells.shape[1])
 
     @cached_property

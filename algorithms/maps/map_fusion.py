@@ -1,7 +1,8 @@
-"""Two maps and a transform become one map: what agrees, what contradicts, and the merged grid."""
+"""Maps and their transforms become one map: what agrees, what contradicts, and the merged grid."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from math import ceil, cos, floor, sin
@@ -35,10 +36,10 @@ class ConflictRule(str, Enum):
 
 @dataclass(frozen=True, eq=False)
 class Fusion:
-    """The merged map and what the two maps say of each other where both know.
+    """The merged map and what the maps say of each other where more than one knows.
 
-    merged      : bounding box of both maps in the ref frame, aligned with the ref grid
-    ref_cells, mov_cells : (H, W) int8, each map alone on the merged grid; −1 where it knows nothing
+    merged      : bounding box of all maps in the first one's frame, aligned with its grid
+    layers      : (H, W) int8 each, every map alone on the merged grid; −1 where it knows nothing
     agreed      : cells where both are free or both are walls
     agreed_walls : cells where both are walls
     conflicting : cells where one is a wall and the other is free
@@ -46,12 +47,21 @@ class Fusion:
     """
 
     merged: GridMap
-    ref_cells: CellArray
-    mov_cells: CellArray
+    layers: tuple[CellArray, ...]
     agreed: int
     agreed_walls: int
     conflicting: int
     cleared: int = 0
+
+    @property
+    def ref_cells(self) -> CellArray:
+        """(H, W) int8, map 1 alone."""
+        return self.layers[0]
+
+    @property
+    def mov_cells(self) -> CellArray:
+        """(H, W) int8, map 2 alone."""
+        return self.layers[1]
 
     @property
     def overlap(self) -> int:
@@ -65,61 +75,60 @@ class Fusion:
 
 
 def fuse(
-    ref: GridMap,
-    mov: GridMap,
-    T_ref_mov: Pose2,
-    conflict: ConflictRule = ConflictRule.OCCUPIED_WINS,
+    maps: Sequence[GridMap],
+    transforms: Sequence[Pose2],
+    rule: ConflictRule = ConflictRule.OCCUPIED_WINS,
     robots: Robots = NOWHERE,
 ) -> Fusion:
-    """Merge two maps under a transform.
+    """Merge maps under their transforms to the first one's frame; the first transform is the identity.
 
-    The merged grid takes the finer of the two resolutions, so nothing is lost by coarsening; at
-    equal resolutions its cells are the ref map's own, not resampled. A merged cell is free only
-    where a map knows it to be free. No wall cell of the mov map is lost in the turn: each also marks
+    The merged grid takes the finest of the resolutions, so nothing is lost by coarsening; at
+    equal resolutions its cells are the first map's own, not resampled. A merged cell is free only
+    where a map knows it to be free. No wall cell of a further map is lost in the turn: each also marks
     the merged cell that its centre falls on. Where a robot stood, the other's map may show it as a ring of
     wall: what its own map does not show, too, is floor.
 
-    robots : where they stood
-    raises TooLargeError where the bounding box of both is over the bound of one map
+    robots : where those of the first two maps stood
+    raises TooLargeError where the bounding box of all is over the bound of one map
     """
-    cell = min(ref.resolution, mov.resolution)
-    if np.isclose(ref.resolution, mov.resolution, rtol=1e-6):
+    ref = maps[0]
+    cell = min(grid.resolution for grid in maps)
+    if np.isclose(ref.resolution, cell, rtol=1e-6):
         cell = ref.resolution
-    T_grid_mov = ref.origin.inverse() @ T_ref_mov  # the ref grid's own axes, metres
-    ref_corners = np.array([[0.0, 0.0], [ref.width, ref.height]]) * ref.resolution
-    corners = np.concatenate([ref_corners, T_grid_mov.apply(mov.corners())]) / cell
+    to_grid = ref.origin.inverse()  # the first grid's own axes, metres
+    corners = [np.array([[0.0, 0.0], [ref.width, ref.height]]) * ref.resolution]
+    corners += [(to_grid @ T).apply(grid.corners()) for grid, T in zip(maps[1:], transforms[1:], strict=True)]
+    edges = np.concatenate(corners) / cell
     # a corner that rounding put a hair outside must not add a row
-    low_col, low_row = (floor(edge + 1e-6) for edge in corners.min(axis=0).tolist())
-    high_col, high_row = (ceil(edge - 1e-6) for edge in corners.max(axis=0).tolist())
+    low_col, low_row = (floor(edge + 1e-6) for edge in edges.min(axis=0).tolist())
+    high_col, high_row = (ceil(edge - 1e-6) for edge in edges.max(axis=0).tolist())
     shape = (high_row - low_row, high_col - low_col)
     check_size(shape[1], shape[0], "the merged map")
     T_grid_merged = Pose2(low_col * cell, low_row * cell)
-    ref_cells = np.full(shape, UNKNOWN, dtype=np.int8)
+    layers = tuple(np.full(shape, UNKNOWN, dtype=np.int8) for _ in maps)
     if cell == ref.resolution:
-        ref_cells[-low_row : ref.height - low_row, -low_col : ref.width - low_col] = ref.cells
+        layers[0][-low_row : ref.height - low_row, -low_col : ref.width - low_col] = ref.cells
     else:
-        _look_up(ref, T_grid_merged, cell, ref_cells)
-    mov_cells = np.full(shape, UNKNOWN, dtype=np.int8)
-    T_movgrid_merged = mov.origin.inverse() @ T_ref_mov.inverse() @ ref.origin @ T_grid_merged
-    _look_up(mov, T_movgrid_merged, cell, mov_cells)
-    walls = (T_grid_merged.inverse() @ T_grid_mov).apply(mov.points) / cell
-    cols, rows = np.floor(walls).astype(np.intp).T
-    inside = (rows >= 0) & (rows < shape[0]) & (cols >= 0) & (cols < shape[1])
-    mov_cells[rows[inside], cols[inside]] = OCCUPIED
+        _look_up(ref, T_grid_merged, cell, layers[0])
+    for grid, T, layer in zip(maps[1:], transforms[1:], layers[1:], strict=True):
+        _look_up(grid, grid.origin.inverse() @ T.inverse() @ ref.origin @ T_grid_merged, cell, layer)
+        walls = (T_grid_merged.inverse() @ (to_grid @ T)).apply(grid.points) / cell
+        cols, rows = np.floor(walls).astype(np.intp).T
+        inside = (rows >= 0) & (rows < shape[0]) & (cols >= 0) & (cols < shape[1])
+        layer[rows[inside], cols[inside]] = OCCUPIED
     corner = ref.origin @ T_grid_merged
-    mov_places = T_ref_mov.apply(robots.in_mov)
-    cleared = sum(
-        _clear(other, own, corner.inverse().apply(places) / cell, robots.size / cell, SAME_PLACE / cell)
-        for other, own, places in ((mov_cells, ref_cells, robots.in_ref), (ref_cells, mov_cells, mov_places))
-    )
-    merged = np.empty(shape, dtype=np.int8)
-    agreed_free, agreed_walls, conflicting = _merge(
-        ref_cells, mov_cells, merged, [*ConflictRule].index(conflict)
-    )
+    cleared = 0
+    for own, T, places in zip(layers, transforms, (robots.in_ref, robots.in_mov), strict=False):
+        at = corner.inverse().apply(T.apply(places)) / cell
+        for other in layers:
+            if other is not own:
+                cleared += _clear(other, own, at, robots.size / cell, SAME_PLACE / cell)
+    merged = layers[0].copy()
+    counts = [_merge(merged, layer, merged, [*ConflictRule].index(rule)) for layer in layers[1:]]
+    agreed_free, agreed_walls, conflicting = (sum(count) for count in zip(*counts, strict=True))
     return Fusion(
-        merged=GridMap(merged, cell, corner, "merged"),
-        ref_cells=ref_cells,
-        mov_cells=mov_cells,
+        GridMap(merged, cell, corner, "merged"),
+        layers,
         agreed=agreed_free + agreed_walls,
         agreed_walls=agreed_walls,
         conflicting=conflicting,
@@ -178,7 +187,7 @@ def _look_up_rows(
 
 @kernel
 def _merge(ref: CellArray, mov: CellArray, out: CellArray, rule: int) -> tuple[int, int, int]:
-    """Fill ``out``; count cells free in both, walls in both, and contradictions."""
+    """Fill ``out``, which may be ``ref``; count cells free in both, walls in both, and contradictions."""
     agreed_free = 0
     agreed_walls = 0
     conflicting = 0

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from algorithms.common.parallel_kernels import kernel
 from algorithms.maps.grid_map import BoolArray, Float32Array, where
 
-KindArray = NDArray[np.uint8]
+IntArray = NDArray[np.intp]
 
 
 def surface(walls: BoolArray, free: BoolArray) -> BoolArray:
@@ -38,49 +38,27 @@ def distances(reach: int) -> Float32Array:
     return np.sqrt((along[:, None] ** 2 + along**2).astype(np.float32))
 
 
-def mark_near_walls(walls: BoolArray, disc: KindArray, ground: KindArray) -> None:
-    """Mark what is around the walls.
-
-    walls  : (H, W) bool
-    disc   : (2 r + 1, 2 r + 1) what a wall in its middle makes of the cells around it, as bits; what is
-             nearer to the wall must hold all bits of what is farther
-    ground : (H, W) takes those bits, beside what it holds
-    """
-    reach = len(disc) // 2
-    down, right = np.nonzero(disc)
-    rows, cols = where(walls)
-    _mark_near_walls(
-        walls, rows, cols, down - reach, right - reach, disc[down, right], disc[reach, reach], ground
-    )
-
-
 def is_near_wall(walls: BoolArray, disc: BoolArray) -> BoolArray:
-    """(H, W) whether there is a wall within the disc around a cell."""
-    ground = np.zeros(walls.shape, dtype=np.uint8)
-    mark_near_walls(walls, disc.astype(np.uint8), ground)
-    return ground.view(np.bool_)
+    """(H, W) whether there is a wall within the disc, (2 r + 1, 2 r + 1) with its middle, around a cell."""
+    reach = len(disc) // 2
+    near: BoolArray = walls.copy()
+    down, right = np.nonzero(disc)
+    _mark_near_walls(walls, *where(walls), down - reach, right - reach, near)
+    return near
 
 
 @kernel
 def _mark_near_walls(
-    walls: BoolArray,
-    rows: NDArray[np.intp],
-    cols: NDArray[np.intp],
-    down: NDArray[np.intp],
-    right: NDArray[np.intp],
-    kind: KindArray,
-    middle: int,
-    ground: KindArray,
+    walls: BoolArray, rows: IntArray, cols: IntArray, down: IntArray, right: IntArray, near: BoolArray
 ) -> None:
     height, width = walls.shape
     for n in range(len(rows)):
         row, col = rows[n], cols[n]
-        ground[row, col] |= middle
         if 0 < row < height - 1 and 0 < col < width - 1:
             above, below = walls[row + 1, col], walls[row - 1, col]
             if above and below and walls[row, col - 1] and walls[row, col + 1]:
                 continue  # whatever is near this wall is nearer to one of these
-        for k in range(len(kind)):
+        for k in range(len(down)):
             i, j = row + down[k], col + right[k]
             if 0 <= i < height and 0 <= j < width:
-                ground[i, j] |= kind[k]
+                near[i, j] = True

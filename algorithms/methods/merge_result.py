@@ -1,15 +1,15 @@
-"""What a merge ends with: the answer, all that is needed to report it, and the function that judges it."""
+"""What a merge ends with: the answer, and all that is needed to report it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.map_fusion import Fusion
 from algorithms.observations.observation import Encounter
 from algorithms.optimisation.branch_and_bound import ProofState
-from algorithms.verdict.decision import Verdict, VerdictConfig, judge
+from algorithms.verdict.decision import Verdict
 from algorithms.verdict.ranking import Weighed
 
 
@@ -60,7 +60,6 @@ class MergeResult:
         return self.encounters[0]
 
     def with_hint(self, hint: str) -> MergeResult:
-        """The same, a hint in its verdict."""
         return replace(self, verdict=replace(self.verdict, hint=hint))
 
     @property
@@ -69,44 +68,3 @@ class MergeResult:
         which is the first of the answers; the whole maps may have moved it, or named another one.
         """
         return self.proof is not None and self.proof.proven
-
-
-def finish_merge(
-    named: Weighed,
-    others: Sequence[Weighed] | None,
-    fusion: Fusion,
-    encounters: tuple[Encounter, ...],
-    covariance: FloatArray,
-    rules: VerdictConfig,
-    *,
-    value: float | None,
-    answers: tuple[Answer, ...],
-    method: str,
-    seed: int,
-    doubts: Sequence[str] = (),
-    proof: ProofState | None = None,
-    search_found_it: bool | None = None,
-    timings_s: Mapping[str, float] | None = None,
-) -> MergeResult:
-    """Judge a transform.
-
-    named, others, doubts : as for ``judge``
-    fusion     : of both maps under it
-    covariance : (3, 3) of x, y, theta; m and rad
-    the rest   : as in MergeResult
-    """
-    return MergeResult(
-        T_ref_mov=named.T_ref_mov,
-        covariance=covariance,
-        value=value,
-        verdict=judge(fusion, named, others, encounters[0].x_mov, rules, doubts),
-        fusion=fusion,
-        encounters=encounters,
-        answers=answers,
-        method=method,
-        seed=seed,
-        weighed=(named, *(others or ())),
-        proof=proof,
-        search_found_it=search_found_it,
-        timings_s={} if timings_s is None else timings_s,
-    )

@@ -6,7 +6,7 @@ where the verdict on the changed maps accepts them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import ceil, sqrt
 from typing import Any
@@ -18,10 +18,12 @@ from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap, remarks_on
 from algorithms.methods import spectra_method
 from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.shared_stages import run_search
 from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.steps import CauseDetail, TriedDetail
 from algorithms.observations import observation
-from algorithms.observations.observation import Observation, check_standing
+from algorithms.observations.observation import Observation
+from algorithms.observations.pair_problem import PairProblem
 from algorithms.optimisation.particle_swarm import SwarmConfig
 from algorithms.verdict.decision import Verdict
 from algorithms.verdict.wall_map import pooled
@@ -46,10 +48,6 @@ class Cause:
     clause: str
     cure: str
     change: Change
-
-
-def _mirrored(grid: GridMap, o: Observation) -> tuple[GridMap, Observation]:
-    return grid.mirrored(), observation.mirrored(o)
 
 
 def _flipped(axis: int) -> Change:
@@ -82,7 +80,7 @@ def _causes(mov: GridMap) -> list[list[Cause]]:
         Cause(
             "mirrored, map 2 agrees",
             "is its lidar mounted upside down, or was its image flipped? Put that right, and merge again",
-            _mirrored,
+            lambda grid, o: (grid.mirrored(), observation.mirrored(o)),
         ),
         Cause("with its image flipped left to right, map 2 agrees", over, _flipped(1)),
         Cause("with its image flipped top to bottom, map 2 agrees", over, _flipped(0)),
@@ -98,26 +96,21 @@ def _causes(mov: GridMap) -> list[list[Cause]]:
     return causes
 
 
-def find_cause(
-    ref: GridMap,
-    mov: GridMap,
-    observations: tuple[Observation, ...],
-    config: PipelineConfig,
-) -> Iterator[TriedDetail | CauseDetail]:
+def find_cause(problem: PairProblem, config: PipelineConfig) -> Iterator[TriedDetail | CauseDetail]:
     """Yield what is being tried, and at the end the cause, if one was found.
 
     config : of the default method
     """
-    told = " ".join(remarks_on((ref, mov)))
-    causes = _causes(mov)
-    ref, mov = _coarse(ref), _coarse(mov)
+    remarks = " ".join(remarks_on((problem.ref, problem.mov)))
+    causes = _causes(problem.mov)
+    coarse = replace(problem, ref=_coarse(problem.ref), mov=_coarse(problem.mov))
     total, number = sum(map(len, causes)), 0
     for alike in causes:
         agreeing: list[tuple[Verdict, Cause]] = []
         for cause in alike:
             yield TriedDetail(cause.clause, number, total)
             number += 1
-            found = _try(ref, mov, observations, cause, config)
+            found = _try(coarse, cause, config)
             if found is not None and found.verdict.accepted:
                 agreeing.append((found.verdict, cause))
         if agreeing:
@@ -126,7 +119,7 @@ def find_cause(
             share, wall = 1 - verdict.contradiction, verdict.shared_wall
             yield CauseDetail(f"{clause} on {share:.0%} of {wall:.0f} m of wall: {cause.cure}.")
             return
-    yield CauseDetail(f"How the maps were read may be the cause. {told}" if told else "")
+    yield CauseDetail(f"How the maps were read may be the cause. {remarks}" if remarks else "")
 
 
 def _coarse(grid: GridMap) -> GridMap:
@@ -135,20 +128,13 @@ def _coarse(grid: GridMap) -> GridMap:
     return grid if factor < 2 else pooled(grid, factor)
 
 
-def _try(
-    ref: GridMap,
-    mov: GridMap,
-    observations: Sequence[Observation],
-    cause: Cause,
-    config: PipelineConfig,
-) -> MergeResult | None:
+def _try(problem: PairProblem, cause: Cause, config: PipelineConfig) -> MergeResult | None:
     """What the default method makes of the maps after a change; None where that cannot be."""
     quick: Any = replace(config, swarm=NO_SWARM, proof=replace(config.proof, patience=PATIENCE))
     try:
-        changed = [cause.change(mov, o) for o in observations]
-        grid, seen = changed[0][0], tuple(o for _, o in changed)
-        check_standing(seen, ref, grid)
-        *_, last = spectra_method.run(ref, grid, seen, quick)
+        changed = [cause.change(problem.mov, o) for o in problem.observations]
+        right = PairProblem(problem.ref, changed[0][0], tuple(o for _, o in changed))
+        *_, last = run_search(spectra_method.search, right, quick)
     except MapMergeError:  # a robot off its map, or cells too fine: this was not the cause
         return None
     assert isinstance(last.detail, MergeResult)

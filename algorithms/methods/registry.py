@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Literal
 
 from algorithms.common.errors import SettingError
 from algorithms.maps.grid_map import GridMap
-from algorithms.methods import refusal_causes
-from algorithms.methods import spectra_method as pipeline
-from algorithms.methods.baselines import bilateral
-from algorithms.methods.baselines import carpin_spectra as smm_only
-from algorithms.methods.baselines import feature_matching as features
-from algorithms.methods.baselines import mse_registration as mse
-from algorithms.methods.baselines import phase_correlation as phase
+from algorithms.methods import refusal_causes, spectra_method
+from algorithms.methods.baselines import (
+    bilateral,
+    carpin_spectra,
+    feature_matching,
+    mse_registration,
+    phase_correlation,
+)
 from algorithms.methods.baselines.distance_image import PictureConfig
 from algorithms.methods.baselines.feature_detectors import (
     DetectorConfig,
@@ -27,17 +28,17 @@ from algorithms.methods.baselines.feature_detectors import (
 )
 from algorithms.methods.baselines.feature_matching import FeatureConfig
 from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.shared_stages import Search, run_search
 from algorithms.methods.spectra_config import PipelineConfig, RefineConfig
 from algorithms.methods.stage_runner import StageCache
 from algorithms.methods.steps import CauseDetail, Step
-from algorithms.observations.observation import Observation, as_observations, check_standing
+from algorithms.observations.observation import Observation
+from algorithms.observations.pair_problem import PairProblem
 from algorithms.observations.search_window import WindowConfig
 from algorithms.optimisation.branch_and_bound import ProofConfig
 from algorithms.spectra.augmented_map import AugmentConfig
 from algorithms.spectra.candidates import CandidateConfig
 from algorithms.verdict.ranking import WINDOW_EDGE
-
-Run = Callable[..., Iterator[Step]]
 
 Family = Literal["ours", "paper", "rivals"]
 """Ours; the paper's own, and its parts; what the paper compares with, and what people would try today."""
@@ -45,15 +46,16 @@ Family = Literal["ours", "paper", "rivals"]
 
 @dataclass(frozen=True)
 class Method:
-    """A way to merge: ``run(ref, mov, observations, config, seed, memo, method)`` yields its steps.
+    """A way to merge.
 
+    search   : yields its own steps, and returns what it has found; ``run_search`` does the rest
     title    : what a person reads in a menu
     defaults : its frozen config; panel and flags are made from it
     family   : whose it is; methods of one family stand together in a menu
     uses_observation : whether the sighting helps it to its transform; the verdict weighs it in any case
     """
 
-    run: Run
+    search: Search
     title: str
     defaults: Any
     family: Family = "ours"
@@ -65,12 +67,12 @@ DEFAULT_METHOD = "spectra-proven"
 
 def _features(title: str, detector: DetectorConfig, reach: float) -> Method:
     config = FeatureConfig(picture=PictureConfig(reach=reach), detector=detector)
-    return Method(features.run, title, config, "rivals", False)
+    return Method(feature_matching.search, title, config, "rivals", False)
 
 
 METHODS: dict[str, Method] = {
     "spectra-proven": Method(
-        pipeline.run,
+        spectra_method.search,
         "Spectra, swarm, proven optimum",
         PipelineConfig(
             augment=AugmentConfig(spread=4.0),
@@ -80,14 +82,14 @@ METHODS: dict[str, Method] = {
             whole_maps=True,
         ),
     ),
-    "spectra-swarm": Method(pipeline.run, "Spectra, all candidates, swarm", PipelineConfig()),
+    "spectra-swarm": Method(spectra_method.search, "Spectra, all candidates, swarm", PipelineConfig()),
     "spectra-montecarlo": Method(
-        pipeline.run,
+        spectra_method.search,
         "Spectra, all candidates, Monte-Carlo",
         PipelineConfig(refine=RefineConfig(optimiser="mco")),
     ),
     "paper-argmax": Method(
-        pipeline.run,
+        spectra_method.search,
         "The paper's bare argmax",
         PipelineConfig(
             candidates=CandidateConfig(peaks=1, twins=False),
@@ -97,21 +99,29 @@ METHODS: dict[str, Method] = {
         "paper",
     ),
     "bilateral": Method(
-        bilateral.run, "Bilateral, eqs. (2), (3) alone", bilateral.BilateralConfig(), "paper"
+        bilateral.search, "Bilateral, eqs. (2), (3) alone", bilateral.BilateralConfig(), "paper"
     ),
     "smm-window": Method(
-        pipeline.run,
+        spectra_method.search,
         "Spectra and window, no swarm",
         PipelineConfig(refine=RefineConfig(optimiser="none")),
         "paper",
     ),
-    "smm-only": Method(smm_only.run, "Spectra alone (Carpin)", smm_only.CarpinConfig(), "rivals", False),
-    "mse": Method(mse.run, "Least squared error (MSE)", mse.MseConfig(), "rivals", False),
+    "smm-only": Method(
+        carpin_spectra.search, "Spectra alone (Carpin)", carpin_spectra.CarpinConfig(), "rivals", False
+    ),
+    "mse": Method(
+        mse_registration.search, "Least squared error (MSE)", mse_registration.MseConfig(), "rivals", False
+    ),
     "harris": _features("Harris corners", HarrisConfig(), reach=1.0),
     "shi-tomasi": _features("Shi–Tomasi corners", ShiTomasiConfig(), reach=1.0),
     "surf": _features("SURF features", SurfConfig(), reach=0.4),
     "phase-correlation": Method(
-        phase.run, "Phase correlation", phase.PhaseCorrelationConfig(), "rivals", False
+        phase_correlation.search,
+        "Phase correlation",
+        phase_correlation.PhaseCorrelationConfig(),
+        "rivals",
+        False,
     ),
     "sift": _features("SIFT features", SiftConfig(), reach=0.4),
     "orb": _features("ORB features", OrbConfig(), reach=1.0),
@@ -141,10 +151,8 @@ def run(
     """
     if name not in METHODS:
         raise SettingError(f"there is no method {name!r}; known are {', '.join(METHODS)}")
-    seen = as_observations(observations)
-    check_standing(seen, ref, mov)
-    method = METHODS[name]
-    return method.run(ref, mov, seen, method.defaults if config is None else config, seed, memo, name)
+    problem, method = PairProblem.of(ref, mov, observations), METHODS[name]
+    return run_search(method.search, problem, method.defaults if config is None else config, seed, memo, name)
 
 
 def run_explained(
@@ -180,7 +188,7 @@ def find_cause(
     """
     began = perf_counter()
     default = METHODS[DEFAULT_METHOD].defaults
-    for detail in refusal_causes.find_cause(ref, mov, as_observations(observations), default):
+    for detail in refusal_causes.find_cause(PairProblem.of(ref, mov, observations), default):
         yield Step("explain", detail, perf_counter() - began)
         began = perf_counter()
 

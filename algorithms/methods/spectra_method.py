@@ -1,55 +1,35 @@
-"""The whole method as one generator of steps. Nothing else knows the order of the stages."""
+"""The order of the spectra method's stages. Nothing else knows it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator
 
-from algorithms.maps.grid_map import GridMap
-from algorithms.maps.map_fusion import Fusion, fuse
-from algorithms.methods.spectra_answer import answer_of, weigh_answers
+from algorithms.methods.shared_stages import Found
+from algorithms.methods.spectra_answer import found_by, weigh_answers
 from algorithms.methods.spectra_config import PipelineConfig
-from algorithms.methods.spectra_stages import augment_both, prove_optimum, refine, search
-from algorithms.methods.stage_runner import StageCache, StageRunner
+from algorithms.methods.spectra_stages import augment_both, first_look, prove_optimum, refine
+from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import (
     AnswersDetail,
     AugmentDetail,
     CandidatesDetail,
     HoughDetail,
-    ObservationDetail,
     ProvenDetail,
     Step,
     WeighedDetail,
 )
-from algorithms.observations.observation import Observation, encounters_of, robots_of
+from algorithms.observations.pair_problem import PairProblem
 from algorithms.spectra.candidates import match_turns
 
 
-def run(
-    ref: GridMap,
-    mov: GridMap,
-    observations: tuple[Observation, ...],
-    config: PipelineConfig,
-    seed: int = 0,
-    memo: StageCache | None = None,
-    method: str = "spectra-swarm",
-) -> Iterator[Step]:
-    """Yield every step of the merge; the last one's detail is the MergeResult.
-
-    seed : the same seed gives the same answer. Every stage draws from a stream of its own, so that
-           a change of one stage's settings doesn't change the random numbers of another
-    memo : keep it between runs: stages before the first changed setting are then not run again but
-           told again (``Step.reused``)
-    """
-    runner = StageRunner({} if memo is None else memo)
-    seen: ObservationDetail = yield from runner.stage(
-        "observe",
-        (observations, ref.resolution, mov.resolution),
-        lambda: [ObservationDetail(encounters_of(observations, ref, mov))],
-    )
+def search(
+    problem: PairProblem, config: PipelineConfig, seed: int, runner: StageRunner
+) -> Generator[Step, None, Found]:
+    """Yield the steps from the augmented maps to the answers that the whole maps have weighed."""
     augmented: AugmentDetail = yield from runner.stage(
         "augment",
-        (ref, mov, seen, config.augment),
-        lambda: [augment_both(ref, mov, seen.encounter, config.augment)],
+        (problem, config.augment),
+        lambda: [augment_both(problem, config.augment)],
     )
     hough: HoughDetail = yield from runner.stage(
         "spectra",
@@ -71,7 +51,7 @@ def run(
             config.verdict.robot_size,
             seed,
         ),
-        lambda: search(ref, mov, seen.encounters, augmented, hough, config, seed),
+        lambda: first_look(problem, augmented, hough, config, seed),
     )
     refined: AnswersDetail = yield from runner.stage(
         "refine",
@@ -81,34 +61,11 @@ def run(
     proven: ProvenDetail | None = None
     if config.proof.whole_circle:
         proven = yield from runner.stage(
-            "prove", (refined, config.proof), lambda: prove_optimum(found, refined, seen.encounters, config)
+            "prove", (refined, config.proof), lambda: prove_optimum(problem, found, refined, config)
         )
     weighed: WeighedDetail = yield from runner.stage(
         "weigh",
-        (
-            ref,
-            mov,
-            refined,
-            proven,
-            config.window,
-            config.proof,
-            config.whole_maps,
-            config.verdict.robot_size,
-        ),
-        lambda: [weigh_answers(ref, mov, seen.encounters, refined, proven, config)],
+        (refined, proven, config.window, config.proof, config.whole_maps, config.verdict.robot_size),
+        lambda: [weigh_answers(problem, refined, proven, config)],
     )
-    best = weighed.answers[0].T_ref_mov
-    fusion: Fusion = yield from runner.stage(
-        "fuse",
-        (ref, mov, weighed, config.conflict),
-        lambda: [
-            fuse(ref, mov, best, config.conflict, robots_of(seen.encounters, config.verdict.robot_size))
-        ],
-    )
-    yield from runner.stage(
-        "verdict",
-        (fusion, refined, proven, config.verdict, method),
-        lambda: [
-            answer_of(seen, found, refined, proven, weighed, fusion, config, method, seed, runner.timings_s)
-        ],
-    )
+    return found_by(problem, found, refined, proven, weighed, config)

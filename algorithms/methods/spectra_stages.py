@@ -9,7 +9,6 @@ from math import radians
 import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2, pose_error
-from algorithms.maps.grid_map import GridMap
 from algorithms.methods.merge_result import Answer
 from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.steps import (
@@ -24,7 +23,7 @@ from algorithms.methods.steps import (
     ShiftDetail,
     WindowDetail,
 )
-from algorithms.observations.observation import Encounter
+from algorithms.observations.pair_problem import PairProblem
 from algorithms.observations.search_window import (
     CoupledWindow,
     Window,
@@ -50,25 +49,20 @@ RIVAL_FLOOR = 0.5  # of the best value: what is below is no rival
 OPTIMISERS: dict[str, Optimiser] = {"pso": swarm, "mco": monte_carlo}
 
 
-def augment_both(ref: GridMap, mov: GridMap, at: Encounter, config: AugmentConfig) -> AugmentDetail:
+def augment_both(problem: PairProblem, config: AugmentConfig) -> AugmentDetail:
     """Both maps with their levels, eqs. (4), (5)."""
-    sigma = config.covariance()
+    at, sigma = problem.encounters[0], config.covariance()
     return AugmentDetail(
-        augment(ref, at.x_ref, sigma, config.intensity),
-        augment(mov, at.x_mov, sigma, config.intensity),
+        augment(problem.ref, at.x_ref, sigma, config.intensity),
+        augment(problem.mov, at.x_mov, sigma, config.intensity),
     )
 
 
-def search(
-    ref: GridMap,
-    mov: GridMap,
-    encounters: Sequence[Encounter],
-    augmented: AugmentDetail,
-    hough: HoughDetail,
-    config: PipelineConfig,
-    seed: int,
+def first_look(
+    problem: PairProblem, augmented: AugmentDetail, hough: HoughDetail, config: PipelineConfig, seed: int
 ) -> Iterator[Detail]:
     """A candidate per turn, then a first look into the box of each, which ranks them by their value."""
+    encounters = problem.encounters
     window = shift_window(encounters, config.window)
     coupled = coupled_window(encounters, config.window)
     yield WindowDetail(window, coupled, paper_window(encounters[0], replace(config.window, kind="origin")))
@@ -79,12 +73,11 @@ def search(
             candidate = replace(candidate, T_ref_mov=window.pulled_in(candidate.T_ref_mov))
         yield ShiftDetail(index, len(hough.match.turns), candidate)
         candidates.append(candidate)
-    objective = objective_of(ref, mov, encounters, augmented, config)
+    objective = objective_of(problem, augmented, config)
     looked = []
     for index, candidate in enumerate(candidates):
         if config.refine.optimiser == "none":
-            value = float(objective(candidate.T_ref_mov.array()[None])[0])
-            looked.append(replace(candidate, value=value))
+            looked.append(replace(candidate, value=objective.value_at(candidate.T_ref_mov)))
             continue
         box = box_around(candidate.T_ref_mov, window, config.box)
         rng = np.random.default_rng([seed, 0, index])
@@ -95,24 +88,17 @@ def search(
     yield CandidatesDetail(tuple(looked), objective, window)
 
 
-def objective_of(
-    ref: GridMap,
-    mov: GridMap,
-    encounters: Sequence[Encounter],
-    augmented: AugmentDetail,
-    config: PipelineConfig,
-) -> Objective:
+def objective_of(problem: PairProblem, augmented: AugmentDetail, config: PipelineConfig) -> Objective:
     """What the settings ask to maximise."""
     if config.refine.objective == "gamma":
         return make_objective(augmented.ref, augmented.mov, config.refine.lookup)
-    window = coupled_window(encounters, config.window)
     return make_agreement(
-        ref,
-        mov,
-        encounters,
+        problem.ref,
+        problem.mov,
+        problem.encounters,
         config.augment,
         config.agreement,
-        window,
+        coupled_window(problem.encounters, config.window),
         config.refine.lookup,
         config.verdict.robot_size,
     )
@@ -181,13 +167,10 @@ def _hopeless(state: SearchState, answers: Sequence[Answer]) -> bool:
 
 
 def prove_optimum(
-    found: CandidatesDetail,
-    refined: AnswersDetail,
-    encounters: Sequence[Encounter],
-    config: PipelineConfig,
+    problem: PairProblem, found: CandidatesDetail, refined: AnswersDetail, config: PipelineConfig
 ) -> Iterator[Detail]:
     """The best of the whole circle, and whether the optimiser had found it."""
-    window = coupled_window(encounters, config.window)
+    window = coupled_window(problem.encounters, config.window)
     # where nothing fits, the best of what does not fit is not worth the time to prove it
     for state in prove(found.objective, window, config.proof, RIVAL_FLOOR, worth=0.0):
         yield ProofDetail(state, window)

@@ -18,7 +18,6 @@ SIGMA_BEARING = 0.034907  # radians, 2°
 SIGMA_RANGES = (1e-6, 100.0)  # metres; what a deviation may be
 SIGMA_BEARINGS = (1e-6, pi)  # radians
 MOST_RANGE = 1e5  # metres
-OFF_THE_MAP = 5.0  # metres
 
 
 @dataclass(frozen=True)
@@ -73,37 +72,9 @@ def mirrored(o: Observation) -> Observation:
     return replace(o, observed_x=-o.observed_x, observed_heading=heading, bearing_back=back)
 
 
-def as_observations(seen: Observation | Sequence[Observation]) -> tuple[Observation, ...]:
-    """One observation, or several of the same two maps, as a tuple; raises SettingError for none."""
-    observations = (seen,) if isinstance(seen, Observation) else tuple(seen)
-    if not observations:
-        raise SettingError("there is no observation; give at least one")
-    return observations
-
-
 def name_of(number: int, observations: Sequence[Observation]) -> str:
     """What to call an observation before a person: with its number, from 1, where there are several."""
     return f"observation {number}" if len(observations) > 1 else "the observation"
-
-
-def check_standing(observations: Sequence[Observation], ref: GridMap, mov: GridMap) -> None:
-    """Raise SettingError where a robot stands far off the map it has made itself.
-
-    A map may have been cropped, so some metres are let pass; more is a mix-up of files or of units.
-    """
-    for number, o in enumerate(observations, 1):
-        for who, key, point, grid in (
-            ("robot 1", "observer.pose", o.observer.xy, ref),
-            ("robot 2", "observed.pose", np.array([o.observed_x, o.observed_y]), mov),
-        ):
-            col, row = grid.grid_coordinates(point).tolist()
-            off = grid.resolution * hypot(max(0.0, -col, col - grid.width), max(0.0, -row, row - grid.height))
-            if off > OFF_THE_MAP:
-                raise SettingError(
-                    f"{name_of(number, observations)} puts {who} at ({point[0]:g}, {point[1]:g}) m, "
-                    f"{off:.1f} m outside its own map {grid.name!r}; check {key}, the map's origin and "
-                    "resolution, and whether the two maps are swapped"
-                )
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +94,6 @@ class Encounter:
 
 
 def robots_of(encounters: Sequence[Encounter], size: float) -> Robots:
-    """The robots of these encounters."""
     observers = [at.observer for at in encounters if at.observer is not None]
     observed = [at.x_mov for at in encounters]
     return Robots(np.array(observers).reshape(-1, 2), np.array(observed).reshape(-1, 2), size)

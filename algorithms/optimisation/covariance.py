@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from itertools import combinations
-from math import pi
 
 import numpy as np
 
-from algorithms.common.pose import FloatArray, Pose2, rotation
+from algorithms.common.pose import FloatArray, Pose2
 from algorithms.optimisation.objective import Objective
-from algorithms.optimisation.search_box import SearchBox
+from algorithms.optimisation.search_box import SearchBox, pose_about, shift_covariance
 from algorithms.optimisation.subcell_peak import Peak
 
 
@@ -27,7 +26,7 @@ def peak_covariance(objective: Objective, T_ref_mov: Pose2, box: SearchBox, reac
     """
     cell = objective.cell
     step = np.array([cell, cell, cell / reach])
-    centre = np.append(T_ref_mov.apply(box.pivot), T_ref_mov.theta)
+    centre = pose_about(box.pivot, T_ref_mov)
     unit = np.eye(3)
     offsets = [np.zeros(3)]
     offsets += [sign * unit[i] for i in range(3) for sign in (1, -1)]
@@ -45,10 +44,7 @@ def peak_covariance(objective: Objective, T_ref_mov: Pose2, box: SearchBox, reac
             curvature[i, j] = curvature[j, i] = (both - right - left + none) / 4
         strengths, directions = np.linalg.eigh(curvature)
         in_steps = (directions / np.maximum(strengths, 1 / widest.max())) @ directions.T
-    at_pivot = in_steps * np.outer(step, step)
-    to_shift = np.eye(3)  # d (Δx, Δy, Δθ) / d (box coordinates): Δ = where the pivot goes − C(Δθ) pivot
-    to_shift[:2, 2] = -rotation(T_ref_mov.theta + pi / 2) @ box.pivot
-    return np.asarray(to_shift @ at_pivot @ to_shift.T, dtype=np.float64)
+    return shift_covariance(in_steps * np.outer(step, step), box.pivot, T_ref_mov)
 
 
 def covariance_of(
@@ -66,6 +62,4 @@ def covariance_of(
     strengths, directions = np.linalg.eigh(peak.curvature * np.outer(unit, unit) / evidence)
     at_pivot = (directions / np.maximum(strengths, 1.0)) @ directions.T * np.outer(unit, unit)
     at_pivot += np.diag(np.square(least))
-    to_shift = np.eye(3)  # d (Δx, Δy, Δθ) / d (where the pivot goes, Δθ): Δ = that − C(Δθ) pivot
-    to_shift[:2, 2] = -rotation(peak.T_ref_mov.theta + pi / 2) @ pivot
-    return np.asarray(to_shift @ at_pivot @ to_shift.T, dtype=np.float64)
+    return shift_covariance(at_pivot, pivot, peak.T_ref_mov)

@@ -16,18 +16,9 @@ from typing import Annotated
 
 import numpy as np
 
-from algorithms.common.pose import FloatArray
+from algorithms.common.pose import FloatArray, Pose2
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
-from algorithms.maps.grid_map import (
-    FREE,
-    FREE_UP_TO,
-    OCCUPIED_FROM,
-    BoolArray,
-    CellArray,
-    Float32Array,
-    GridMap,
-    where,
-)
+from algorithms.maps.grid_map import BoolArray, Float32Array, GridMap, where
 from algorithms.maps.wall_distance import distance_to_walls, surface
 from algorithms.observations.observation import Encounter, robots_of
 from algorithms.observations.search_window import CoupledWindow
@@ -51,26 +42,6 @@ class AgreementConfig(CheckedConfig):
     evidence: Annotated[float, Bounds(0.05, 5, 0.05, "m", "ℓ", "evidence")] = 0.25
     """Metres of wall that say as much as one measurement: neighbouring cells err alike. It weighs the
     sightings against the walls, and makes a covariance of the peak's width."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Surroundings:
-    """The part of a map near the encounters.
-
-    cells   : (H, W) int8
-    corner  : (2,) column and row of its first cell in the map
-    """
-
-    cells: CellArray
-    corner: FloatArray
-
-    @property
-    def walls(self) -> BoolArray:
-        return np.asarray(self.cells >= OCCUPIED_FROM)
-
-    @property
-    def free(self) -> BoolArray:
-        return np.asarray((self.cells >= FREE) & (self.cells <= FREE_UP_TO))
 
 
 def make_agreement(
@@ -97,19 +68,19 @@ def make_agreement(
     x_ref = np.array([at.x_ref for at in encounters])
     x_mov = np.array([at.x_mov for at in encounters])
     # points lie within ``far`` of an encounter; a transform may be off by as much again
-    around_ref, around_mov = _surroundings(ref, x_ref, 2 * far), _surroundings(mov, x_mov, 2 * far)
+    ref_part, mov_part = _part_around(ref, x_ref, 2 * far), _part_around(mov, x_mov, 2 * far)
     sides, robots = [], robots_of(encounters, robot_size)
-    for grid, table_of, stood, source, points_of, anchors, backward in (
-        (ref, around_ref, robots.in_ref, mov, around_mov, x_mov, False),
-        (mov, around_mov, robots.in_mov, ref, around_ref, x_ref, True),
+    for grid, (part, corner), stood, source, source_part, anchors, backward in (
+        (ref, ref_part, robots.in_ref, mov, mov_part, x_mov, False),
+        (mov, mov_part, robots.in_mov, ref, ref_part, x_ref, True),
     ):
-        points, nearness = _weighted_surface(source, points_of, anchors, precision, robot_size)
-        table = wall_field(table_of.walls, table_of.free, grid.resolution, config.blur, config.penalty)
-        clear(table, grid, table_of.corner, stood, robot_size)
+        points, nearness = _weighted_surface(source, *source_part, anchors, precision, robot_size)
+        table = wall_field(part.occupied, part.free, grid.resolution, config.blur, config.penalty)
+        clear(table, grid, corner, stood, robot_size)
         side = Side(
             grid=grid,
             table=table,
-            corner=table_of.corner,
+            corner=corner,
             anchor=anchors[0],
             points=points - anchors[0],
             weights=nearness * source.resolution,  # a cell stands for so much wall
@@ -119,13 +90,16 @@ def make_agreement(
     return Objective(tuple(sides), lookup, window, config.evidence)
 
 
-def _surroundings(grid: GridMap, centres: FloatArray, radius: float) -> _Surroundings:
+def _part_around(grid: GridMap, centres: FloatArray, radius: float) -> tuple[GridMap, FloatArray]:
+    """The part of a map near (N, 2) places, and (2,) column and row of its first cell in the map; metres."""
     at = grid.grid_coordinates(centres)
     reach = ceil(radius / grid.resolution)
     size = np.array([grid.width, grid.height])
     low = np.clip(np.floor(at.min(axis=0)).astype(int) - reach, 0, size - 1)
     high = np.clip(np.floor(at.max(axis=0)).astype(int) + reach + 1, low + 1, size)
-    return _Surroundings(grid.cells[low[1] : high[1], low[0] : high[0]], low.astype(np.float64))
+    cells = grid.cells[low[1] : high[1], low[0] : high[0]]
+    origin = grid.origin @ Pose2(*(low * grid.resolution).tolist())
+    return GridMap(cells, grid.resolution, origin, grid.name), low.astype(np.float64)
 
 
 def wall_field(
@@ -157,11 +131,16 @@ def clear(table: Float32Array, grid: GridMap, corner: FloatArray, places: FloatA
 
 
 def _weighted_surface(
-    grid: GridMap, part: _Surroundings, centres: FloatArray, precision: FloatArray, robot_size: float
+    grid: GridMap,
+    part: GridMap,
+    corner: FloatArray,
+    centres: FloatArray,
+    precision: FloatArray,
+    robot_size: float,
 ) -> tuple[FloatArray, FloatArray]:
     """(N, 2) surface cells in the map's frame, metres, and (N,) how near they are to an encounter."""
-    rows, cols = where(surface(part.walls, part.free))
-    points = grid.centres(rows + int(part.corner[1]), cols + int(part.corner[0]))
+    rows, cols = where(surface(part.occupied, part.free))
+    points = grid.centres(rows + int(corner[1]), cols + int(corner[0]))
     nearness, clear = np.zeros(len(points)), np.ones(len(points), dtype=np.bool_)
     for centre in centres:
         offset = points - centre

@@ -5,14 +5,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.common.parallel_kernels import fast_kernel, run_in_threads
-from algorithms.common.pose import FloatArray
+from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import Float32Array, GridMap
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.spectra.augmented_map import AugmentedMap
@@ -81,18 +83,32 @@ class Side:
         motions = self.motions(poses)
         if lookup is Lookup.BILINEAR:
             motions[:, 2:] -= 0.5  # levels sit at cell centres
-        single = motions.astype(np.float32)
-        x, y, weights = self._cells
-        values = np.zeros(len(poses))
-        rows, cols = self.table.shape
-        flat = self.table.ravel()
-        loop = _bilinear if lookup is Lookup.BILINEAR else _nearest
+            return sum_in_table(_bilinear, self.table.ravel(), self.table.shape, self._cells, motions)
+        return sum_in_table(nearest, self.table.ravel(), self.table.shape, self._cells, motions, None)
 
-        def work(start: int, stop: int) -> None:
-            loop(flat, rows, cols, x, y, weights, single[start:stop], values[start:stop])
 
-        run_in_threads(work, len(poses), at_least=1 + _LOOKUPS_WORTH_A_THREAD // (1 + len(x)))
-        return values
+def sum_in_table(
+    loop: Callable[..., None],
+    flat: Float32Array,
+    shape: tuple[int, ...],
+    points: Sequence[Float32Array],
+    motions: FloatArray,
+    *offsets: NDArray[np.uint32] | None,
+) -> FloatArray:
+    """(P,) weighted sums of what points find in a table under each of (P, 4) motions, on all threads.
+
+    loop   : ``_bilinear`` or ``nearest``
+    shape  : rows and columns of the table; of each, where several stand one after another
+    points : (N,) x, y in cells and weight
+    offsets : for ``nearest``: (N,) where in ``flat`` the table of a point begins; None: at 0
+    """
+    single, values = motions.astype(np.float32), np.zeros(len(motions))
+
+    def work(start: int, stop: int) -> None:
+        loop(flat, shape, *points, single[start:stop], values[start:stop], *offsets)
+
+    run_in_threads(work, len(motions), at_least=1 + _LOOKUPS_WORTH_A_THREAD // (1 + len(points[0])))
+    return values
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,11 +131,6 @@ class Objective:
         """Edge of a cell of the ref map; metres."""
         return self.sides[0].grid.resolution
 
-    @property
-    def evaluation_size(self) -> int:
-        """Number of look-ups that one pose costs."""
-        return sum(len(side.points) for side in self.sides)
-
     def __call__(self, poses: FloatArray) -> FloatArray:
         """The value of every pose.
 
@@ -133,6 +144,9 @@ class Objective:
         if self.window is not None:
             values -= 0.5 * self.trust * (self.window.deviations(poses) ** 2).sum(axis=1)
         return values
+
+    def value_at(self, T_ref_mov: Pose2) -> float:
+        return float(self(T_ref_mov.array()[None])[0])
 
 
 def make_objective(ref: AugmentedMap, mov: AugmentedMap, lookup: Lookup = Lookup.BILINEAR) -> Objective:
@@ -158,15 +172,14 @@ def make_objective(ref: AugmentedMap, mov: AugmentedMap, lookup: Lookup = Lookup
 @fast_kernel
 def _bilinear(
     flat: Float32Array,
-    rows: int,
-    cols: int,
+    shape: tuple[int, int],
     x: Float32Array,
     y: Float32Array,
     levels: Float32Array,
     motions: Float32Array,
     out: FloatArray,
 ) -> None:
-    zero = np.float32(0)
+    zero, (rows, cols) = np.float32(0), shape
     u_max, v_max = np.float32(cols - 2), np.float32(rows - 2)
     stride = np.int32(cols)
     right, up, both = np.uint32(1), np.uint32(cols), np.uint32(cols + 1)
@@ -187,17 +200,18 @@ def _bilinear(
 
 
 @fast_kernel
-def _nearest(
+def nearest(
     flat: Float32Array,
-    rows: int,
-    cols: int,
+    shape: tuple[int, int],
     x: Float32Array,
     y: Float32Array,
     levels: Float32Array,
     motions: Float32Array,
     out: FloatArray,
+    offsets: NDArray[np.uint32] | None,
 ) -> None:
-    zero = np.float32(0)
+    """Sum what the cell holds in which each point falls."""
+    zero, (rows, cols) = np.float32(0), shape
     u_max, v_max = np.float32(cols - 1), np.float32(rows - 1)
     stride = np.int32(cols)
     for p in range(motions.shape[0]):
@@ -207,5 +221,7 @@ def _nearest(
             u = min(max(c * x[n] - s * y[n] + tx, zero), u_max)
             v = min(max(s * x[n] + c * y[n] + ty, zero), v_max)
             k = np.uint32(np.int32(v) * stride + np.int32(u))
+            if offsets is not None:  # decided when it is compiled
+                k += offsets[n]
             total += levels[n] * flat[k]
         out[p] = total

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from algorithms.common.pose import FloatArray, Pose2
+from algorithms.common.pose import FloatArray, Pose2, rotation
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.observations.search_window import CoupledWindow, Window
 
@@ -53,19 +53,36 @@ class SearchBox:
 
     def transforms(self, poses: FloatArray) -> FloatArray:
         """(P, 3) Δx, Δy, Δθ of T_ref_mov from (P, 3) coordinates in the box; theta stays unwrapped."""
-        c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
-        x, y = self.pivot
-        return np.column_stack([poses[:, 0] - c * x + s * y, poses[:, 1] - s * x - c * y, poses[:, 2]])
+        return transforms_about(self.pivot, poses)
 
     def transform(self, pose: FloatArray) -> Pose2:
         """T_ref_mov from (3,) coordinates in the box, its angle wrapped."""
         return Pose2.from_array(self.transforms(pose[None])[0])
 
 
+def transforms_about(pivot: FloatArray, poses: FloatArray) -> FloatArray:
+    """(P, 3) x, y, theta of T_ref_mov that put the (2,) pivot at x, y of (P, 3) poses and turn by theta."""
+    c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+    x, y = pivot
+    return np.column_stack([poses[:, 0] - c * x + s * y, poses[:, 1] - s * x - c * y, poses[:, 2]])
+
+
+def pose_about(pivot: FloatArray, T_ref_mov: Pose2) -> FloatArray:
+    """(3,) where T_ref_mov puts the pivot, and its turn: the inverse of ``transforms_about``."""
+    return np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
+
+
+def shift_covariance(at_pivot: FloatArray, pivot: FloatArray, T_ref_mov: Pose2) -> FloatArray:
+    """(3, 3) covariance of Δx, Δy, Δθ from that of where the pivot goes, and of the turn."""
+    to_shift = np.eye(3)  # d (Δx, Δy, Δθ) / d (where the pivot goes, Δθ): Δ = that − C(Δθ) pivot
+    to_shift[:2, 2] = -rotation(T_ref_mov.theta + pi / 2) @ pivot
+    return np.asarray(to_shift @ at_pivot @ to_shift.T, dtype=np.float64)
+
+
 def box_around(T_ref_mov: Pose2, window: Window | CoupledWindow, config: BoxConfig) -> SearchBox:
     """The optimiser's box, eqs. (18)–(20): around a candidate, inside the window (Fig. 11)."""
     half = np.array([config.sigma_x, config.sigma_y, config.sigma_theta * pi / 180])
-    centre = np.append(T_ref_mov.apply(window.pivot), T_ref_mov.theta)
+    centre = pose_about(window.pivot, T_ref_mov)
     low, high = centre - half, centre + half
     low[:2] = np.minimum(np.maximum(low[:2], window.low), centre[:2])  # whatever is cut off, it holds the
     high[:2] = np.maximum(np.minimum(high[:2], window.high), centre[:2])  # candidate

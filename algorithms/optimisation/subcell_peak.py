@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from itertools import combinations_with_replacement, product
+from itertools import product
 
 import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.objective import Objective
+from algorithms.optimisation.search_box import pose_about, transforms_about
 
 ROUNDS = (1.0, 0.5, 0.25, 0.125)  # cells; width of the stencil, round by round
 LEASH = 1.5  # cells from where it began: farther off is another answer, for the search to find
-PAIRS = tuple(combinations_with_replacement(range(3), 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,21 +39,22 @@ def climb_to_peak(objective: Objective, T_ref_mov: Pose2, window: CoupledWindow,
     pivot = window.pivot
     cell = objective.cell
     scale = np.array([cell, cell, cell / reach])
-    at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
+    at = pose_about(pivot, T_ref_mov)
     low, high = at - LEASH * scale, at + LEASH * scale
-    value = float(objective(_transforms(at[None], pivot))[0])
+    value = float(objective(transforms_about(pivot, at[None]))[0])
     for width in ROUNDS:
-        gradient, hessian, values, stencil = _paraboloid(objective, at, scale * width, pivot)
-        tried = [stencil[int(values.argmax())]]
+        values = objective(transforms_about(pivot, at + STENCIL * (scale * width)))
+        gradient, hessian = paraboloid(values)
+        tried = [STENCIL[int(values.argmax())]]
         if np.linalg.eigvalsh(hessian)[-1] < 0:
             tried.append(-np.linalg.solve(hessian, gradient))
         places = np.clip(at + np.array(tried) * scale * width, low, high)
-        transforms = _transforms(places, pivot)
+        transforms = transforms_about(pivot, places)
         found = np.where(window.contains(transforms), objective(transforms), -np.inf)
         best = int(found.argmax())
         if found[best] > value:
             at, value = places[best], float(found[best])
-    return peak_at(objective, Pose2.from_array(_transforms(at[None], pivot)[0]), pivot, reach)
+    return peak_at(objective, Pose2.from_array(transforms_about(pivot, at[None])[0]), pivot, reach)
 
 
 def peak_at(objective: Objective, T_ref_mov: Pose2, pivot: FloatArray, reach: float) -> Peak:
@@ -62,36 +63,27 @@ def peak_at(objective: Objective, T_ref_mov: Pose2, pivot: FloatArray, reach: fl
     pivot, reach : as for ``climb_to_peak``
     """
     scale = np.array([1.0, 1.0, 1 / reach]) * objective.cell
-    at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
-    _, hessian, _, _ = _paraboloid(objective, at, scale, pivot)
-    value = float(objective(T_ref_mov.array()[None])[0])
-    return Peak(T_ref_mov, value, -hessian / np.outer(scale, scale))
+    at = pose_about(pivot, T_ref_mov)
+    _, hessian = paraboloid(objective(transforms_about(pivot, at + STENCIL * scale)))
+    return Peak(T_ref_mov, objective.value_at(T_ref_mov), -hessian / np.outer(scale, scale))
+
+
+STENCIL = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
+"""(27, 3) the corners, edges and faces of a cube and its middle."""
+_PAIRS = np.triu_indices(3)
 
 
 @cache
-def _stencil() -> tuple[FloatArray, FloatArray]:
-    """(27, 3) the corners, edges and faces of a cube and its middle; and the least squares over them."""
-    places = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
-    columns = [np.ones(len(places)), *places.T, *(places[:, i] * places[:, j] for i, j in PAIRS)]
-    return places, np.linalg.pinv(np.column_stack(columns))
+def _least_squares() -> FloatArray:
+    """(10, 27) from values at the stencil to the middle's value, slope, and factors of the products."""
+    products = STENCIL[:, _PAIRS[0]] * STENCIL[:, _PAIRS[1]]
+    return np.linalg.pinv(np.column_stack([np.ones(len(STENCIL)), STENCIL, products]))
 
 
-def _paraboloid(
-    objective: Objective, at: FloatArray, step: FloatArray, pivot: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Gradient and Hessian in steps, the stencil's values and its places in steps."""
-    places, solve = _stencil()
-    values = objective(_transforms(at + places * step, pivot))
-    fitted = solve @ values
+def paraboloid(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(3,) gradient and (3, 3) Hessian, in steps, of what fits (27,) values at the stencil best."""
+    fitted = _least_squares() @ values
     hessian = np.zeros((3, 3))
-    for coefficient, (i, j) in zip(fitted[4:], PAIRS, strict=True):
-        hessian[i, j] += coefficient
-        hessian[j, i] += coefficient
-    return fitted[1:4], hessian, values, places
-
-
-def _transforms(places: FloatArray, pivot: FloatArray) -> FloatArray:
-    """(P, 3) x, y, theta of T_ref_mov that put the pivot at x, y and turn by theta."""
-    c, s = np.cos(places[:, 2]), np.sin(places[:, 2])
-    x, y = pivot
-    return np.column_stack([places[:, 0] - c * x + s * y, places[:, 1] - s * x - c * y, places[:, 2]])
+    hessian[_PAIRS] += fitted[4:]
+    hessian.T[_PAIRS] += fitted[4:]
+    return fitted[1:4], hessian

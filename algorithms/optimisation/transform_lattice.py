@@ -11,6 +11,7 @@ from algorithms.common.errors import TooLargeError
 from algorithms.common.pose import FloatArray, rotation, wrap_angles
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.objective import Objective, Side
+from algorithms.optimisation.search_box import transforms_about
 
 IntArray = NDArray[np.int64]
 
@@ -80,16 +81,10 @@ class TransformLattice:
 
     def poses(self, coordinates: FloatArray) -> FloatArray:
         """(P, 3) x, y, theta of T_ref_mov from ``coordinates``; the angle wrapped."""
-        c, s = np.cos(coordinates[:, 2]), np.sin(coordinates[:, 2])
-        x, y = self.window.pivot
         goes_to = coordinates[:, :2] @ rotation(self.yaw).T + self._pivot_ref
-        return np.column_stack(
-            [
-                goes_to[:, 0] - c * x + s * y,
-                goes_to[:, 1] - s * x - c * y,
-                wrap_angles(coordinates[:, 2]),
-            ]
-        )
+        out = transforms_about(self.window.pivot, np.column_stack([goes_to, coordinates[:, 2]]))
+        out[:, 2] = wrap_angles(out[:, 2])
+        return out
 
     def roots(self) -> IntArray:
         """(P, 3) the coarsest blocks; raises TooLargeError where they are too many."""

@@ -12,13 +12,11 @@ from math import sqrt
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from algorithms.common.parallel_kernels import fast_kernel, run_in_threads
 from algorithms.common.pose import FloatArray
 from algorithms.maps.grid_map import Float32Array
 from algorithms.observations.search_window import CoupledWindow
-from algorithms.optimisation.objective import PAD, Lookup, Objective, Side
+from algorithms.optimisation.objective import PAD, Lookup, Objective, Side, nearest, sum_in_table
 from algorithms.optimisation.transform_lattice import (
     RADII,
     IntArray,
@@ -31,8 +29,6 @@ from algorithms.optimisation.transform_lattice import (
 # Float32 sums of many terms: a bound and the value that it bounds are summed in different orders.
 ROUNDING = 1e-5
 HAIR = 1e-3  # cells; what 32-bit coordinates may be off
-
-_LOOKUPS_WORTH_A_THREAD = 100_000
 
 
 def _within_reach(side: Side, lattice: TransformLattice) -> tuple[Float32Array, FloatArray]:
@@ -106,52 +102,14 @@ class _Pyramid:
         x, y = np.ascontiguousarray((points[order] / side.grid.resolution).T, dtype=np.float32)
         return x, y, weights[order].astype(np.float32), radii[order]
 
-    def cost(self, level: int) -> int:
-        """Look-ups per block."""
-        return len(self.levels[level - 1][0]) if level else len(self.side.points)
-
     def __call__(self, poses: FloatArray, level: int) -> FloatArray:
         """(P,) bound of the side's sum over the blocks with these middles; level 0: the sum itself."""
         if level == 0:
             return self.side(poses, Lookup.NEAREST)
         motions = self.side.motions(poses)
         motions[:, 2:] -= self.shift
-        single = motions.astype(np.float32)
-        x, y, weights, offset = self.levels[level - 1]
-        values = np.zeros(len(poses))
-        rows, cols = self.shape
-
-        def work(start: int, stop: int) -> None:
-            _bound(self.flat, rows, cols, x, y, weights, offset, single[start:stop], values[start:stop])
-
-        run_in_threads(work, len(poses), at_least=1 + _LOOKUPS_WORTH_A_THREAD // (1 + len(x)))
-        return values
-
-
-@fast_kernel
-def _bound(
-    flat: Float32Array,
-    rows: int,
-    cols: int,
-    x: Float32Array,
-    y: Float32Array,
-    weights: Float32Array,
-    offset: NDArray[np.uint32],
-    motions: Float32Array,
-    out: FloatArray,
-) -> None:
-    zero = np.float32(0)
-    u_max, v_max = np.float32(cols - 1), np.float32(rows - 1)
-    stride = np.int32(cols)
-    for p in range(motions.shape[0]):
-        c, s, tx, ty = motions[p, 0], motions[p, 1], motions[p, 2], motions[p, 3]
-        total = zero
-        for n in range(x.shape[0]):
-            u = min(max(c * x[n] - s * y[n] + tx, zero), u_max)
-            v = min(max(s * x[n] + c * y[n] + ty, zero), v_max)
-            k = np.uint32(np.int32(v) * stride + np.int32(u)) + offset[n]
-            total += weights[n] * flat[k]
-        out[p] = total
+        *points, offset = self.levels[level - 1]
+        return sum_in_table(nearest, self.flat, self.shape, points, motions, offset)
 
 
 class UpperBounds:
@@ -162,10 +120,6 @@ class UpperBounds:
         self.lattice = TransformLattice(objective, window)
         self._pyramids = [_Pyramid(side, self.lattice) for side in objective.sides]
         self._rounding = ROUNDING * sum(pyramid.weight for pyramid in self._pyramids)
-
-    def cost(self, level: int) -> int:
-        """Look-ups that one block of a level costs."""
-        return sum(pyramid.cost(level) for pyramid in self._pyramids)
 
     def __call__(self, nodes: IntArray, level: int) -> FloatArray:
         """(P,) for (P, 3) blocks of a level: no transform in the block and the window has a higher value.

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from algorithms.common.parallel_kernels import kernel
 from algorithms.common.pose import FloatArray
 from algorithms.simulator.buildings.floor_plan import AIR, DARK, Building, Surface
-from algorithms.simulator.portable_random import COSINES, SINES, TURN, Ticks, normals, uniforms
+from algorithms.simulator.portable_random import DIRECTIONS, TURN, Ticks, normals, uniforms
 
 
 @dataclass(frozen=True)
@@ -35,15 +35,25 @@ class Lidar:
         return np.asarray((np.arange(self.beams) * span) // self.beams - span // 2, dtype=np.int64)
 
 
-@dataclass(frozen=True, eq=False)
-class Scans:
-    """What a scanner returned along a drive.
+@kernel
+def enter(
+    px: float, py: float, dx: float, dy: float
+) -> tuple[int, int, int, int, float, float, float, float]:
+    """How a beam from (px, py) in direction (dx, dy) goes from cell to cell; in cells.
 
-    ranges : (N, beams) metres; NaN where nothing useful came back, ``inf`` where there was nothing
-             within reach
+    returns : column and row that it begins in, by how much they change at a crossing, distance along x and
+              along y to the first crossing, and how far the beam goes per cell along x and along y
     """
-
-    ranges: FloatArray
+    col, row = int(np.floor(px)), int(np.floor(py))
+    step_x, step_y = (1 if dx > 0 else -1), (1 if dy > 0 else -1)
+    first_x = (col + 1 - px) if dx > 0 else (px - col)
+    first_y = (row + 1 - py) if dy > 0 else (py - row)
+    per_x = 1.0 / abs(dx) if dx != 0 else np.inf
+    per_y = 1.0 / abs(dy) if dy != 0 else np.inf
+    # parallel to an axis it never crosses: without this 0 · inf would be no number
+    return (
+        col, row, step_x, step_y, first_x if dx != 0 else 1.0, first_y if dy != 0 else 1.0, per_x, per_y
+    )  # fmt: skip
 
 
 @kernel
@@ -58,16 +68,9 @@ def first_hit(
               AIR where the beam ends in the air or leaves the raster
     """
     height, width = surface.shape
-    px, py = x / resolution, y / resolution
-    col, row = int(np.floor(px)), int(np.floor(py))
-    step_x, step_y = (1 if dx > 0 else -1), (1 if dy > 0 else -1)
+    col, row, step_x, step_y, first_x, first_y, per_x, per_y = enter(x / resolution, y / resolution, dx, dy)
     # Distance in cells to the n-th crossing is computed afresh each time: no error adds up.
-    first_x = (col + 1 - px) if dx > 0 else (px - col)
-    first_y = (row + 1 - py) if dy > 0 else (py - row)
-    per_x = 1.0 / abs(dx) if dx != 0 else np.inf
-    per_y = 1.0 / abs(dy) if dy != 0 else np.inf
-    next_x = first_x * per_x if dx != 0 else np.inf
-    next_y = first_y * per_y if dy != 0 else np.inf
+    next_x, next_y = first_x * per_x, first_y * per_y
     across, up, t = 0, 0, 0.0
     limit = reach / resolution
     while t < limit:
@@ -95,20 +98,17 @@ def _sweep(
     xy: FloatArray,
     headings: Ticks,
     beam_ticks: Ticks,
-    cosines: FloatArray,
-    sines: FloatArray,
+    directions: FloatArray,
     reach: float,
-    ranges: FloatArray,
-    kinds: NDArray[np.uint8],
-) -> None:
-    """Cast every beam of every pose; fills ``ranges`` and ``kinds``, both (N, beams)."""
-    turn = len(cosines)
+) -> tuple[FloatArray, NDArray[np.uint8]]:
+    ranges = np.empty((len(xy), len(beam_ticks)))
+    kinds = np.empty(ranges.shape, dtype=np.uint8)
     for n in range(len(xy)):
         for b in range(len(beam_ticks)):
-            k = (headings[n] + beam_ticks[b]) % turn
-            ranges[n, b], kinds[n, b] = first_hit(
-                surface, resolution, xy[n, 0], xy[n, 1], cosines[k], sines[k], reach
-            )
+            k = (headings[n] + beam_ticks[b]) % directions.shape[1]
+            dx, dy = directions[0, k], directions[1, k]
+            ranges[n, b], kinds[n, b] = first_hit(surface, resolution, xy[n, 0], xy[n, 1], dx, dy, reach)
+    return ranges, kinds
 
 
 def true_ranges(
@@ -120,34 +120,24 @@ def true_ranges(
     returns      : (N, beams) distance to the first wall, ``reach`` where there is none; metres; and
                    what the beam met, AIR where there is none
     """
-    ranges = np.empty((len(xy), len(beam_ticks)))
-    kinds = np.empty(ranges.shape, dtype=np.uint8)
-    _sweep(
-        building.surface,
-        building.resolution,
-        xy,
-        headings,
-        beam_ticks,
-        COSINES,
-        SINES,
-        reach,
-        ranges,
-        kinds,
-    )
-    return ranges, kinds
+    return _sweep(building.surface, building.resolution, xy, headings, beam_ticks, DIRECTIONS, reach)
 
 
 def scan(
     building: Building, xy: FloatArray, headings: Ticks, lidar: Lidar, rng: np.random.Generator
-) -> Scans:
-    """What a real lidar returns along a drive; poses as in ``true_ranges``."""
+) -> FloatArray:
+    """What a real lidar returns along a drive; poses as in ``true_ranges``.
+
+    returns : (N, beams) metres; NaN where nothing useful came back, ``inf`` where there was nothing within
+              reach
+    """
     ranges, kinds = true_ranges(building, xy, headings, lidar.beam_ticks(), lidar.reach)
     noise = normals(rng, ranges.size).reshape(ranges.shape)
-    luck = uniforms(rng, ranges.size).reshape(ranges.shape)
+    drawn = uniforms(rng, ranges.size).reshape(ranges.shape)
     nothing = kinds == AIR
-    lost = luck < np.where(kinds == DARK, lidar.lost_on_dark, lidar.lost)
+    lost = drawn < np.where(kinds == DARK, lidar.lost_on_dark, lidar.lost)
     noisy = np.maximum(ranges + lidar.noise * noise, 0.05)
-    return Scans(np.where(lost, np.nan, np.where(nothing, np.inf, noisy)))
+    return np.where(lost, np.nan, np.where(nothing, np.inf, noisy))
 
 
 def sees(building: Building, from_xy: FloatArray, to_xy: FloatArray) -> bool:

@@ -16,6 +16,7 @@ from algorithms.simulator.portable_random import TURN, Ticks, snap
 CELLS_PER_NODE = 4  # cells of the floor per node of the planner's grid, each way
 STEP = 0.25  # metres between two scans
 BODY = 8  # thirds of a node: a robot keeps about 0.27 m from any wall
+FARTHEST = 3 * 255  # thirds of a node: what is farther from a wall is as near
 COMFORT = 22  # thirds of a node: from 0.73 m on, more room is no better
 
 Costs = NDArray[np.int32]
@@ -37,36 +38,19 @@ class Track:
 
 
 @kernel
-def _clearance(wall: NDArray[np.bool_], out: Costs) -> None:
+def _clearance(wall: NDArray[np.bool_]) -> Costs:
     """Chamfer distance to the nearest wall in thirds of a node, in two passes."""
     height, width = wall.shape
-    for r in range(height):
-        for c in range(width):
-            if wall[r, c]:
-                out[r, c] = 0
-                continue
-            best = 3 * 255
-            if r > 0:
-                best = min(best, out[r - 1, c] + 3)
-                if c > 0:
-                    best = min(best, out[r - 1, c - 1] + 4)
-                if c + 1 < width:
-                    best = min(best, out[r - 1, c + 1] + 4)
-            if c > 0:
-                best = min(best, out[r, c - 1] + 3)
-            out[r, c] = best
-    for r in range(height - 1, -1, -1):
-        for c in range(width - 1, -1, -1):
-            best = out[r, c]
-            if r + 1 < height:
-                best = min(best, out[r + 1, c] + 3)
-                if c > 0:
-                    best = min(best, out[r + 1, c - 1] + 4)
-                if c + 1 < width:
-                    best = min(best, out[r + 1, c + 1] + 4)
-            if c + 1 < width:
-                best = min(best, out[r, c + 1] + 3)
-            out[r, c] = best
+    out = np.full((height + 2, width + 2), FARTHEST, dtype=np.int32)  # with a border
+    for r in range(1, height + 1):
+        for c in range(1, width + 1):
+            above = min(out[r - 1, c - 1] + 4, out[r - 1, c] + 3, out[r - 1, c + 1] + 4)
+            out[r, c] = 0 if wall[r - 1, c - 1] else min(FARTHEST, above, out[r, c - 1] + 3)
+    for r in range(height, 0, -1):
+        for c in range(width, 0, -1):
+            below = min(out[r + 1, c - 1] + 4, out[r + 1, c] + 3, out[r + 1, c + 1] + 4)
+            out[r, c] = min(out[r, c], below, out[r, c + 1] + 3)
+    return np.asarray(out[1:-1, 1:-1].copy())
 
 
 @kernel
@@ -130,20 +114,15 @@ def _walk_back(back: NDArray[np.int8], row: int, col: int) -> NDArray[np.int32]:
     """The nodes from where a way ends to where it began, (N, 2) row and column."""
     rows = (0, 1, 0, -1, 1, 1, -1, -1)
     cols = (1, 0, -1, 0, 1, -1, 1, -1)
-    length = 1
-    r, c = row, col
-    while back[r, c] >= 0:
-        k = back[r, c]
-        r, c = r - rows[k], c - cols[k]
+    way = np.empty((back.size, 2), dtype=np.int32)
+    length, r, c = 0, row, col
+    while True:
+        way[length, 0], way[length, 1] = r, c
         length += 1
-    way = np.empty((length, 2), dtype=np.int32)
-    r, c = row, col
-    for n in range(length):
-        way[n, 0], way[n, 1] = r, c
         k = back[r, c]
-        if k >= 0:
-            r, c = r - rows[k], c - cols[k]
-    return way
+        if k < 0:
+            return np.asarray(way[:length])
+        r, c = r - rows[k], c - cols[k]
 
 
 @kernel
@@ -164,20 +143,17 @@ def _smooth(xy: FloatArray, clearance: Costs, node: float, body: int, rounds: in
 @kernel
 def _resample(xy: FloatArray, step: float) -> FloatArray:
     """Points every ``step`` metres along a polyline, its first point included."""
-    length = 0.0
-    for n in range(1, len(xy)):
-        dx, dy = xy[n, 0] - xy[n - 1, 0], xy[n, 1] - xy[n - 1, 1]
-        length += np.sqrt(dx * dx + dy * dy)
-    out = np.empty((int(length / step) + 2, 2))
+    dx, dy = xy[1:, 0] - xy[:-1, 0], xy[1:, 1] - xy[:-1, 1]
+    pieces = np.sqrt(dx * dx + dy * dy)
+    out = np.empty((int(pieces.sum() / step) + 3, 2))
     out[0] = xy[0]
     count, due, passed = 1, step, 0.0
     for n in range(1, len(xy)):
-        dx, dy = xy[n, 0] - xy[n - 1, 0], xy[n, 1] - xy[n - 1, 1]
-        piece = np.sqrt(dx * dx + dy * dy)
+        piece = pieces[n - 1]
         while piece > 0.0 and passed + piece >= due:
             share = (due - passed) / piece
-            out[count, 0] = xy[n - 1, 0] + share * dx
-            out[count, 1] = xy[n - 1, 1] + share * dy
+            out[count, 0] = xy[n - 1, 0] + share * dx[n - 1]
+            out[count, 1] = xy[n - 1, 1] + share * dy[n - 1]
             count += 1
             due += step
         passed += piece
@@ -202,31 +178,20 @@ class PathPlanner:
         padded[: solid.shape[0], : solid.shape[1]] = solid
         self.node = building.resolution * k
         self.wall: NDArray[np.bool_] = np.asarray(padded.reshape(h, k, w, k).any(axis=(1, 3)))
-        self.clearance = np.empty((h, w), dtype=np.int32)
-        _clearance(self.wall, self.clearance)
+        self.clearance = _clearance(self.wall)
         self._find_stops(building)
 
     def _find_stops(self, building: Building) -> None:
         """Keep the stops that can be reached from one another: the largest such group."""
         near = [cell for stop in building.stops.tolist() if (cell := self._roomiest(stop)) is not None]
         cells = sorted(set(near), key=near.index)
-        group: list[int] = []
-        tried: set[int] = set()
-        fields: dict[int, tuple[Costs, NDArray[np.int8]]] = {}
-        for n in range(len(cells)):
-            if n in tried:
-                continue
-            fields[n] = self._field(cells[n])
-            reach = [m for m, (r, c) in enumerate(cells) if fields[n][0][r, c] >= 0]
-            tried.update(reach)
-            if len(reach) > len(group):
-                group = reach
-        cells_kept = [cells[n] for n in group]
-        fields_kept = [fields[n] if n in fields else self._field(cells[n]) for n in group]
-        self._cells = cells_kept
-        self._back = [back for _, back in fields_kept]
-        self.stops: FloatArray = (np.array(cells_kept, dtype=float)[:, ::-1] + 0.5) * self.node
-        costs = [[int(cost[r, c]) for r, c in cells_kept] for cost, _ in fields_kept]
+        fields = [self._field(cell) for cell in cells]
+        reached = [[m for m, (r, c) in enumerate(cells) if cost[r, c] >= 0] for cost, _ in fields]
+        group = max(reached, key=len, default=[])
+        self._cells = [cells[n] for n in group]
+        self._back = [fields[n][1] for n in group]
+        self.stops: FloatArray = (np.array(self._cells, dtype=float)[:, ::-1] + 0.5) * self.node
+        costs = [[int(fields[n][0][r, c]) for r, c in self._cells] for n in group]
         self.metres: FloatArray = np.array(costs, dtype=float) * (self.node / 10)
 
     def _roomiest(self, stop: list[float]) -> tuple[int, int] | None:

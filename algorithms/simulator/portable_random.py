@@ -37,6 +37,8 @@ def _cosines() -> FloatArray:
 
 COSINES = _cosines()
 SINES = np.roll(COSINES, TURN // 4)
+DIRECTIONS = np.stack([COSINES, SINES])
+"""(2, TURN) cosine and sine of every tick."""
 
 
 def cosine(ticks: Ticks | int) -> FloatArray:
@@ -50,7 +52,6 @@ def sine(ticks: Ticks | int) -> FloatArray:
 
 
 def ticks_of_degrees(degrees: float) -> int:
-    """The nearest whole number of ticks."""
     return round(degrees * TURN / 360)
 
 
@@ -87,12 +88,10 @@ def whole(rng: np.random.Generator, low: int, high: int) -> int:
 
 
 def chance(rng: np.random.Generator, probability: float) -> bool:
-    """True with the given probability."""
     return (int(raw(rng, 1)[0]) >> 11) / 2**53 < probability
 
 
 def pick(rng: np.random.Generator, options: Sequence[T]) -> T:
-    """One of the options, each as likely."""
     return options[whole(rng, 0, len(options) - 1)]
 
 

@@ -106,6 +106,6 @@ def drive(
     if conditions.changed:
         building = rearranged(building, true.xy, stream(body.seed, *body.purpose, "another day"))
     believed = believe(true, body.turn, body.shift, conditions.drift, rng)
-    scans = scan(building, true.xy, true.heading, body.lidar, rng)
-    grid = build_map(believed, scans, body.lidar, body.resolution, body.name)
+    ranges = scan(building, true.xy, true.heading, body.lidar, rng)
+    grid = build_map(believed, ranges, body.lidar, body.resolution, body.name)
     return Robot(body, tour, true, believed, worn(grid, conditions.wear, rng))

@@ -14,8 +14,7 @@ from algorithms.simulator.buildings.floor_plan import Building, Surface
 from algorithms.simulator.lidar import first_hit, sees
 from algorithms.simulator.path_planning import PathPlanner
 from algorithms.simulator.portable_random import (
-    COSINES,
-    SINES,
+    DIRECTIONS,
     TURN,
     cosine,
     pick,
@@ -30,6 +29,7 @@ Seen = NDArray[np.bool_]
 PROBE_BEAMS = 180
 PROBE_NODES = 5  # nodes of a way between two looks around
 MEETING = 6.0  # metres; two robots further apart don't see one another
+TRIES = 160  # tours that are drawn, of which the best are taken
 HALF_SIZE = 0.4  # a map smaller than this share of the other is not what we want
 
 
@@ -47,8 +47,7 @@ def _look(
     node: float,
     xy: FloatArray,
     beams: int,
-    cosines: FloatArray,
-    sines: FloatArray,
+    directions: FloatArray,
     reach: float,
     seen: Seen,
 ) -> None:
@@ -56,8 +55,8 @@ def _look(
     height, width = wall.shape
     for n in range(len(xy)):
         for b in range(beams):
-            k = b * len(cosines) // beams
-            x, y, dx, dy = xy[n, 0], xy[n, 1], cosines[k], sines[k]
+            k = b * directions.shape[1] // beams
+            x, y, dx, dy = xy[n, 0], xy[n, 1], directions[0, k], directions[1, k]
             distance, kind = first_hit(wall, node, x, y, dx, dy, reach)
             if kind != 0:
                 inside = distance + 0.1 * node
@@ -93,7 +92,7 @@ class TourPlanner:
         if key not in self._views:
             seen = np.zeros(self._wall.shape, dtype=bool)
             points = np.ascontiguousarray(self.planner.way(*key)[::PROBE_NODES])
-            _look(self._wall, self.planner.node, points, PROBE_BEAMS, COSINES, SINES, self._reach, seen)
+            _look(self._wall, self.planner.node, points, PROBE_BEAMS, DIRECTIONS, self._reach, seen)
             self._views[key] = seen
         return self._views[key]
 
@@ -119,54 +118,44 @@ class TourPlanner:
         planner = self.planner
         offset = planner.stops - planner.stops[anchor]
         ahead = offset[:, 0] * float(cosine(heading)) + offset[:, 1] * float(sine(heading))
-        whim = 0.7 + 0.6 * uniforms(rng, len(offset))
-        reach, chosen = planner.metres[anchor] * whim, [anchor]
+        factor = 0.7 + 0.6 * uniforms(rng, len(offset))
+        reach, chosen = planner.metres[anchor] * factor, [anchor]
         while len(chosen) < min(size, len(offset)):
             score = reach - pull * ahead
             score[chosen] = np.inf
             chosen.append(int(score.argmin()))
-            reach = np.minimum(reach, planner.metres[chosen[-1]] * whim)
+            reach = np.minimum(reach, planner.metres[chosen[-1]] * factor)
         start = max(chosen, key=lambda stop: (planner.metres[anchor][stop], stop))
         return self.tour(chosen, start)
 
-    def pair(
-        self, rng: np.random.Generator, overlap: float, sizes: tuple[int, int], tries: int = 160
-    ) -> tuple[Tour, Tour]:
+    def pair(self, rng: np.random.Generator, overlap: float, sizes: tuple[int, int]) -> tuple[Tour, Tour]:
         """Two tours that can meet and share about ``overlap`` of what they see."""
-        best, best_score = None, np.inf
-        for _ in range(tries):
+
+        def drawn() -> tuple[Tour, Tour]:
             a, b = pick(rng, self.meetings)
             heading, pull = whole(rng, 0, TURN - 1), uniform(rng, 0.0, 1.2)
             one = self.grow(rng, a, whole(rng, *sizes), heading, pull)
-            two = self.grow(rng, b, whole(rng, *sizes), heading + TURN // 2, pull)
-            score = self._miss(one, two, overlap)
-            if score < best_score:
-                best, best_score = (one, two), score
-        assert best is not None
-        return best
+            return one, self.grow(rng, b, whole(rng, *sizes), heading + TURN // 2, pull)
 
-    def partner(
-        self, rng: np.random.Generator, other: Tour, overlap: float, sizes: tuple[int, int], tries: int = 160
-    ) -> Tour:
+        return min((drawn() for _ in range(TRIES)), key=lambda tours: _miss(tours[0], tours[1], overlap))
+
+    def partner(self, rng: np.random.Generator, other: Tour, overlap: float, sizes: tuple[int, int]) -> Tour:
         """A tour that can meet a given one and shares about ``overlap`` with it."""
         options = [a for a, b in self.meetings if b in other.stops]
         middle = self.planner.stops[list(other.stops)].mean(axis=0)
-        best, best_score = None, np.inf
-        for _ in range(tries):
+
+        def drawn() -> Tour:
             anchor = pick(rng, options)
             away = self.planner.stops[anchor] - middle
             outward = round(float(np.arctan2(away[1], away[0])) * TURN / (2 * np.pi))
             heading = outward + whole(rng, -TURN // 5, TURN // 5)
-            one = self.grow(rng, anchor, whole(rng, *sizes), heading, uniform(rng, 0.0, 1.2))
-            score = self._miss(one, other, overlap)
-            if score < best_score:
-                best, best_score = one, score
-        assert best is not None
-        return best
+            return self.grow(rng, anchor, whole(rng, *sizes), heading, uniform(rng, 0.0, 1.2))
 
-    @staticmethod
-    def _miss(one: Tour, two: Tour, overlap: float) -> float:
-        """How far two tours are from what was asked; small maps beside large ones count too."""
-        sizes = sorted((int(np.count_nonzero(one.seen)), int(np.count_nonzero(two.seen))))
-        lopsided = max(0.0, HALF_SIZE - sizes[0] / max(1, sizes[1]))
-        return abs(shared(one.seen, two.seen) - overlap) + 0.5 * lopsided
+        return min((drawn() for _ in range(TRIES)), key=lambda tour: _miss(tour, other, overlap))
+
+
+def _miss(one: Tour, two: Tour, overlap: float) -> float:
+    """How far two tours are from what was asked; small maps beside large ones count too."""
+    sizes = sorted((int(np.count_nonzero(one.seen)), int(np.count_nonzero(two.seen))))
+    lopsided = max(0.0, HALF_SIZE - sizes[0] / max(1, sizes[1]))
+    return abs(shared(one.seen, two.seen) - overlap) + 0.5 * lopsided

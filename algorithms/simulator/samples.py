@@ -17,15 +17,13 @@ from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import SimulatedCase, simulate
 from algorithms.simulator.wrong_pairs import mismatch
 
-PAIRS = ("r2_r1", "r3_r2")  # observer and observed
-
 
 @dataclass(frozen=True)
 class Sample:
     """Three robots in one building that make one shipped case or two.
 
     overlaps : asked for, of R2 → R1 and R3 → R2
-    stories  : one sentence for a person about each case that ships
+    pairs    : those that ship, as "OBSERVER_OBSERVED"
     bend     : of R1's map, as ``OdometryDrift`` has it
     title    : what the folders' names begin with; the kind unless given
     """
@@ -33,7 +31,7 @@ class Sample:
     kind: str
     seed: int
     overlaps: tuple[float, float]
-    stories: tuple[str, ...]
+    pairs: tuple[str, ...] = ("r2_r1", "r3_r2")
     resolutions: tuple[float, float, float] = (0.05, 0.05, 0.05)
     both_ways: bool = False
     reach: float | None = None
@@ -42,10 +40,7 @@ class Sample:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Folder names of the cases."""
-        return tuple(
-            f"{self.title or self.kind}_{pair}" for pair, _ in zip(PAIRS, self.stories, strict=False)
-        )
+        return tuple(f"{self.title or self.kind}_{pair}" for pair in self.pairs)
 
     def cases(self) -> tuple[SimulatedCase, ...]:
         """Let the three robots drive; the cases that ship."""
@@ -64,59 +59,17 @@ class Sample:
 
 
 SAMPLES = (
-    Sample(
-        "office",
-        14,
-        (0.5, 0.2),
-        (
-            "An office floor: half of the smaller map is in the other, both robots saw one another.",
-            "The same floor: the maps share one cross corridor and little else.",
-        ),
-        both_ways=True,
-    ),
-    Sample(
-        "apartment",
-        21,
-        (0.6, 0.4),
-        (
-            "A large apartment, mapped twice at different resolutions (0.05 and 0.04 m per cell).",
-            "Small rooms, all at right angles: four turns look right, one is.",
-        ),
-        resolutions=(0.04, 0.05, 0.05),
-    ),
-    Sample(
-        "warehouse",
-        12,
-        (0.3, 0.15),
-        (
-            "A warehouse: the aisles nearly repeat, so a merge one rack too far looks good.",
-            "The same racks with half the overlap: only missing pallets tell the aisles apart.",
-        ),
-    ),
-    Sample(
-        "corridor",
-        30,
-        (0.1, 0.04),
-        (
-            "A long corridor that looks alike turned by 180°: a tenth of the smaller map is shared.",
-            "The same corridor, a twentieth shared: at the edge of what can be merged at all.",
-        ),
-        reach=6.0,
-    ),
-    Sample(
-        "apartment",
-        2,
-        (0.7, 0.7),
-        ("An apartment that robot 1 has bent: no one transform lays the maps on each other everywhere.",),
-        bend=1.0,
-        title="bent",
-    ),
+    # both robots saw one another; half of the smaller map is in the other, then one cross corridor alone
+    Sample("office", 14, (0.5, 0.2), both_ways=True),
+    # small rooms, all at right angles: four turns look right, one is
+    Sample("apartment", 21, (0.6, 0.4), resolutions=(0.04, 0.05, 0.05)),
+    # the aisles nearly repeat, so a merge one rack too far looks good: only missing pallets tell them apart
+    Sample("warehouse", 12, (0.3, 0.15)),
+    # it looks alike turned by 180°; a twentieth shared is at the edge of what can be merged at all
+    Sample("corridor", 30, (0.1, 0.04), reach=6.0),
+    # robot 1 has bent it: no one transform lays the maps on each other everywhere
+    Sample("apartment", 2, (0.7, 0.7), pairs=("r2_r1",), bend=1.0, title="bent"),
 )
-
-DESCRIPTIONS: dict[str, str] = {
-    name: story for sample in SAMPLES for name, story in zip(sample.names, sample.stories, strict=True)
-}
-"""What each shipped case shows, by the name of its folder."""
 
 
 def case_files(case: SimulatedCase) -> dict[str, bytes]:

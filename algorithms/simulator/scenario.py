@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from algorithms.common.pose import FloatArray, Pose2
+from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.observation import Observation
 from algorithms.simulator.buildings.building_types import build
 from algorithms.simulator.buildings.floor_plan import Building
-from algorithms.simulator.changes import with_pillars
 from algorithms.simulator.path_planning import PathPlanner
 from algorithms.simulator.portable_random import chance, stream, uniform
-from algorithms.simulator.robot import Conditions, Robot, RobotModel, drive, make_body
+from algorithms.simulator.robot import Conditions, Robot, drive, make_body
 from algorithms.simulator.room_tours import TourPlanner
 from algorithms.simulator.sighting import (
     ROUGH_BEARING,
@@ -95,10 +95,8 @@ def simulate(
     resolutions: tuple[float, float, float] | None = None,
     both_ways: bool | None = None,
     reach: float | None = None,
-    sizes: tuple[int, int] | None = None,
     sightings: int = 1,
-    floor: int = 0,
-    pillars: bool = False,
+    building: Building | None = None,
     conditions: tuple[Conditions, Conditions, Conditions] | None = None,
 ) -> Scenario:
     """Simulate three robots in a building: R2 sees R1, R3 sees R2.
@@ -116,11 +114,9 @@ def simulate(
     both_ways : whether the observed robots measured a bearing back (``Observation.bearing_back``).
         Without it one scenario in four has it.
     reach : range of the lidars in metres. Without it drawn from 6 … 9.
-    sizes : fewest and most stops of a tour. Without it, by the building.
     sightings : how often an observer sees the other robot, at places well apart; less often where the
         two meet less often. All else is the same for any number, the first sightings included.
-    floor : which floor of the building: others have the same outer walls and corridors, and other rooms.
-    pillars : whether pillars, radiators and cabinets stand before the walls.
+    building : in which they drive. Without it that of the kind and the seed.
     conditions : under which R1, R2 and R3 drive: drift, wear, furniture moved. Without it the usual ones.
 
     Returns
@@ -141,32 +137,31 @@ def simulate(
     asked = overlap if isinstance(overlap, tuple) else (overlap, overlap)
     near_1, near_2 = (LOOSE if a is None else TOLERANCE for a in asked)
     aim_1, aim_2 = (d if a is None else a for a, d in zip(asked, drawn, strict=True))
-    b1, b2, b3 = _bodies(kind, seed, reach, resolutions, conditions)
-    building = build(kind, seed, floor)
-    if pillars:
-        building = with_pillars(building, stream(seed, kind, f"pillars of floor {floor}"))
+    none = (None, None, None)
+    b1, b2, b3 = (
+        make_body(f"R{number}", seed, kind, reach, resolution, under)
+        for number, resolution, under in zip((1, 2, 3), resolutions or none, conditions or none, strict=True)
+    )
+    building = building or build(kind, seed)
     planner = PathPlanner(building)
     tour_planner = TourPlanner(building, planner, reach)
     stops = len(planner.stops)
-    fewest, most = sizes or (max(3, stops // 7), max(5, stops * 2 // 5))
+    sizes = max(3, stops // 7), max(5, stops * 2 // 5)  # fewest and most stops of a tour
 
     def two_robots(aim: float, rng: np.random.Generator) -> tuple[Robot, Robot]:
-        tours = tour_planner.pair(rng, aim, (fewest, most))
+        tours = tour_planner.pair(rng, aim, sizes)
         r2, r1 = (drive(building, planner, t, b) for t, b in zip(tours, (b2, b1), strict=True))
         return r2, r1
 
-    pair_1 = _nearest_pair(
-        building, planner, two_robots, aim_1, near_1, stream(seed, kind, "R2 and R1"), sightings
-    )
+    nearest_pair = partial(_nearest_pair, building, planner, sightings)
+    pair_1 = nearest_pair(two_robots, aim_1, near_1, stream(seed, kind, "R2 and R1"))
     r2 = pair_1.observer
 
     def third_robot(aim: float, rng: np.random.Generator) -> tuple[Robot, Robot]:
-        tour = tour_planner.partner(rng, r2.tour, aim, (fewest, most))
+        tour = tour_planner.partner(rng, r2.tour, aim, sizes)
         return drive(building, planner, tour, b3), r2
 
-    pair_2 = _nearest_pair(
-        building, planner, third_robot, aim_2, near_2, stream(seed, kind, "R3 and R2"), sightings
-    )
+    pair_2 = nearest_pair(third_robot, aim_2, near_2, stream(seed, kind, "R3 and R2"))
     source = f"mapmeld simulator, {kind} seed {seed}"
     pairs = (pair_1, pair_2)
     cases = tuple(
@@ -175,35 +170,14 @@ def simulate(
     return Scenario(building, (pair_1.observed, r2, pair_2.observer), pairs, cases)
 
 
-def _bodies(
-    kind: str,
-    seed: int,
-    reach: float,
-    resolutions: tuple[float, float, float] | None,
-    conditions: tuple[Conditions, Conditions, Conditions] | None,
-) -> list[RobotModel]:
-    """R1, R2 and R3 as they are built."""
-    return [
-        make_body(
-            f"R{n + 1}",
-            seed,
-            kind,
-            reach,
-            resolutions[n] if resolutions else None,
-            conditions[n] if conditions else None,
-        )
-        for n in range(3)
-    ]
-
-
 def _nearest_pair(
     building: Building,
     planner: PathPlanner,
+    sightings: int,
     propose: Callable[[float, np.random.Generator], tuple[Robot, Robot]],
     target: float,
     tolerance: float,
     rng: np.random.Generator,
-    sightings: int,
 ) -> Pair:
     """Let robots drive until their maps overlap as asked; the nearest of a few rounds.
 
@@ -230,9 +204,10 @@ def pair_up(
     building: Building, planner: PathPlanner, observer: Robot, observed: Robot, sightings: int = 1
 ) -> Pair | None:
     """Let two robots meet and find how their frames truly lie; None where they never do."""
-    walls = _walls(planner, observer, observed)
-    if len(walls) < 10:
+    in_view = np.argwhere(observer.tour.seen & observed.tour.seen)[:, ::-1]  # wall nodes
+    if len(in_view) < 10:
         return None
+    walls = np.asarray((in_view + 0.5) * planner.node, dtype=np.float64)  # metres, world frame
     meetings = find_meetings(building, observer.true, observed.true, walls, sightings)
     if not meetings:
         return None
@@ -242,12 +217,6 @@ def pair_up(
     )
     overlap = measured_overlap(observer.grid, observed.grid, T_ref_mov)
     return Pair(observer, observed, meetings, T_ref_mov, round(rms, 4), round(overlap, 3))
-
-
-def _walls(planner: PathPlanner, a: Robot, b: Robot) -> FloatArray:
-    """(M, 2) wall nodes both robots had in view; metres, world frame."""
-    nodes = np.argwhere(a.tour.seen & b.tour.seen)[:, ::-1].astype(np.float64)
-    return np.asarray((nodes + 0.5) * planner.node)
 
 
 def case_of(pair: Pair, kind: str, source: str, rng: np.random.Generator, both_ways: bool) -> SimulatedCase:

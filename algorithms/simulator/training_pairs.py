@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
 
 from algorithms.observations.observation import Observation
-from algorithms.simulator.buildings.building_types import BUILDINGS
+from algorithms.simulator.buildings.building_types import BUILDINGS, build
+from algorithms.simulator.changes import with_pillars
 from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.portable_random import chance, pick, stream, uniform, whole
 from algorithms.simulator.robot import Conditions
@@ -82,26 +84,19 @@ def _kind(seed: int) -> str:
     return list(BUILDINGS)[seed % len(BUILDINGS)]
 
 
-_made: dict[tuple[int, int], tuple[SimulatedCase, ...]] = {}  # those of the last few buildings
-
-
+@lru_cache(maxsize=2 * len(BUILDINGS))
 def _cases(seed: int, floor: int = 0) -> tuple[SimulatedCase, ...]:
     """The two cases of a building; the same seed gives the same robots on every floor."""
-    if (seed, floor) not in _made:
-        while len(_made) > 2 * len(BUILDINGS):
-            del _made[next(iter(_made))]
-        rng = stream(seed, "conditions")
-        survey = chance(rng, SURVEYS)
-        hard = pick(rng, HARDSHIPS)
-        draw = _survey if survey else _lidar
-        conditions = draw(rng, hard), draw(rng, hard), draw(rng, hard)
-        overlap = uniform(rng, LEAST, MOST), uniform(rng, LEAST, MOST)
-        reach = uniform(rng, 3.5, 5.0) if survey else None
-        scenario = simulate(
-            _kind(seed), seed, overlap, reach=reach, floor=floor, pillars=True, conditions=conditions
-        )
-        _made[seed, floor] = scenario.cases
-    return _made[seed, floor]
+    rng = stream(seed, "conditions")
+    survey = chance(rng, SURVEYS)
+    hard = pick(rng, HARDSHIPS)
+    draw = _survey if survey else _lidar
+    conditions = draw(rng, hard), draw(rng, hard), draw(rng, hard)
+    overlap = uniform(rng, LEAST, MOST), uniform(rng, LEAST, MOST)
+    reach = uniform(rng, 3.5, 5.0) if survey else None
+    kind = _kind(seed)
+    building = with_pillars(build(kind, seed, floor), stream(seed, kind, f"pillars of floor {floor}"))
+    return simulate(kind, seed, overlap, reach=reach, building=building, conditions=conditions).cases
 
 
 def _lidar(rng: np.random.Generator, hard: float) -> Conditions:

@@ -21,7 +21,6 @@ from algorithms.spectra.hough_spectra import (
     hough_spectrum,
     match_shift,
     parabolic_offset,
-    turned,
 )
 
 
@@ -99,7 +98,7 @@ def shift_candidates(
     """Yield one candidate per turn: X and Y spectra of the turned map, eqs. (13)–(16)."""
     step = max(ref.grid.resolution, mov.grid.resolution)
     for turn, strength, twin in zip(match.turns, match.strengths, match.twins, strict=True):
-        cells = turned(mov, turn, window.pivot)
+        cells = (mov.points - window.pivot) @ rotation(turn).T  # T(0, 0, turn) M2, seen from its pivot
         x, y = (
             match_shift(
                 ref.points[:, axis],

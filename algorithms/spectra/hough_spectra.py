@@ -10,7 +10,7 @@ import numpy as np
 from numpy.fft import irfft, rfft  # not scipy's, which starts threads and takes 10 MB
 
 from algorithms.common.parallel_kernels import kernel, run_in_threads
-from algorithms.common.pose import FloatArray, rotation
+from algorithms.common.pose import FloatArray
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.spectra.augmented_map import AugmentedMap
 
@@ -217,8 +217,3 @@ def fast_length(least: int) -> int:
         if rest == 1:
             return size
         size += 1
-
-
-def turned(augmented: AugmentedMap, turn: float, pivot: FloatArray) -> FloatArray:
-    """(N, 2) cells of T(0, 0, turn) M2, the turned map of section III-C, seen from its pivot; metres."""
-    return np.asarray((augmented.points - pivot) @ rotation(turn).T, dtype=np.float64)

@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.common.pose import FloatArray, Pose2
-from algorithms.maps.grid_map import BoolArray, Float32Array, GridMap, where
+from algorithms.common.pose import Pose2
+from algorithms.maps.grid_map import GridMap, where
 from algorithms.maps.wall_distance import distance_to_walls
 from algorithms.verdict.wall_map import SAME_WALL
 
@@ -34,28 +34,17 @@ class WallLookup:
         return rows, cols
 
     @cached_property
-    def points(self) -> FloatArray:
-        """(N, 2) their centres; metres, the map's frame."""
-        return self.grid.centres(*self.cells)
-
-    @cached_property
-    def _near(self) -> BoolArray:
-        """(H, W) where another map's wall counts as the same wall."""
-        distance: Float32Array = distance_to_walls(self.grid.occupied) * np.float32(self.grid.resolution)
-        return np.asarray(distance <= SAME_WALL)
-
-    @cached_property
     def _table(self) -> CellAgreement:
         """(H, W) what a wall of another map is told at each cell."""
         table = np.where(self.grid.free, CONTRADICTS, SILENT).astype(np.uint8)
-        table[self._near] = AGREES
+        table[distance_to_walls(self.grid.occupied) * np.float32(self.grid.resolution) <= SAME_WALL] = AGREES
         return table
 
-    def told(self, other: WallLookup, T_other_self: Pose2) -> CellAgreement:
+    def agreement_with(self, other: WallLookup, T_other_self: Pose2) -> CellAgreement:
         """(N,) SILENT, AGREES or CONTRADICTS: what another map says of each wall cell of this one."""
-        at = np.floor(other.grid.grid_coordinates(T_other_self.apply(self.points))).astype(np.intp)
+        at = np.floor(other.grid.grid_coordinates(T_other_self.apply(self.grid.points))).astype(np.intp)
         cols, rows = at.T
         inside = (cols >= 0) & (rows >= 0) & (cols < other.grid.width) & (rows < other.grid.height)
-        told = np.full(len(at), SILENT, dtype=np.uint8)
-        told[inside] = other._table[rows[inside], cols[inside]]
-        return told
+        says = np.full(len(at), SILENT, dtype=np.uint8)
+        says[inside] = other._table[rows[inside], cols[inside]]
+        return says

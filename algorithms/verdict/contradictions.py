@@ -7,20 +7,16 @@ so that a person can go and look.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, BoolArray, CellArray, where
+from algorithms.maps.grid_map import FREE_UP_TO, OCCUPIED_FROM, BoolArray, CellArray, where
 from algorithms.maps.map_fusion import Fusion
-from algorithms.maps.wall_distance import distances, is_near_wall
+from algorithms.maps.wall_distance import distances, is_near_wall, surface
 from algorithms.verdict.wall_map import SAME_WALL
-
-IntArray = NDArray[np.intp]
 
 GAP = 0.4  # metres; contradictions nearer to each other than this are one place
 LEAST = 0.25  # metres of wall; what is shorter is a speck, not a place
@@ -71,82 +67,36 @@ class Contradictions:
 def find_conflicts(fusion: Fusion, gap: float = GAP) -> Contradictions:
     """Gather the contradictions of a merge into places.
 
-    Only around the walls is anything looked up: a large map is mostly none.
-
     gap : metres between two contradictions from which on they are two places
     """
-    ref, mov = _Side(fusion.ref_cells), _Side(fusion.mov_cells)
-    same = SAME_WALL / fusion.merged.resolution
-    ref_only, mov_only = ref.denied_by(mov, same), mov.denied_by(ref, same)
-    places, specks = _places(fusion, ref.seen(ref_only), mov.seen(mov_only), ref_only, mov_only, gap)
-    return Contradictions(ref_only, mov_only, places, specks)
+    (ref_walls, ref_free), (mov_walls, mov_free) = map(_walls_and_floor, fusion.layers)
+    cell = fusion.merged.resolution
+    disc = distances(ceil(SAME_WALL / cell)) <= SAME_WALL / cell
+    ref_only = ref_walls & mov_free & ~is_near_wall(mov_walls, disc)
+    mov_only = mov_walls & ref_free & ~is_near_wall(ref_walls, disc)
+    seen = surface(ref_only, ref_free), surface(mov_only, mov_free)
+    return Contradictions(ref_only, mov_only, *_places(fusion, ref_only | mov_only, seen, gap))
 
 
-class _Side:
-    """What one map says on the merged grid."""
-
-    def __init__(self, cells: CellArray) -> None:
-        self.cells = cells
-        self.walls: BoolArray = cells >= OCCUPIED_FROM
-
-    def free_at(self, rows: IntArray, cols: IntArray) -> BoolArray:
-        """(N,) whether it is known to be free there."""
-        cells = self.cells[rows, cols]
-        return np.asarray((cells >= FREE) & (cells <= FREE_UP_TO))
-
-    def denied_by(self, other: _Side, same: float) -> BoolArray:
-        """(H, W) walls where the other saw free floor and has no wall within so many cells."""
-        rows, cols = where(self.walls)
-        denied = other.free_at(rows, cols)
-        rows, cols = rows[denied], cols[denied]
-        disc = np.argwhere(distances(ceil(same)) <= same) - ceil(same)
-        drawn = _any_beside(rows, cols, disc, self.walls.shape, lambda row, col: other.walls[row, col])
-        only = np.zeros(self.walls.shape, dtype=np.bool_)
-        only[rows[~drawn], cols[~drawn]] = True
-        return only
-
-    def seen(self, walls: BoolArray) -> BoolArray:
-        """(N,) which of these walls have a free cell beside them, as ``agreement.surface`` defines it."""
-        rows, cols = where(walls)
-        return _any_beside(rows, cols, np.argwhere(np.ones((3, 3))) - 1, walls.shape, self.free_at)
-
-
-def _any_beside(
-    rows: IntArray,
-    cols: IntArray,
-    steps: IntArray,
-    shape: tuple[int, ...],
-    holds: Callable[[IntArray, IntArray], BoolArray],
-) -> BoolArray:
-    """(N,) whether something holds at any of the (K, 2) steps from these cells, on the grid."""
-    found = np.zeros(len(rows), dtype=np.bool_)
-    for down, right in steps.tolist():
-        row, col = rows + down, cols + right
-        inside = (row >= 0) & (row < shape[0]) & (col >= 0) & (col < shape[1])
-        found[inside] |= holds(row[inside], col[inside])
-    return found
+def _walls_and_floor(cells: CellArray) -> tuple[BoolArray, BoolArray]:
+    return np.asarray(cells >= OCCUPIED_FROM), np.asarray(cells.view(np.uint8) <= FREE_UP_TO)  # −1 is 255
 
 
 def _places(
-    fusion: Fusion,
-    ref_seen: BoolArray,
-    mov_seen: BoolArray,
-    ref_only: BoolArray,
-    mov_only: BoolArray,
-    gap: float,
+    fusion: Fusion, denied: BoolArray, seen: tuple[BoolArray, BoolArray], gap: float
 ) -> tuple[tuple[Contradiction, ...], float]:
-    """Places, most wall first, and the metres of wall that are in none; *_seen: of the walls of *_only."""
+    """Places, most wall first, and the metres of wall that are in none.
+
+    denied : (H, W) walls of either map where the other saw free floor
+    seen   : (H, W) those of map 1, and of map 2, that have a free cell of the same map beside them
+    """
     cell = fusion.merged.resolution
-    denied = ref_only | mov_only
     rows, cols = where(denied)
     if len(rows) == 0:
         return (), 0.0
     reach = is_near_wall(denied, distances(ceil(gap / 2 / cell)) * cell <= gap / 2)
     count, labels = cv2.connectedComponents(reach.view(np.uint8), connectivity=8)
-    ref_wall, mov_wall = (
-        np.bincount(labels[only][seen], minlength=count) * cell
-        for only, seen in ((ref_only, ref_seen), (mov_only, mov_seen))
-    )
+    ref_wall, mov_wall = (np.bincount(labels[walls], minlength=count) * cell for walls in seen)
     wall = ref_wall + mov_wall
     label = labels[rows, cols].astype(np.intp)
     low, high = np.full((count, 2), np.iinfo(np.intp).max), np.zeros((count, 2), dtype=np.intp)

@@ -140,20 +140,20 @@ def judge(
     scores = [other.score for other in rivals]
     likely = probability_of(named, rivals)
     contributions = model.contributions(named.quantities, scores)
-    told = named.evidence
+    evidence = named.evidence
     share = None
     if others is not None:
         share = exp(min(MOST_ODDS, log_odds_over(scores[0], named.score))) if rivals else 0.0
     rival = rivals[0] if rivals and (share or 0.0) >= RIVAL_FROM else None
-    accepted, bent = likely >= config.accept_from and not doubts, is_bent(told, config)
+    accepted, bent = likely >= config.accept_from and not doubts, is_bent(evidence, config)
     only_bent = accepted and bent and config.refuse_bent
     outcome = Outcome.REFUSED
     if only_bent:
         accepted = False
-        reason = f"Refused: the maps are bent, and a bent merge is not wanted. {_bend(told)}."
+        reason = f"Refused: the maps are bent, and a bent merge is not wanted. {_bend(evidence)}."
     elif accepted:
         outcome = Outcome.BENT if bent else Outcome.MERGED
-        reason = _accepted(outcome, likely, told)
+        reason = _accepted(outcome, likely, evidence)
     else:
         names = speaking_against(contributions)
         clauses = [*doubts, *_clauses(names, named, rival, pivot)]
@@ -173,12 +173,12 @@ def judge(
         overlap_cells=fusion.overlap,
         overlap_area=fusion.overlap * fusion.merged.resolution**2,
         conflicting_cells=fusion.conflicting,
-        shared_wall=told.shared_wall,
-        contradiction=told.contradiction,
-        rigid_contradiction=told.rigid_contradiction,
-        wall_across=told.across,
-        shared_floor=told.floor,
-        apart=told.apart,
+        shared_wall=evidence.shared_wall,
+        contradiction=evidence.contradiction,
+        rigid_contradiction=evidence.rigid_contradiction,
+        wall_across=evidence.across,
+        shared_floor=evidence.floor,
+        apart=evidence.apart,
         ambiguity=share,
         rival=None if rival is None else rival.T_ref_mov,
         deviation=max(named.deviations, default=0.0),
@@ -187,10 +187,10 @@ def judge(
     )
 
 
-def is_bent(told: Evidence, config: VerdictConfig) -> bool:
+def is_bent(evidence: Evidence, config: VerdictConfig) -> bool:
     """Whether no one transform lays the maps on each other everywhere, though they belong together."""
-    mended = told.rigid_contradiction - told.contradiction
-    return told.rigid_contradiction > config.bent_from and mended > BENDS
+    mended = evidence.rigid_contradiction - evidence.contradiction
+    return evidence.rigid_contradiction > config.bent_from and mended > BENDS
 
 
 def merges_of(probability: float) -> str:
@@ -212,23 +212,23 @@ def _sentence(clause: str) -> str:
     return clause[:1].upper() + clause[1:]
 
 
-def _accepted(outcome: Outcome, likely: float, told: Evidence) -> str:
+def _accepted(outcome: Outcome, likely: float, evidence: Evidence) -> str:
     if outcome is Outcome.MERGED:
         return (
-            f"Merged: {merges_of(likely)}. The maps agree on {_share(1 - told.contradiction)} of the "
-            f"{told.shared_wall:.0f} m of wall that both robots should have seen."
+            f"Merged: {merges_of(likely)}. The maps agree on {_share(1 - evidence.contradiction)} of the "
+            f"{evidence.shared_wall:.0f} m of wall that both robots should have seen."
         )
     return (
         f"Merged, bent: {merges_of(likely)}, but the maps are bent: no one transform lays them on each other "
-        f"everywhere. {_bend(told)}: walls will be double there."
+        f"everywhere. {_bend(evidence)}: walls will be double there."
     )
 
 
-def _bend(told: Evidence) -> str:
+def _bend(evidence: Evidence) -> str:
     """How far bent maps lie apart, and where, as a sentence without its end."""
-    where = f"{told.rigid_contradiction:.0%} of the wall contradicts as they lie"
-    if told.apart:
-        worst = told.apart[0]
+    where = f"{evidence.rigid_contradiction:.0%} of the wall contradicts as they lie"
+    if evidence.apart:
+        worst = evidence.apart[0]
         where = (
             f"they lie up to {worst.metres:.1f} m beside each other, most at ({worst.x:.1f}, {worst.y:.1f}), "
             f"and {where}"
@@ -238,29 +238,29 @@ def _bend(told: Evidence) -> str:
 
 def _clauses(names: Sequence[str], named: Weighed, rival: Weighed | None, pivot: FloatArray) -> list[str]:
     """What speaks against a merge, each as a clause of a sentence, in the order given."""
-    told, clauses = named.evidence, []
-    if told.rigid_agreeing + told.rigid_contradicting < LEAST_WALL:
+    seen, clauses = named.evidence, []
+    if seen.rigid_agreeing + seen.rigid_contradicting < LEAST_WALL:
         clauses.append("no wall was seen by both robots")
         names = [name for name in names if name in ("misfit", OTHERS)]
     walls = [name for name in names if name in ("contradiction", "unbent")]
     for name in names:
-        if name in walls[:1] and told.rigid_contradicting < NEXT_TO_NO_WALL:
+        if name in walls[:1] and seen.rigid_contradicting < NEXT_TO_NO_WALL:
             clauses.append(
-                f"they have only {told.rigid_agreeing:.0f} m of wall and {told.floor:.0f} m² of floor in "
+                f"they have only {seen.rigid_agreeing:.0f} m of wall and {seen.floor:.0f} m² of floor in "
                 "common: that much can fit by chance"
             )
         elif name in walls[:1]:
-            wall = told.rigid_agreeing + told.rigid_contradicting
+            wall = seen.rigid_agreeing + seen.rigid_contradicting
             clause = (
-                f"the maps contradict each other on {told.rigid_contradiction:.0%} of the {wall:.0f} m of "
+                f"the maps contradict each other on {seen.rigid_contradiction:.0%} of the {wall:.0f} m of "
                 "wall that both robots should have seen"
             )
             if "unbent" in walls:
-                clause += f", and on {told.contradiction:.0%} where patches of them may slip"
+                clause += f", and on {seen.contradiction:.0%} where patches of them may slip"
             clauses.append(clause)
         elif name == "across":
             clauses.append(
-                f"only {told.across:.0f} m of the {told.rigid_agreeing:.0f} m of wall that agree run across "
+                f"only {seen.across:.0f} m of the {seen.rigid_agreeing:.0f} m of wall that agree run across "
                 "the others, so little keeps map 2 in its place"
             )
         elif name == "misfit":

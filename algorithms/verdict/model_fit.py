@@ -32,7 +32,7 @@ class Example:
 
 
 @dataclass(frozen=True, eq=False)
-class Told:
+class Forecast:
     """What a model says of examples: for each the probability of the answer that it names.
 
     probabilities : (N,)
@@ -95,8 +95,7 @@ def fit(
     )
 
 
-def told_by(model: VerdictModel, examples: Sequence[Example]) -> Told:
-    """What a model says of examples."""
+def predict(model: VerdictModel, examples: Sequence[Example]) -> Forecast:
     weights = np.array([model.weights[name] for name in QUANTITIES])
     probabilities, right = [], []
     for example in examples:
@@ -106,10 +105,10 @@ def told_by(model: VerdictModel, examples: Sequence[Example]) -> Told:
         others = [score for k, score in enumerate(scores.tolist()) if k != best and not same[k]]
         probabilities.append(probability(float(scores[best]), others))
         right.append(bool(example.right[best]))
-    return Told(np.array(probabilities), np.array(right, dtype=np.bool_))
+    return Forecast(np.array(probabilities), np.array(right, dtype=np.bool_))
 
 
-def cross_validated(examples: Sequence[Example], folds: int = FOLDS) -> Told:
+def cross_validated(examples: Sequence[Example], folds: int = FOLDS) -> Forecast:
     """What models say of examples from buildings that they have not seen, a fold of buildings at a time; of a
     wrong pair neither building is known.
     """
@@ -121,11 +120,11 @@ def cross_validated(examples: Sequence[Example], folds: int = FOLDS) -> Told:
     for out in sorted(set(left_out), key=sorted):
         mine = [n for n, theirs in enumerate(left_out) if theirs == out]
         rest = [example for example, theirs in zip(examples, left_out, strict=True) if not theirs & out]
-        told = told_by(fit(rest), [examples[n] for n in mine])
-        probabilities[mine], right[mine] = told.probabilities, told.right
-    return Told(probabilities, right)
+        forecast = predict(fit(rest), [examples[n] for n in mine])
+        probabilities[mine], right[mine] = forecast.probabilities, forecast.right
+    return Forecast(probabilities, right)
 
 
-def most_likely_wrong(told: Told) -> float:
+def most_likely_wrong(forecast: Forecast) -> float:
     """The highest probability that was told of a wrong answer; 0 where there is none."""
-    return float(told.probabilities[~told.right].max(initial=0.0))
+    return float(forecast.probabilities[~forecast.right].max(initial=0.0))

@@ -144,7 +144,6 @@ class VerdictModel:
 
 
 def quantities_of(fit: Fit) -> dict[str, float]:
-    """The value of every quantity."""
     return {name: quantity.of(fit) for name, quantity in QUANTITIES.items()}
 
 
@@ -165,7 +164,6 @@ def log_odds_over(score: float, other: float) -> float:
 
 
 def model_from(plain: Mapping[str, Any]) -> VerdictModel:
-    """The model that a JSON file holds."""
     return VerdictModel(
         weights={name: float(plain["weights"][name]) for name in QUANTITIES},
         bias=float(plain["bias"]),

@@ -41,11 +41,11 @@ class Weighed:
 
 def weigh(whole: WholeMaps, T_ref_mov: Pose2, model: VerdictModel, began: Pose2 | None = None) -> Weighed:
     """What the whole maps say of a transform; ``began`` is that itself unless given."""
-    told = whole.weigh(T_ref_mov)
+    evidence = whole.weigh(T_ref_mov)
     deviations = tuple(whole.window.deviations(T_ref_mov.array()[None])[0].tolist())
-    quantities = quantities_of(Fit(told, misfit_of(deviations, WINDOW_EDGE)))
+    quantities = quantities_of(Fit(evidence, misfit_of(deviations, WINDOW_EDGE)))
     began = T_ref_mov if began is None else began
-    return Weighed(T_ref_mov, began, told, deviations, quantities, model.score(quantities))
+    return Weighed(T_ref_mov, began, evidence, deviations, quantities, model.score(quantities))
 
 
 def ranked(

@@ -183,7 +183,6 @@ def _look_up(
 
 @kernel
 def _on_floor(at: FloatArray, free: BoolArray) -> int:
-    """How many places lie on free floor."""
     count = 0
     for n in range(len(at)):
         col, row = int(np.floor(at[n, 0])), int(np.floor(at[n, 1]))

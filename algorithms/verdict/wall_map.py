@@ -87,7 +87,8 @@ class WallMap:
 
 def make_wall_map(grid: GridMap) -> WallMap:
     """Make a map ready; some 5 ms for 500 × 500 cells."""
-    grid = _coarser(grid)
+    factor = int(COARSE / grid.resolution + 1e-9)
+    grid = pooled(grid, factor) if factor > 1 else grid
     cell = grid.resolution
     rows, cols = where(grid.occupied)
     reach = max(1, round(AROUND / cell))
@@ -104,14 +105,6 @@ def make_wall_map(grid: GridMap) -> WallMap:
     stride = max(1, ceil(len(rows) / MOST_POINTS))
     points = np.stack([cols[::stride] + 0.5, rows[::stride] + 0.5], axis=-1) * cell
     return WallMap(grid, points, turned[::stride], cell * stride, level, sides)
-
-
-def _coarser(grid: GridMap) -> GridMap:
-    """The map in cells of ``COARSE`` or more: a wall in any of its parts makes a wall, then free floor."""
-    factor = int(COARSE / grid.resolution + 1e-9)
-    if factor < 2:
-        return grid
-    return pooled(grid, factor)
 
 
 def pooled(grid: GridMap, factor: int) -> GridMap:

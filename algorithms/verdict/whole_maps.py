@@ -8,10 +8,9 @@ and then on crisp ones again, by which bent maps come to lie in the middle of th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 from math import ceil
 from typing import TypeVar
 
@@ -21,11 +20,11 @@ from algorithms.common.parallel_kernels import run_in_threads
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.robots import Robots
-from algorithms.observations.observation import Encounter, robots_of
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.likelihood_field import clear, wall_field
 from algorithms.optimisation.objective import Objective, Side
-from algorithms.optimisation.search_box import SearchBox
+from algorithms.optimisation.search_box import pose_about, transforms_about
+from algorithms.optimisation.subcell_peak import STENCIL, paraboloid
 from algorithms.verdict.wall_evidence import Evidence, evidence
 from algorithms.verdict.wall_map import WallMap, make_wall_map, pooled
 
@@ -46,18 +45,12 @@ WORTH_MOVING = 2.0  # metres of wall: eight measurements, more than chance makes
 FLAT = 1e-6  # metres of wall; a hill that curves less is a ridge, and its top as far as may be
 CLOSE = 0.02  # of HILL; a fit that moves it less is the last
 
-_AROUND = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
-_PAIRS = np.triu_indices(3)
-_PARABOLOID = np.linalg.pinv(
-    np.column_stack([np.ones(len(_AROUND)), _AROUND, _AROUND[:, _PAIRS[0]] * _AROUND[:, _PAIRS[1]]])
-)  # least squares: the value, the slope and the products' factors at the middle
-
 
 @dataclass(frozen=True, eq=False)
 class WholeMaps:
     """Both maps made ready.
 
-    robots : around them there is no wall to weigh
+    robots : around them, within their size, there is no wall to weigh
     window : the sightings; what a transform deviates from them is taken off its value
     trust  : what half a squared standard deviation off a sighting costs; metres of wall
     """
@@ -83,18 +76,15 @@ class WholeMaps:
     def _blurred(self) -> Objective:
         return self._objective(BLURRED, BLURRED_CELL)
 
-    def value(self, T_ref_mov: Pose2) -> float:
-        """The crisp objective at a transform."""
-        return float(self.crisp(T_ref_mov.array()[None])[0])
-
     def climb(self, T_ref_mov: Pose2) -> Pose2:
         """The best transform near one; that itself where none is better by much."""
         best = self._climb(self.crisp, T_ref_mov, CRISP / 2)
         if self.weigh_rigidly(best) > CONTRADICTED:
             rough = self._climb(self._blurred, T_ref_mov, BLURRED / 2)
             other = self._climb(self.crisp, rough, CRISP / 2)
-            best = max(best, other, key=self.value)
-        return best if self.value(best) > self.value(T_ref_mov) + WORTH_MOVING else T_ref_mov
+            best = max(best, other, key=self.crisp.value_at)
+        value = self.crisp.value_at
+        return best if value(best) > value(T_ref_mov) + WORTH_MOVING else T_ref_mov
 
     def weigh_rigidly(self, T_ref_mov: Pose2) -> float:
         """Share of the walls that contradict with the maps as they are."""
@@ -107,36 +97,33 @@ class WholeMaps:
         other places are looked at, leaves it where it is to a millimetre or so.
         """
         pivot = T_ref_mov.inverse().apply(self.robots.places(T_ref_mov).mean(axis=0))
-        at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
-        box = SearchBox(at, at, pivot)
+        at = pose_about(pivot, T_ref_mov)
         for _ in range(MOST_FITS):
-            fitted = _PARABOLOID @ self.crisp(box.transforms(at + _AROUND * (HILL, HILL, HILL / REACH)))
-            curvature = np.zeros((3, 3))
-            curvature[_PAIRS] += fitted[4:]
-            curvature.T[_PAIRS] += fitted[4:]
+            slope, curvature = paraboloid(
+                self.crisp(transforms_about(pivot, at + STENCIL * (HILL, HILL, HILL / REACH)))
+            )
             bent, axes = np.linalg.eigh(curvature)
             # along each axis of the paraboloid one HILL at most: where it hardly curves, or upwards, its top
             # is nowhere, and a rounding error of the slope would decide how far to go
-            move = -axes @ np.clip(axes.T @ fitted[1:4] / np.minimum(bent, -FLAT), -1, 1)
+            move = -axes @ np.clip(axes.T @ slope / np.minimum(bent, -FLAT), -1, 1)
             at = at + move * (HILL, HILL, HILL / REACH)
             if abs(move).max() < CLOSE:
                 break
-        return box.transform(at)
+        return Pose2.from_array(transforms_about(pivot, at[None])[0])
 
     def _climb(self, objective: Objective, T_ref_mov: Pose2, step: float) -> Pose2:
         """From place to place to the best of the 27 around; half the steps where that is the middle."""
         pivot = self.window.pivot
-        at = np.append(T_ref_mov.apply(pivot), T_ref_mov.theta)
-        box = SearchBox(at, at, pivot)
+        at = pose_about(pivot, T_ref_mov)
         for _ in range(MOST_LOOKS):
-            around = at + _AROUND * (step, step, step / REACH)
-            best = int(objective(box.transforms(around)).argmax())
+            around = at + STENCIL * (step, step, step / REACH)
+            best = int(objective(transforms_about(pivot, around)).argmax())
             at = around[best]
             if best == len(around) // 2:
                 step /= 2
                 if step < LEAST_STEP:
                     break
-        return box.transform(at)
+        return Pose2.from_array(transforms_about(pivot, at[None])[0])
 
     def _objective(self, blur: float, least_cell: float) -> Objective:
         pairs = (self.ref, self.mov, False), (self.mov, self.ref, True)
@@ -163,19 +150,11 @@ class WholeMaps:
 
 
 def make_whole_maps(
-    ref: GridMap,
-    mov: GridMap,
-    encounters: Sequence[Encounter],
-    window: CoupledWindow,
-    trust: float,
-    robot_size: float,
+    ref: GridMap, mov: GridMap, robots: Robots, window: CoupledWindow, trust: float
 ) -> WholeMaps:
-    """Make both maps ready, each on a core.
-
-    robot_size : radius around the places of robots within which there is no wall; metres
-    """
+    """Make both maps ready, each on a core; the rest as in WholeMaps."""
     first, second = _each(2, lambda n: make_wall_map((ref, mov)[n]))
-    return WholeMaps(first, second, robots_of(encounters, robot_size), window, trust)
+    return WholeMaps(first, second, robots, window, trust)
 
 
 def _each(count: int, make: Callable[[int], Made]) -> list[Made]:

@@ -110,7 +110,7 @@ def touches(
 ) -> GridPixels:
     """The walls of one map that the other one agrees with or denies; the rest transparent.
 
-    told : (N,) for every wall cell, as ``WallLookup.told`` gives it
+    told : (N,) for every wall cell, as ``WallLookup.agreement_with`` gives it
     """
     shape = walls.grid.cells[part].shape
     factor = pooling(shape, most)

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from algorithms.common.errors import TooLargeError
+from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import Case
 from algorithms.maps.map_fusion import fuse
 from algorithms.methods.registry import METHODS
@@ -94,7 +95,7 @@ def _panel(axes: Axes, case: Case, score: ComparedRun) -> None:
         )
         return
     try:
-        pixels = overlay(fuse(case.ref, case.mov, pose), MOST_PIXELS)
+        pixels = overlay(fuse((case.ref, case.mov), (Pose2(), pose)), MOST_PIXELS)
     except TooLargeError:
         axes.text(0.5, 0.5, "too far apart to be drawn", transform=axes.transAxes, ha="center", fontsize=7)
         return

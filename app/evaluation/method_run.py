@@ -99,7 +99,7 @@ def true_fusion(case: Case) -> Fusion | None:
     truth = case.truth
     if truth is None or truth.T_ref_mov is None or truth.expected == "refuse":
         return None
-    return fuse(case.ref, case.mov, truth.T_ref_mov)
+    return fuse((case.ref, case.mov), (Pose2(), truth.T_ref_mov))
 
 
 def run_method(

@@ -243,7 +243,10 @@ def bases_of(case: Case, plan: SweepPlan) -> dict[tuple[Any, Any], dict[str, str
         "truth": None if case.truth is None else truth_to_bytes(case.truth).decode(),
         "method": plan.method,
         "seeds": plan.seeds,
-        "versions": {**versions(), "code": [code(METHODS[plan.method].run.__module__), code(merit.__name__)]},
+        "versions": {
+            **versions(),
+            "code": [code(METHODS[plan.method].search.__module__), code(merit.__name__)],
+        },
     }
     digests = {name: _digest(value) for name, value in common.items()}
     return {place: {**digests, "settings": _digest(plain(plan.config_at(*place)))} for place in plan.places()}

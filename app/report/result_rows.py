@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.common.pose import pose_error
+from algorithms.common.pose import Pose2, pose_error
 from algorithms.maps.map_fusion import fuse
 from algorithms.methods.manual_merge import BY_HAND
 from algorithms.methods.merge_result import MergeResult
@@ -54,7 +54,7 @@ def numbers(result: MergeResult, inputs: MergeInputs, config: Any = None) -> lis
         rows.append((measure.row, f"{result.value:{digits}}"))
     truth = inputs.truth.T_ref_mov if inputs.truth else None
     if truth is not None and inputs.ref is not None and inputs.mov is not None:
-        index = performance_index(result.fusion, fuse(inputs.ref, inputs.mov, truth))
+        index = performance_index(result.fusion, fuse((inputs.ref, inputs.mov), (Pose2(), truth)))
         rows.append(("eq. (23), over the true overlap", _share(index)))
         apart, turned = pose_error(result.T_ref_mov, truth, result.encounter.x_mov)
         right = inputs.truth.allows(apart, turned)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import io
+from pathlib import PurePath
 
 import numpy as np
 import yaml
 from PIL import Image
 
-from algorithms.files.map_file import map_from_bytes
+from algorithms.common.pose import Pose2
+from algorithms.files.map_file import grey_image, map_from_bytes
+from algorithms.files.thresholds import Shading
 from algorithms.maps.grid_map import GridMap
 
 HEADER = {
@@ -47,3 +50,11 @@ def load(data: bytes, **changes: object) -> GridMap:
 
 def cells(data: bytes, **changes: object) -> list[list[int]]:
     return load(data, **changes).cells.tolist()
+
+
+def image_map_from_bytes(
+    name: str, data: bytes, resolution: float, origin: Pose2 | None = None, shading: Shading | None = None
+) -> GridMap:
+    """What the image of an upload shows, with what a YAML file would say given by the test."""
+    cells, told = grey_image(name, data).read(shading or Shading())
+    return GridMap(cells, resolution, origin or Pose2(), PurePath(name).stem, told)

@@ -10,14 +10,14 @@ from math import hypot
 from matplotlib.figure import Figure
 
 from algorithms.verdict.calibration import Bin, calibration_error, reliability
-from algorithms.verdict.model_fit import Told
+from algorithms.verdict.model_fit import Forecast
 from app.drawing.palette import LIGHT, css
 from app.evaluation.figure_style import COLOURS, MARKERS, figure_files
 
 NEAR = 0.08  # bins nearer than that share a number's place
 
 
-def reliability_figure(told: Mapping[str, Told]) -> dict[str, bytes]:
+def reliability_figure(told: Mapping[str, Forecast]) -> dict[str, bytes]:
     """The files of the diagram by suffix.
 
     told : what a model says of several sets of merges, by their names

@@ -30,7 +30,7 @@ from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.refusal_causes import NO_SWARM
 from algorithms.simulator.training_pairs import training_pairs
 from algorithms.verdict.calibration import brier_score, calibration_error
-from algorithms.verdict.model_fit import Example, Told, cross_validated, fit, most_likely_wrong, told_by
+from algorithms.verdict.model_fit import Example, Forecast, cross_validated, fit, most_likely_wrong, predict
 from algorithms.verdict.probability_model import MODEL_FILE, VerdictModel
 from app.cli.executor_flags import executor_for
 from app.cli.progress_bar import bar
@@ -96,7 +96,7 @@ def _train(args: argparse.Namespace) -> int:
     ]
     pictures = {"simulated buildings, left out in turn": told}
     if args.cases is not None:
-        tried = told_by(model, [each.example for each in real])
+        tried = predict(model, [each.example for each in real])
         rows += [_row("simulated buildings", "the cases", tried, accept_from)]
         rows += [
             _row("simulated buildings", f"the cases, {kind}", _of_kind(tried, real, kind), accept_from)
@@ -106,7 +106,7 @@ def _train(args: argparse.Namespace) -> int:
         if len({building for each in own for building in each.buildings}) >= LEAST_KNOWN:
             rows += [
                 _row("the cases", "the others of them", cross_validated(own), accept_from),
-                _row("the cases", "simulated buildings", told_by(fit(own), examples), accept_from),
+                _row("the cases", "simulated buildings", predict(fit(own), examples), accept_from),
             ]
         pictures["cases, fitted to simulated buildings"] = tried
     for line in aligned(rows):
@@ -131,7 +131,7 @@ def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
     return args
 
 
-def _accept_from(told: Told) -> float:
+def _accept_from(told: Forecast) -> float:
     """The lowest round probability from which on none of these wrong pairs was accepted, each of them left
     out of the fit.
     """
@@ -139,7 +139,7 @@ def _accept_from(told: Told) -> float:
     return round(float(min(max(safe, NEVER_BELOW), 0.99)), 2)
 
 
-def _row(fitted: str, tried: str, told: Told, accept_from: float) -> list[str]:
+def _row(fitted: str, tried: str, told: Forecast, accept_from: float) -> list[str]:
     accepted = told.probabilities >= accept_from
     right = int(told.right.sum())
     return [
@@ -154,17 +154,20 @@ def _row(fitted: str, tried: str, told: Told, accept_from: float) -> list[str]:
     ]
 
 
-def _wrongly(told: Told, accept_from: float) -> int:
+def _wrongly(told: Forecast, accept_from: float) -> int:
     return int(np.count_nonzero(~told.right & (told.probabilities >= accept_from)))
 
 
-def _of_kind(told: Told, of: Sequence[Labelled], kind: str) -> Told:
+def _of_kind(told: Forecast, of: Sequence[Labelled], kind: str) -> Forecast:
     mine = np.array([each.kind == kind for each in of])
-    return Told(told.probabilities[mine], told.right[mine])
+    return Forecast(told.probabilities[mine], told.right[mine])
 
 
 def _write(
-    args: argparse.Namespace, model: VerdictModel, rows: Sequence[Sequence[str]], pictures: dict[str, Told]
+    args: argparse.Namespace,
+    model: VerdictModel,
+    rows: Sequence[Sequence[str]],
+    pictures: dict[str, Forecast],
 ) -> None:
     plain = {
         "weights": {name: round(weight, 4) for name, weight in model.weights.items()},

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator
 from dataclasses import dataclass
 
-from algorithms.maps.grid_map import GridMap
-from algorithms.methods.baselines.base import BaselineConfig, one_stage, run_direct
+from algorithms.methods.baselines.base import BaselineConfig, weigh_best
 from algorithms.methods.merge_result import Answer
-from algorithms.methods.stage_runner import StageCache
+from algorithms.methods.shared_stages import Found
+from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import AnswersDetail, Step
-from algorithms.observations.observation import Observation, bilateral_covariance, bilateral_transform
+from algorithms.observations.observation import bilateral_covariance, bilateral_transform
+from algorithms.observations.pair_problem import PairProblem
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,23 +19,18 @@ class BilateralConfig(BaselineConfig):
     """Settings of the bilateral method: it has none but what follows the transform."""
 
 
-def run(
-    ref: GridMap,
-    mov: GridMap,
-    observations: tuple[Observation, ...],
-    config: BilateralConfig,
-    seed: int = 0,
-    memo: StageCache | None = None,
-    method: str = "bilateral",
-) -> Iterator[Step]:
-    """Yield the steps of the bilateral merge of the first sighting; the last one's detail is the MergeResult.
+def search(
+    problem: PairProblem, config: BilateralConfig, seed: int, runner: StageRunner
+) -> Generator[Step, None, Found]:
+    """Yield the steps of the bilateral merge of the first sighting.
 
     raises SettingError where the observation lacks the bearing back or the observed heading
     """
-    observation = observations[0]
-    search = one_stage(
-        (observation, method),
+    observation = problem.observations[0]
+    found: AnswersDetail = yield from runner.stage(
+        "search",
+        (observation,),
         lambda: [AnswersDetail((Answer(bilateral_transform(observation), 0.0, "closed form"),))],
-        lambda: bilateral_covariance(observation),
     )
-    return run_direct(ref, mov, observations, config, seed, memo, method, search, valued=False)
+    covariance = bilateral_covariance(observation)
+    return (yield from weigh_best(problem, config, runner, found, covariance, valued=False))

@@ -18,12 +18,13 @@ from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import UNKNOWN, GridMap
-from algorithms.maps.map_fusion import Fusion, fuse
-from algorithms.methods.baselines.base import BaselineConfig, Found, run_direct
+from algorithms.maps.map_fusion import fuse
+from algorithms.methods.baselines.base import BaselineConfig, weigh_best
 from algorithms.methods.merge_result import Answer
-from algorithms.methods.stage_runner import StageCache, StageRunner
+from algorithms.methods.shared_stages import Found
+from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import AnswersDetail, Detail, HoughDetail, ShiftDetail, Step
-from algorithms.observations.observation import Observation
+from algorithms.observations.pair_problem import PairProblem
 from algorithms.observations.search_window import Window
 from algorithms.spectra.augmented_map import AugmentedMap
 from algorithms.spectra.candidates import CandidateConfig, match_turns, shift_candidates
@@ -48,39 +49,29 @@ class CarpinConfig(BaselineConfig):
     rank: RankConfig = field(default_factory=RankConfig)
 
 
-def run(
-    ref: GridMap,
-    mov: GridMap,
-    observations: tuple[Observation, ...],
-    config: CarpinConfig,
-    seed: int = 0,
-    memo: StageCache | None = None,
-    method: str = "smm-only",
-) -> Iterator[Step]:
-    """Yield the steps of Carpin's merge; the last one's detail is the MergeResult.
+def search(
+    problem: PairProblem, config: CarpinConfig, seed: int, runner: StageRunner
+) -> Generator[Step, None, Found]:
+    """Yield the steps of Carpin's merge.
 
     raises : NoAnswerError where a map has no walls
     """
-
-    def search(runner: StageRunner) -> Generator[Step, None, Found]:
-        for grid in (ref, mov):
-            if len(grid.points) == 0:
-                raise NoAnswerError(f"{grid.name} has no walls, and a spectrum is made of walls")
-        walls = plain(ref), plain(mov)
-        hough: HoughDetail = yield from runner.stage(
-            "spectra",
-            (ref, mov, method, config.spectra, config.candidates),
-            lambda: [HoughDetail(match_turns(*walls, config.spectra, config.candidates))],
-        )
-        found: AnswersDetail = yield from runner.stage(
-            "search", (hough, config.rank), lambda: _search(ref, mov, *walls, hough, config.rank)
-        )
-        step = max(ref.resolution, mov.resolution)
-        turn = np.pi / config.spectra.directions
-        # it says nothing of how sure it is: this is the raster it looks on
-        return found, np.diag([step, step, turn]) ** 2
-
-    return run_direct(ref, mov, observations, config, seed, memo, method, search)
+    for grid in (problem.ref, problem.mov):
+        if len(grid.points) == 0:
+            raise NoAnswerError(f"{grid.name} has no walls, and a spectrum is made of walls")
+    walls = plain(problem.ref), plain(problem.mov)
+    hough: HoughDetail = yield from runner.stage(
+        "spectra",
+        (problem, config.spectra, config.candidates),
+        lambda: [HoughDetail(match_turns(*walls, config.spectra, config.candidates))],
+    )
+    found: AnswersDetail = yield from runner.stage(
+        "search", (hough, config.rank), lambda: _search(*walls, hough, config.rank)
+    )
+    step = max(problem.ref.resolution, problem.mov.resolution)
+    # it says nothing of how sure it is: this is the raster it looks on
+    covariance = np.diag([step, step, np.pi / config.spectra.directions]) ** 2
+    return (yield from weigh_best(problem, config, runner, found, covariance))
 
 
 def plain(grid: GridMap) -> AugmentedMap:
@@ -101,12 +92,7 @@ def everywhere(ref: FloatArray, mov: FloatArray) -> Window:
 
 
 def _search(
-    ref: GridMap,
-    mov: GridMap,
-    ref_walls: AugmentedMap,
-    mov_walls: AugmentedMap,
-    hough: HoughDetail,
-    config: RankConfig,
+    ref_walls: AugmentedMap, mov_walls: AugmentedMap, hough: HoughDetail, config: RankConfig
 ) -> Iterator[Detail]:
     """A shift per turn, and the turn whose maps then agree best.
 
@@ -121,14 +107,10 @@ def _search(
     for index, candidate in enumerate(shift_candidates(ref_walls, mov_walls, match, window)):
         candidate = replace(candidate, T_ref_mov=along @ candidate.T_ref_mov)
         yield ShiftDetail(index, len(match.turns), candidate)
-        merged = fuse(ref, mov, candidate.T_ref_mov)
-        enough = merged.overlap >= config.overlap * _known(merged)
+        merged = fuse((ref_walls.grid, mov_walls.grid), (Pose2(), candidate.T_ref_mov))
+        known = min(int(np.count_nonzero(cells != UNKNOWN)) for cells in merged.layers)
+        enough = merged.overlap >= config.overlap * known
         value = merged.acceptance_index if enough else 0.0
         answers.append(Answer(candidate.T_ref_mov, value, f"acceptance index {value:.1%}"))
     answers.sort(key=lambda answer: -answer.value)
     yield AnswersDetail(tuple(answers))
-
-
-def _known(merged: Fusion) -> int:
-    """Cells of the map that knows fewer, on the merged raster."""
-    return min(int(np.count_nonzero(cells != UNKNOWN)) for cells in (merged.ref_cells, merged.mov_cells))

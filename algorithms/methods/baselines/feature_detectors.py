@@ -156,9 +156,9 @@ def _surf(picture: DistanceImage, config: SurfConfig) -> Described:
         upright = Turn.of(picture.grey.shape, -2 * np.pi * step / UPRIGHT_STEPS)
         mine = points[steps == step]
         mine[:, [1, 0]] = upright.there(at[steps == step])
-        told = surf.descriptors(upright(picture.grey, 255).astype(np.float64), mine)
-        places.append(upright.back(told[:, [1, 0]]))
-        looks.append(told[:, 6:])
+        described = surf.descriptors(upright(picture.grey, 255).astype(np.float64), mine)
+        places.append(upright.back(described[:, [1, 0]]))
+        looks.append(described[:, 6:])
     return np.concatenate(places), np.concatenate(looks)
 
 

@@ -15,14 +15,14 @@ import numpy as np
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
-from algorithms.maps.grid_map import GridMap
-from algorithms.methods.baselines.base import BaselineConfig, Found, run_direct
+from algorithms.methods.baselines.base import BaselineConfig, weigh_best
 from algorithms.methods.baselines.distance_image import MARGIN, PictureConfig, common_cell, picture
 from algorithms.methods.baselines.feature_detectors import DetectorConfig, SiftConfig, describe
 from algorithms.methods.merge_result import Answer
-from algorithms.methods.stage_runner import StageCache, StageRunner
+from algorithms.methods.shared_stages import Found
+from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import AnswersDetail, Detail, MatchesDetail, Step
-from algorithms.observations.observation import Observation
+from algorithms.observations.pair_problem import PairProblem
 
 LEAST = 2  # matches that a transform follows from
 LEAST_DEVIATION = 0.01  # metres; no match of features is better
@@ -51,43 +51,34 @@ class FeatureConfig(BaselineConfig):
     match: MatchConfig = field(default_factory=MatchConfig)
 
 
-def run(
-    ref: GridMap,
-    mov: GridMap,
-    observations: tuple[Observation, ...],
-    config: FeatureConfig,
-    seed: int = 0,
-    memo: StageCache | None = None,
-    method: str = "sift",
-) -> Iterator[Step]:
-    """Yield the steps of a merge by features; the last one's detail is the MergeResult.
+def search(
+    problem: PairProblem, config: FeatureConfig, seed: int, runner: StageRunner
+) -> Generator[Step, None, Found]:
+    """Yield the steps of a merge by features.
 
     raises : NoAnswerError where too few matches agree on a transform; SettingError where the features
              come from a package that is not installed
     """
-
-    def search(runner: StageRunner) -> Generator[Step, None, Found]:
-        matches: MatchesDetail = yield from runner.stage(
-            "match",
-            (ref, mov, config.picture, config.detector, config.match.ratio),
-            lambda: [match_features(ref, mov, config)],
-        )
-        found: AnswersDetail = yield from runner.stage(
-            "search", (matches, config.match, seed), lambda: _agree(matches, config.match, seed)
-        )
-        fit = agreeing(matches, found.answers[0].T_ref_mov, config.match.tolerance)
-        return found, fit_covariance(fit, found.answers[0].T_ref_mov)
-
-    return run_direct(ref, mov, observations, config, seed, memo, method, search)
+    matches: MatchesDetail = yield from runner.stage(
+        "match",
+        (problem, config.picture, config.detector, config.match.ratio),
+        lambda: [match_features(problem, config)],
+    )
+    found: AnswersDetail = yield from runner.stage(
+        "search", (matches, config.match, seed), lambda: _agree(matches, config.match, seed)
+    )
+    best = found.answers[0].T_ref_mov
+    covariance = fit_covariance(agreeing(matches, best, config.match.tolerance), best)
+    return (yield from weigh_best(problem, config, runner, found, covariance))
 
 
-def match_features(ref: GridMap, mov: GridMap, config: FeatureConfig) -> MatchesDetail:
+def match_features(problem: PairProblem, config: FeatureConfig) -> MatchesDetail:
     """The features of both maps, and which of them look alike: mutually nearest, by the ratio test."""
     from skimage.feature import match_descriptors  # slow to load, and no other method needs it
 
-    cell = common_cell(ref, mov, config.picture.pixels)
+    cell = common_cell(problem.ref, problem.mov, config.picture.pixels)
     places, looks = [], []
-    for grid in (ref, mov):
+    for grid in (problem.ref, problem.mov):
         drawn = picture(grid, cell, config.picture.reach, MARGIN)
         at, look = describe(drawn, config.detector)
         places.append(drawn.places(at))
@@ -101,7 +92,6 @@ def match_features(ref: GridMap, mov: GridMap, config: FeatureConfig) -> Matches
 
 
 def _agree(matches: MatchesDetail, config: MatchConfig, seed: int) -> Iterator[Detail]:
-    """The transform that most matches agree on."""
     from skimage.measure import ransac
     from skimage.transform import EuclideanTransform
 
@@ -120,9 +110,9 @@ def _agree(matches: MatchesDetail, config: MatchConfig, seed: int) -> Iterator[D
                 rng=seed,
             )
         T = Pose2.from_matrix(model.params) if model else None
-    told = matches if T is None else agreeing(matches, T, config.tolerance)
-    yield told
-    agreed = int(told.inliers.sum())
+    matched = matches if T is None else agreeing(matches, T, config.tolerance)
+    yield matched
+    agreed = int(matched.inliers.sum())
     if T is None or agreed < config.least:
         few = f"{min(len(matches.ref_features), len(matches.mov_features))} features"
         if len(ref) >= config.least:

@@ -9,7 +9,7 @@ walls in place of distances it finds 12 and 9 at 15 %.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
@@ -20,8 +20,7 @@ from numpy.typing import NDArray
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, Pose2, wrap_angle
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
-from algorithms.maps.grid_map import GridMap
-from algorithms.methods.baselines.base import BaselineConfig, one_stage, run_direct
+from algorithms.methods.baselines.base import BaselineConfig, weigh_best
 from algorithms.methods.baselines.distance_image import (
     DistanceImage,
     PictureConfig,
@@ -32,11 +31,13 @@ from algorithms.methods.baselines.distance_image import (
 )
 from algorithms.methods.baselines.overlap_error import OverlapError, extent
 from algorithms.methods.merge_result import Answer
-from algorithms.methods.stage_runner import StageCache
+from algorithms.methods.shared_stages import Found
+from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import AnswersDetail, Detail, Step, TurnsDetail
-from algorithms.observations.observation import Observation
+from algorithms.observations.pair_problem import PairProblem
+from algorithms.spectra.candidates import circular_peaks
 
-TOLD_EVERY = 10  # turns
+YIELD_EVERY = 10  # turns
 
 
 @dataclass(frozen=True)
@@ -62,43 +63,36 @@ class MseConfig(BaselineConfig):
     turns: TurnConfig = field(default_factory=TurnConfig)
 
 
-def run(
-    ref: GridMap,
-    mov: GridMap,
-    observations: tuple[Observation, ...],
-    config: MseConfig,
-    seed: int = 0,
-    memo: StageCache | None = None,
-    method: str = "mse",
-) -> Iterator[Step]:
-    """Yield the steps of the registration; the last one's detail is the MergeResult.
+def search(
+    problem: PairProblem, config: MseConfig, seed: int, runner: StageRunner
+) -> Generator[Step, None, Found]:
+    """Yield the steps of the registration.
 
     raises : NoAnswerError where a map has no walls, or where the maps share too little at every turn
     """
-    search = one_stage(
-        (ref, mov, config.picture, config.turns, seed, method),
-        lambda: _search(ref, mov, config, seed),
-        lambda: raster_covariance(ref, mov),
+    found: AnswersDetail = yield from runner.stage(
+        "search", (problem, config.picture, config.turns, seed), lambda: _search(problem, config, seed)
     )
-    return run_direct(ref, mov, observations, config, seed, memo, method, search)
+    return (yield from weigh_best(problem, config, runner, found, raster_covariance(problem)))
 
 
-def check_walls(ref: GridMap, mov: GridMap) -> None:
+def check_walls(problem: PairProblem) -> None:
     """Raise NoAnswerError where one of the maps has no walls to compare."""
-    for grid in (ref, mov):
+    for grid in (problem.ref, problem.mov):
         if not grid.occupied.any():
             raise NoAnswerError(f"{grid.name} has no walls that could be compared with the other map's")
 
 
-def raster_covariance(ref: GridMap, mov: GridMap) -> FloatArray:
+def raster_covariance(problem: PairProblem) -> FloatArray:
     """(3, 3) of a method that says nothing of how sure it is: a cell, and the turn that moves by a cell."""
-    cell = max(ref.resolution, mov.resolution)
-    return np.diag([cell, cell, cell / max(extent(mov), cell)]) ** 2
+    cell = max(problem.ref.resolution, problem.mov.resolution)
+    return np.diag([cell, cell, cell / max(extent(problem.mov), cell)]) ** 2
 
 
-def _search(ref: GridMap, mov: GridMap, config: MseConfig, seed: int) -> Iterator[Detail]:
+def _search(problem: PairProblem, config: MseConfig, seed: int) -> Iterator[Detail]:
     """All turns at a coarse raster, the best of them on finer ones."""
-    check_walls(ref, mov)
+    check_walls(problem)
+    ref, mov = problem.ref, problem.mov
     cell = common_cell(ref, mov, config.turns.pixels)
     wide = max(config.picture.reach, 2 * cell)
     coarse = picture(ref, cell, wide), picture(mov, cell, wide)
@@ -108,9 +102,9 @@ def _search(ref: GridMap, mov: GridMap, config: MseConfig, seed: int) -> Iterato
     for index, angle in enumerate(turns.tolist()):
         scores[index], pose = compare.best(angle)
         poses.append(pose)
-        if index % TOLD_EVERY == 0:
+        if index % YIELD_EVERY == 0:
             yield TurnsDetail(turns, scores.copy())
-    best = [index for index in _peaks(scores) if np.isfinite(scores[index])][: config.turns.kept]
+    best = [index for index in circular_peaks(scores) if np.isfinite(scores[index])][: config.turns.kept]
     if not best:
         raise NoAnswerError(f"at no turn do both maps know {config.turns.overlap:.0%} of the smaller area")
     fine = common_cell(ref, mov, config.picture.pixels)
@@ -128,14 +122,6 @@ def _search(ref: GridMap, mov: GridMap, config: MseConfig, seed: int) -> Iterato
     askew = ref.origin.theta - mov.origin.theta
     yield TurnsDetail(turns, scores, wrap_angle(answers[0].T_ref_mov.theta - askew))
     yield AnswersDetail(tuple(answers))
-
-
-def _peaks(scores: FloatArray) -> list[int]:
-    """Turns that are better than their neighbours, best first."""
-    known = np.nan_to_num(scores, nan=-np.inf, neginf=-np.inf)
-    higher = (known >= np.roll(known, 1)) & (known >= np.roll(known, -1))
-    peaks = np.flatnonzero(higher)
-    return [int(k) for k in peaks[np.argsort(-known[peaks], kind="stable")]]
 
 
 class _Shifts:

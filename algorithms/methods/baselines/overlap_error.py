@@ -52,12 +52,12 @@ class OverlapError:
         ref = self.ref
         to_grid = ref.grid.origin.inverse() @ T_ref_mov
         at = ((to_grid.apply(self.points) - ref.low) / ref.cell - 0.5).astype(np.float32)
-        told = cv2.remap(self._layers, at[None, :, 0], at[None, :, 1], cv2.INTER_LINEAR)[0]
-        known = told[:, 1] > 0.5
+        looked_up = cv2.remap(self._layers, at[None, :, 0], at[None, :, 1], cv2.INTER_LINEAR)[0]
+        known = looked_up[:, 1] > 0.5
         share = float(known.mean())
         if share < self.least or share == 0.0:
             return UNLIKE + self.least - share  # the way back lies downhill
-        return float(((told[known, 0] - self.values[known]) ** 2).mean(dtype=np.float64))
+        return float(((looked_up[known, 0] - self.values[known]) ** 2).mean(dtype=np.float64))
 
     @cached_property
     def _layers(self) -> NDArray[np.float32]:

@@ -8,7 +8,7 @@ frequency, with all of them 8 and 7, without whitening of the shift's spectrum 8
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field, replace
 from math import ceil, pi
 from typing import Annotated
@@ -19,8 +19,7 @@ import scipy  # its parts are loaded where they are first used
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import FloatArray, wrap_angle
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
-from algorithms.maps.grid_map import GridMap
-from algorithms.methods.baselines.base import BaselineConfig, one_stage, run_direct
+from algorithms.methods.baselines.base import BaselineConfig, weigh_best
 from algorithms.methods.baselines.distance_image import (
     DistanceImage,
     PictureConfig,
@@ -32,9 +31,10 @@ from algorithms.methods.baselines.distance_image import (
 from algorithms.methods.baselines.mse_registration import check_walls, raster_covariance
 from algorithms.methods.baselines.overlap_error import UNLIKE, OverlapError
 from algorithms.methods.merge_result import Answer
-from algorithms.methods.stage_runner import StageCache
+from algorithms.methods.shared_stages import Found
+from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import AnswersDetail, Detail, Step, TurnsDetail
-from algorithms.observations.observation import Observation
+from algorithms.observations.pair_problem import PairProblem
 from algorithms.spectra.candidates import circular_peaks
 
 DIRECTIONS = 720  # over a whole turn
@@ -62,38 +62,31 @@ class PhaseCorrelationConfig(BaselineConfig):
     phase: PhaseConfig = field(default_factory=PhaseConfig)
 
 
-def run(
-    ref: GridMap,
-    mov: GridMap,
-    observations: tuple[Observation, ...],
-    config: PhaseCorrelationConfig,
-    seed: int = 0,
-    memo: StageCache | None = None,
-    method: str = "phase-correlation",
-) -> Iterator[Step]:
-    """Yield the steps of the phase correlation; the last one's detail is the MergeResult.
+def search(
+    problem: PairProblem, config: PhaseCorrelationConfig, seed: int, runner: StageRunner
+) -> Generator[Step, None, Found]:
+    """Yield the steps of the phase correlation.
 
     raises : NoAnswerError where a map has no walls, or where the maps share too little at every turn tried
     """
-    search = one_stage(
-        (ref, mov, config.picture, config.phase, seed, method),
-        lambda: _search(ref, mov, config, seed),
-        lambda: raster_covariance(ref, mov),
+    found: AnswersDetail = yield from runner.stage(
+        "search", (problem, config.picture, config.phase, seed), lambda: _search(problem, config, seed)
     )
-    return run_direct(ref, mov, observations, config, seed, memo, method, search)
+    return (yield from weigh_best(problem, config, runner, found, raster_covariance(problem)))
 
 
-def _search(ref: GridMap, mov: GridMap, config: PhaseCorrelationConfig, seed: int) -> Iterator[Detail]:
+def _search(problem: PairProblem, config: PhaseCorrelationConfig, seed: int) -> Iterator[Detail]:
     """The turns, then a shift for each of the best."""
-    check_walls(ref, mov)
+    check_walls(problem)
+    ref, mov = problem.ref, problem.mov
     cell = common_cell(ref, mov, config.picture.pixels)
     reach = max(config.picture.reach, 1.5 * cell)
     pair = picture(ref, cell, reach), picture(mov, cell, reach)
     size = 2 * scipy.fft.next_fast_len(max(ceil(np.hypot(*each.far.shape)) for each in pair) + 1)
     half = turn_correlation(*pair, size, config.phase.frequencies)
     angles = np.arange(DIRECTIONS, dtype=np.float64) * (2 * pi / DIRECTIONS) - pi
-    told = TurnsDetail(angles, np.concatenate([half, half]))
-    yield told
+    tried = TurnsDetail(angles, np.concatenate([half, half]))
+    yield tried
     overlap = OverlapError.of(*pair, config.phase.overlap, seed)
     answers = []
     for peak in circular_peaks(half)[: config.phase.peaks]:
@@ -108,8 +101,8 @@ def _search(ref: GridMap, mov: GridMap, config: PhaseCorrelationConfig, seed: in
         raise NoAnswerError(
             f"at none of the turns tried do both maps know {config.phase.overlap:.0%} of the smaller area"
         )
-    answers.sort(key=lambda told: -told[0].value)
-    yield replace(told, best=answers[0][1])
+    answers.sort(key=lambda tried: -tried[0].value)
+    yield replace(tried, best=answers[0][1])
     yield AnswersDetail(tuple(answer for answer, _ in answers))
 
 

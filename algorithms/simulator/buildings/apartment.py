@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from algorithms.simulator.buildings.floor_plan import Building, FloorPlan, Rectangle
+from algorithms.simulator.buildings.floor_plan import Building, FloorPlan, Rectangle, along
 from algorithms.simulator.buildings.furniture import DOOR, boxes, door, furnish
 from algorithms.simulator.buildings.office import INNER, MARGIN, OUTER, windows
 from algorithms.simulator.portable_random import chance, pick, uniform
@@ -37,19 +37,12 @@ def _door_in(plan: FloorPlan, rng: np.random.Generator, wall: Wall) -> None:
     for _ in range(60):
         a = uniform(rng, low + 0.3, high - 0.3 - DOOR)
         before, after = level - INNER, level + INNER
-        if upright:
-            free = plan.is_empty(before - 0.8, a - 0.15, before, a + DOOR + 0.15) and plan.is_empty(
-                after, a - 0.15, after + 0.8, a + DOOR + 0.15
-            )
-        else:
-            free = plan.is_empty(a - 0.15, before - 0.8, a + DOOR + 0.15, before) and plan.is_empty(
-                a - 0.15, after, a + DOOR + 0.15, after + 0.8
-            )
-        if free:
+        beside = (before - 0.8, before), (after, after + 0.8)
+        if all(plan.is_empty(*along(upright, *levels, a - 0.15, a + DOOR + 0.15)) for levels in beside):
             side = pick(rng, (-1, 1))
             x, y = (level, a) if upright else (a, level)
-            along, into = ((0, 1), (side, 0)) if upright else ((1, 0), (0, side))
-            door(plan, rng, x, y, along, into, leafless=0.4, shut=0.0)
+            ahead, into = ((0, 1), (side, 0)) if upright else ((1, 0), (0, side))
+            door(plan, rng, x, y, ahead, into, leafless=0.4, shut=0.0)
             return
 
 
@@ -74,10 +67,7 @@ def _rooms(rng: np.random.Generator, width: float, height: float, resolution: fl
     _divide(rng, outline, rooms, walls)
     plan.outline(*outline, OUTER)
     for upright, level, low, high in walls:
-        half = INNER / 2
-        plan.box(
-            *((level - half, low, level + half, high) if upright else (low, level - half, high, level + half))
-        )
+        plan.box(*along(upright, level - INNER / 2, level + INNER / 2, low, high))
     for wall in walls:
         _door_in(plan, rng, wall)
         if wall[3] - wall[2] > 7:

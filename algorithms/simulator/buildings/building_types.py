@@ -10,22 +10,9 @@ from algorithms.common.errors import SettingError
 from algorithms.simulator.buildings.apartment import apartment, home
 from algorithms.simulator.buildings.corridor import corridor
 from algorithms.simulator.buildings.floor_plan import Building
-from algorithms.simulator.buildings.office import campus, office, university
+from algorithms.simulator.buildings.office import office, university
 from algorithms.simulator.buildings.warehouse import warehouse
 from algorithms.simulator.portable_random import stream
-
-__all__ = [
-    "BUILDINGS",
-    "Building",
-    "apartment",
-    "build",
-    "campus",
-    "corridor",
-    "home",
-    "office",
-    "university",
-    "warehouse",
-]
 
 Draw = Callable[[np.random.Generator, np.random.Generator], Building]
 

@@ -10,8 +10,8 @@ from algorithms.simulator.buildings.office import INNER, MARGIN, OUTER, evenly
 from algorithms.simulator.portable_random import chance, pick, uniform
 
 
-def _side_room(plan: FloorPlan, rng: np.random.Generator, x: float, wall: float, up: int) -> bool:
-    """A room behind a corridor wall, its door open; returns whether one may enter."""
+def _side_room(plan: FloorPlan, rng: np.random.Generator, x: float, wall: float, up: int) -> None:
+    """A room behind a corridor wall, its door open or shut."""
     wide, deep = uniform(rng, 3.2, 4.4), uniform(rng, 3.0, 4.0)
     low, high = sorted((wall, wall + up * deep))
     plan.outline(x, low, x + wide, high, INNER)
@@ -24,7 +24,6 @@ def _side_room(plan: FloorPlan, rng: np.random.Generator, x: float, wall: float,
     )
     if passable:
         plan.stops.append((x + wide / 2, (low + high) / 2))
-    return passable
 
 
 def corridor(shell: np.random.Generator, rng: np.random.Generator, resolution: float = 0.025) -> Building:

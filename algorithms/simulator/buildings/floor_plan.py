@@ -40,8 +40,12 @@ class Building:
 
     @property
     def solid(self) -> NDArray[np.bool_]:
-        """(H, W) bool: where a beam ends."""
         return np.asarray(self.surface != AIR)
+
+
+def along(upright: bool, level0: float, level1: float, low: float, high: float) -> Rectangle:
+    """What lies between two levels, x of an upright wall and else y, from low to high along the wall."""
+    return (level0, low, level1, high) if upright else (low, level0, high, level1)
 
 
 class FloorPlan:
@@ -79,7 +83,6 @@ class FloorPlan:
         return x[None, :], y[:, None]
 
     def box(self, x0: float, y0: float, x1: float, y1: float, what: int = WALL) -> None:
-        """Fill an axis-parallel box."""
         self.cells[self._window(x0, y0, x1, y1)] = what
 
     def outline(self, x0: float, y0: float, x1: float, y1: float, thick: float) -> None:
@@ -132,6 +135,5 @@ class FloorPlan:
         return not self.cells[self._window(x0, y0, x1, y1)].any()
 
     def finish(self, name: str) -> Building:
-        """The drawn floor as a value."""
         stops, doors = np.array(self.stops).reshape(-1, 2), np.array(self.doors).reshape(-1, 4)
         return Building(name, self.cells, self.resolution, stops, doors)

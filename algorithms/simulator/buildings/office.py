@@ -1,4 +1,4 @@
-"""Office floors: rooms on both sides of long corridors, cross corridors, and a campus of them."""
+"""Office floors: rooms on both sides of long corridors, and cross corridors."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from math import ceil
 
 import numpy as np
 
-from algorithms.simulator.buildings.floor_plan import AIR, DARK, Building, FloorPlan, Rectangle
+from algorithms.simulator.buildings.floor_plan import AIR, DARK, Building, FloorPlan, Rectangle, along
 from algorithms.simulator.buildings.furniture import DOOR, boxes, door, furnish, plant
 from algorithms.simulator.portable_random import chance, pick, uniform, whole
 
@@ -36,14 +36,11 @@ def evenly(low: float, high: float, step: float) -> list[float]:
 def windows(plan: FloorPlan, rng: np.random.Generator, x0: float, y0: float, x1: float, y1: float) -> None:
     """Glaze stretches of the four outer walls of a box: beams are stopped, few come back."""
     half = OUTER / 2
-    for low, high, level in ((x0, x1, y0), (x0, x1, y1)):
+    walls = (False, y0, x0, x1), (False, y1, x0, x1), (True, x0, y0, y1), (True, x1, y0, y1)
+    for upright, level, low, high in walls:
         for a in split(rng, low + 1, high - 1, 2.0, 5.0)[:-1]:
             if chance(rng, 0.3):
-                plan.box(a, level - half, a + 1.2, level + half, DARK)
-    for low, high, level in ((y0, y1, x0), (y0, y1, x1)):
-        for a in split(rng, low + 1, high - 1, 2.0, 5.0)[:-1]:
-            if chance(rng, 0.3):
-                plan.box(level - half, a, level + half, a + 1.2, DARK)
+                plan.box(*along(upright, level - half, level + half, a, a + 1.2), DARK)
 
 
 def _room(plan: FloorPlan, rng: np.random.Generator, room: Rectangle, corridor_above: bool) -> None:
@@ -167,8 +164,3 @@ def university(shell: np.random.Generator, rng: np.random.Generator, resolution:
     """A large office floor of about 60 m × 40 m, with corridors that look alike for tens of metres."""
     width, height = uniform(shell, 50, 70), uniform(shell, 32, 46)
     return floor(shell, rng, width, height, resolution, "university")
-
-
-def campus(rng: np.random.Generator, metres: float, resolution: float = 0.05) -> Building:
-    """A square office floor of any size, up to 200 m; for measuring speed."""
-    return floor(rng, rng, metres, metres, resolution, "campus")

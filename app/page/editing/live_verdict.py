@@ -37,8 +37,9 @@ class LiveVerdict:
     def weigh_on(self, manual: ManualMerge) -> None:
         """What transforms are weighed on from now on."""
         self._manual = manual
-        if self._walls is None or (self._walls[0].grid, self._walls[1].grid) != (manual.ref, manual.mov):
-            self._walls = WallLookup(manual.ref), WallLookup(manual.mov)
+        problem = manual.problem
+        if self._walls is None or (self._walls[0].grid, self._walls[1].grid) != (problem.ref, problem.mov):
+            self._walls = WallLookup(problem.ref), WallLookup(problem.mov)
 
     def ask(self, at: Pose2, rests: bool) -> None:
         """Weigh map 2 with its anchor there, in the scene; rests: whether the hand lies still."""
@@ -55,7 +56,7 @@ class LiveVerdict:
             return
         T = self._maps.layout.transform(at)
         ref, mov = walls
-        agreement = ref.told(mov, T.inverse()), mov.told(ref, T)
+        agreement = ref.agreement_with(mov, T.inverse()), mov.agreement_with(ref, T)
         with state.locks.drawing:
             if state.hand is None or state.view != MAP:
                 return

@@ -11,6 +11,7 @@ from algorithms.methods.manual_merge import ManualMerge, known_answers, refine
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.steps import ObservationDetail, Step
+from algorithms.observations.pair_problem import PairProblem
 from app.model.run_state import RunState
 from app.page.editing.live_verdict import LiveVerdict
 from app.page.modes import Mode
@@ -84,7 +85,7 @@ class MapDragController:
         search = self._known_search
         known = known_answers(search.get(MergeResult)) if search is not None else ()
         try:
-            return ManualMerge(i.ref, i.mov, i.observations, state.config, known)
+            return ManualMerge(PairProblem(i.ref, i.mov, i.observations), state.config, known)
         except MapMergeError as error:
             self._notices.report(error)
             return None

@@ -57,7 +57,7 @@ class OtherResult:
         for stage, detail in (
             ("observe", ObservationDetail(encounters)),
             ("search", answers),
-            ("fuse", fuse(ref, mov, self.pose)),
+            ("fuse", fuse((ref, mov), (Pose2(), self.pose))),
         ):
             run.tell(Step(stage, detail, 0.0))  # type: ignore[arg-type]
         return run

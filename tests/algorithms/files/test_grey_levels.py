@@ -11,11 +11,12 @@ import pytest
 from drawn import drawn_map
 from hypothesis import given
 from hypothesis import strategies as st
+from mapfiles import image_map_from_bytes
 from PIL import Image
 
 from algorithms.common.pose import Pose2
 from algorithms.files.grey_levels import as_meant, count_greys, remarks
-from algorithms.files.map_file import image_map_from_bytes, map_from_bytes, map_to_bytes, read_map
+from algorithms.files.map_file import map_from_bytes, map_to_bytes, read_map
 from algorithms.files.thresholds import Shading, cells_of
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN
 

@@ -12,13 +12,12 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
-from mapfiles import cells, encoded, header, load, pgm
+from mapfiles import cells, encoded, header, image_map_from_bytes, load, pgm
 from PIL import Image
 
 from algorithms.common.errors import InputFileError
 from algorithms.common.pose import Pose2
 from algorithms.files.map_file import (
-    image_map_from_bytes,
     map_from_bytes,
     map_to_bytes,
     read_image,

@@ -15,15 +15,18 @@ from algorithms.methods.manual_merge import BY_HAND, ManualMerge, known_answers,
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
 from algorithms.methods.steps import RefineDetail
+from algorithms.observations.pair_problem import PairProblem
 
 DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 
 
+def problem_of(case) -> PairProblem:
+    return PairProblem(case.ref, case.mov, case.observations)
+
+
 @pytest.fixture(scope="module")
 def scales(small_case, result) -> ManualMerge:
-    return ManualMerge(
-        small_case.ref, small_case.mov, small_case.observations, DEFAULTS, known_answers(result)
-    )
+    return ManualMerge(problem_of(small_case), DEFAULTS, known_answers(result))
 
 
 def about(T: Pose2, at: np.ndarray, dx: float, dy: float, turn: float) -> Pose2:
@@ -59,9 +62,7 @@ def test_a_hand_beside_the_right_place_is_refused_although_bent_maps_may_slip_so
 ):
     beside = about(result.T_ref_mov, result.encounter.x_mov, dx, dy, radians(turn))
     config = METHODS[method].defaults
-    verdict = (
-        ManualMerge(small_case.ref, small_case.mov, small_case.observations, config).weigh(beside).verdict
-    )
+    verdict = ManualMerge(problem_of(small_case), config).weigh(beside).verdict
     assert not verdict.accepted
     assert "fit better" in verdict.reason
 
@@ -99,9 +100,7 @@ def test_a_hand_outside_of_the_window_can_be_refined_too(scales, result):
 
 
 def test_a_method_that_maximises_nothing_weighs_but_does_not_refine(small_case, result):
-    plain = ManualMerge(
-        small_case.ref, small_case.mov, small_case.observations, METHODS["bilateral"].defaults
-    )
+    plain = ManualMerge(problem_of(small_case), METHODS["bilateral"].defaults)
     assert plain.weigh(result.T_ref_mov).value is None
     assert np.linalg.eigvalsh(plain.weigh(result.T_ref_mov).covariance).min() > 0
     with pytest.raises(SettingError, match="maximises nothing; choose one that does"):
@@ -115,8 +114,3 @@ def test_maps_are_never_touched_and_merging_twice_gives_the_same(small_case, res
     assert [grid.cells.tobytes() for grid in (small_case.ref, small_case.mov)] == before
     assert again.T_ref_mov == result.T_ref_mov
     assert again.fusion.merged.cells.tobytes() == result.fusion.merged.cells.tobytes()
-
-
-def test_without_a_sighting_nothing_is_weighed(small_case):
-    with pytest.raises(SettingError, match="give at least one"):
-        ManualMerge(small_case.ref, small_case.mov, (), DEFAULTS)

@@ -9,27 +9,25 @@ import pytest
 from proofs import proof_state
 
 from algorithms.common.pose import Pose2
-from algorithms.methods.merge_result import Answer, MergeResult, finish_merge
+from algorithms.methods.baselines.base import BaselineConfig
+from algorithms.methods.merge_result import Answer, MergeResult
+from algorithms.methods.shared_stages import Found, finish_merge
+from algorithms.observations.pair_problem import PairProblem
 from algorithms.verdict.decision import VerdictConfig, judge
 
 COVARIANCE = np.diag([0.01, 0.02, 0.003])
 
 
 @pytest.fixture
-def finished(result):
+def finished(result, small_case):
     """``finished(...)`` ends a merge at the answer of the sample, with whatever else is given."""
     named = result.weighed[0]
+    problem = PairProblem(small_case.ref, small_case.mov, small_case.observations)
 
-    def finish(beside=None, **given) -> MergeResult:
-        usual = {
-            "value": 12.5,
-            "answers": (Answer(named.T_ref_mov, 12.5, "still"),),
-            "method": "m",
-            "seed": 3,
-        }
-        return finish_merge(
-            named, beside, result.fusion, result.encounters, COVARIANCE, VerdictConfig(), **usual | given
-        )
+    def finish(beside=None, timings_s=None, **given) -> MergeResult:
+        answers = (Answer(named.T_ref_mov, 12.5, "still"),)
+        found = Found(named, beside, COVARIANCE, answers, 12.5, **given)
+        return finish_merge(problem, found, result.fusion, BaselineConfig(), "m", 3, timings_s or {})
 
     return finish
 
@@ -41,7 +39,7 @@ def test_it_ends_on_the_answer_that_was_named_and_keeps_what_it_was_given(result
     assert (ended.value, ended.method, ended.seed) == (12.5, "m", 3)
     assert ended.answers[0].stopped == "still"
     assert ended.fusion is result.fusion
-    assert ended.encounter is result.encounters[0]
+    assert np.array_equal(ended.encounter.x_ref, result.encounters[0].x_ref)
     assert ended.timings_s == {"search": 0.5}
     assert ended.search_found_it is True
 

@@ -13,6 +13,7 @@ from algorithms.methods.refusal_causes import find_cause
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge, run_explained
 from algorithms.methods.steps import CauseDetail, TriedDetail
 from algorithms.observations.observation import mirrored
+from algorithms.observations.pair_problem import PairProblem
 
 CONFIG = METHODS[DEFAULT_METHOD].defaults
 
@@ -21,6 +22,10 @@ def explained(case):
     """The last of what merging and asking for a cause yields."""
     *_, last = run_explained(DEFAULT_METHOD, case.ref, case.mov, case.observations, CONFIG, 0)
     return last.detail
+
+
+def problem_of(case):
+    return PairProblem(case.ref, case.mov, case.observations)
 
 
 def with_mov(case, mov, observations=None):
@@ -66,8 +71,10 @@ def test_a_map_that_was_put_right_when_it_was_read_and_is_mirrored_is_told_to_be
 
 def test_cells_that_would_be_too_fine_or_too_coarse_are_no_cause(strangers):
     for cell in (0.0002, 40.0):
-        tiny = replace(strangers, mov=replace(strangers.mov, resolution=cell))
-        *_, last = find_cause(tiny.ref, tiny.mov, tiny.observations, CONFIG)
+        mov = replace(strangers.mov, resolution=cell)
+        x, y = mov.corners().mean(axis=0).tolist()  # where robot 2 stands on its map, however small that is
+        tiny = with_mov(strangers, mov, (replace(strangers.observations[0], observed_x=x, observed_y=y),))
+        *_, last = find_cause(problem_of(tiny), CONFIG)
         assert isinstance(last, CauseDetail)
 
 
@@ -79,13 +86,13 @@ def test_maps_of_two_buildings_have_no_simple_cause(strangers):
 
 def test_how_a_map_was_read_is_told_where_no_change_helps(strangers):
     odd = with_mov(strangers, replace(strangers.mov, remarks=("no wall was read in it",)))
-    *_, last = find_cause(odd.ref, odd.mov, odd.observations, CONFIG)
+    *_, last = find_cause(problem_of(odd), CONFIG)
     assert "no wall was read in it" in last.hint
     assert remarks_on((odd.ref, odd.mov)) == ("Map 2 (hall): no wall was read in it.",)
 
 
 def test_every_change_is_told_before_it_is_tried(strangers):
-    *tried, last = find_cause(strangers.ref, strangers.mov, strangers.observations, CONFIG)
+    *tried, last = find_cause(problem_of(strangers), CONFIG)
     assert all(isinstance(each, TriedDetail) for each in tried)
     assert [each.index for each in tried] == list(range(tried[0].total))
     assert last == CauseDetail("")

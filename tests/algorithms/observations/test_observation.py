@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from drawn import OBSERVED, OBSERVER, T_MOV_WORLD, T_REF_MOV, T_REF_WORLD, drawn_map, poses, sighting
+from drawn import OBSERVED, OBSERVER, T_MOV_WORLD, T_REF_MOV, T_REF_WORLD, poses, sighting
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -12,7 +12,6 @@ from algorithms.maps.grid_map import GridMap
 from algorithms.observations.observation import (
     bilateral_covariance,
     bilateral_transform,
-    check_standing,
     encounter,
     encounters_of,
 )
@@ -122,30 +121,3 @@ def test_an_impossible_measurement_is_refused_by_name(field, value):
 def test_a_bearing_in_degrees_is_told_from_one_in_radians(field):
     with pytest.raises(SettingError, match=f"{field} is 73.5 rad.*give radians"):
         replace(SEEN, **{field: 73.5})
-
-
-def test_a_robot_far_off_its_own_map_is_told_with_what_may_be_mixed_up():
-    ref, mov = drawn_map(T_REF_WORLD, name="first"), drawn_map(T_MOV_WORLD, name="second")
-    check_standing([SEEN], ref, mov)
-    with pytest.raises(SettingError, match=r"robot 1 at .* outside its own map 'second'.*swapped"):
-        check_standing([SEEN], mov, ref)
-    with pytest.raises(SettingError, match=r"robot 2 at \(800, .* check observed.pose"):
-        check_standing([replace(SEEN, observed_x=800.0)], ref, mov)
-
-
-@pytest.mark.parametrize("number", [1, 2, 3])
-def test_of_several_observations_the_one_that_puts_a_robot_off_its_map_is_named(number):
-    ref, mov = drawn_map(T_REF_WORLD), drawn_map(T_MOV_WORLD)
-    several = [SEEN] * 3
-    check_standing(several, ref, mov)
-    several[number - 1] = replace(SEEN, observed_x=800.0)
-    with pytest.raises(SettingError, match=f"^observation {number} puts robot 2 at"):
-        check_standing(several, ref, mov)
-
-
-@given(st.floats(0.1, 4.9), st.floats(0, 2 * np.pi))
-def test_a_robot_a_little_off_a_cropped_map_is_let_pass(metres, direction):
-    grid = drawn_map(Pose2())
-    edge = grid.corners()[2] + metres * np.array([np.cos(direction), np.sin(direction)])
-    stands = replace(SEEN, observer=Pose2(*edge.tolist()), observed_x=4.0, observed_y=3.0)
-    check_standing([stands], grid, grid)

@@ -353,11 +353,6 @@ def test_what_is_of_no_interest_as_the_best_is_of_none_as_a_rival_either():
     assert state.rival_values.tolist() == usual.rival_values[:1].tolist()
 
 
-def test_a_block_costs_its_lookups_in_both_directions():
-    objective, window = dusty()
-    assert UpperBounds(objective, window).cost(0) == objective.evaluation_size
-
-
 def test_once_the_best_is_proven_no_part_of_the_circle_is_told_to_hold_a_better_one():
     proven = [state for state in prove(*dusty(0, 0), NEAR) if state.proven]
     assert len(proven) > 1

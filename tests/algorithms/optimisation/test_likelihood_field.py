@@ -299,14 +299,15 @@ def test_a_wall_as_near_to_a_robot_as_its_size_is_the_robot_and_one_beyond_is_a_
 def test_what_one_transform_costs_is_counted_over_both_directions():
     near, far = hall([(3.0, 4.5, 5.0, 4.55)]), hall([(3.0, 4.5, 4.0, 4.55)])
     objective = make_agreement(near, far, [MIDDLE], WIDE, AgreementConfig())
-    assert objective.evaluation_size == 40 + 20
+    assert [len(side.points) for side in objective.sides] == [20, 40]
 
 
 def test_walls_that_count_next_to_nothing_are_left_out_and_cost_nothing():
     lift = AugmentConfig(spread=1.0)  # a wall at 2.4 m counts as 5% of one at the encounter
     for away, cells in ((2.3, 4), (2.6, 0)):
         wall = hall([(4.0 + away, 3.9, 4.05 + away, 4.1)])
-        assert make_agreement(wall, hall(), [MIDDLE], lift, AgreementConfig()).evaluation_size == cells
+        sides = make_agreement(wall, hall(), [MIDDLE], lift, AgreementConfig()).sides
+        assert sum(len(side.points) for side in sides) == cells
 
 
 def test_of_an_uneven_spread_the_longer_axis_says_how_far_walls_are_looked_up():

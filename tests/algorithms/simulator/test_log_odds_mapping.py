@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN
-from algorithms.simulator.lidar import Lidar, Scans
-from algorithms.simulator.log_odds_mapping import OddsModel, build_map
+from algorithms.simulator.lidar import Lidar
+from algorithms.simulator.log_odds_mapping import USUAL, OddsModel, build_map
 from algorithms.simulator.path_planning import Track
 from algorithms.simulator.portable_random import TURN
 
@@ -18,14 +18,14 @@ LIDAR = Lidar(beams=360, field=360.0, reach=3.0)
 QUARTER = TURN // 4
 
 
-def mapped(ranges, x=0.025, y=0.025, heading=0, scans=10, model=None, cell=CELL, lidar=LIDAR):
+def mapped(ranges, x=0.025, y=0.025, heading=0, scans=10, model=USUAL, cell=CELL, lidar=LIDAR):
     """The map of a robot that stands in one place and measures the same again and again.
 
     ranges : one for all beams, or (beams,)
     """
     track = Track(np.tile([x, y], (scans, 1)).astype(float), np.full(scans, heading, dtype=np.int64))
     found = np.broadcast_to(np.asarray(ranges, dtype=float), (scans, lidar.beams))
-    return build_map(track, Scans(found), lidar, cell, "m", model)
+    return build_map(track, found.copy(), lidar, cell, "m", model)
 
 
 def at(grid, x, y):
@@ -103,9 +103,9 @@ def test_evidence_has_an_end_so_that_what_has_changed_is_learned_anew():
     lidar = Lidar(beams=1, field=0.0, reach=3.0)
     looks = np.concatenate([np.full(500, 2.0), np.full(5, 1.0)])[:, None]
     track = Track(np.tile([0.025, 0.025], (len(looks), 1)), np.zeros(len(looks), dtype=np.int64))
-    assert at(build_map(track, Scans(looks), lidar, CELL, "m"), 1.025, 0.025) == OCCUPIED
+    assert at(build_map(track, looks, lidar, CELL, "m"), 1.025, 0.025) == OCCUPIED
     forgetful = OddsModel(least=-10_000)
-    assert at(build_map(track, Scans(looks), lidar, CELL, "m", forgetful), 1.025, 0.025) == FREE
+    assert at(build_map(track, looks, lidar, CELL, "m", forgetful), 1.025, 0.025) == FREE
 
 
 def test_the_map_is_cropped_to_what_was_seen_and_a_margin_and_stays_in_its_frame():

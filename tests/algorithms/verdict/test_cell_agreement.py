@@ -23,12 +23,12 @@ def room(origin: Pose2 = Pose2()) -> GridMap:  # noqa: B008 - it is frozen
 
 def test_a_map_agrees_with_itself_everywhere():
     walls = WallLookup(room())
-    assert (walls.told(walls, Pose2()) == AGREES).all()
+    assert (walls.agreement_with(walls, Pose2()) == AGREES).all()
 
 
 def test_a_wall_in_free_floor_is_contradicted_and_one_in_the_unknown_is_not():
     walls = WallLookup(room())
-    told = walls.told(walls, Pose2(1.0, 0.0))
+    told = walls.agreement_with(walls, Pose2(1.0, 0.0))
     rows, cols = walls.cells
     inside = (cols == 5) & (rows > 8) & (rows < 31)
     assert (told[inside] == CONTRADICTS).all()
@@ -38,11 +38,11 @@ def test_a_wall_in_free_floor_is_contradicted_and_one_in_the_unknown_is_not():
 @given(st.floats(-20, 20), st.floats(-20, 20), st.floats(-3, 3))
 def test_nothing_is_told_where_the_maps_do_not_meet_and_frames_do_not_matter(x, y, theta):
     far = WallLookup(room())
-    assert (far.told(far, Pose2(x + 100, y, theta)) == SILENT).all()
+    assert (far.agreement_with(far, Pose2(x + 100, y, theta)) == SILENT).all()
     origin = Pose2(x, y, theta)
     moved = WallLookup(room(origin))
-    assert (far.told(moved, origin) == AGREES).all()
-    assert (moved.told(far, origin.inverse()) == AGREES).all()
+    assert (far.agreement_with(moved, origin) == AGREES).all()
+    assert (moved.agreement_with(far, origin.inverse()) == AGREES).all()
 
 
 @pytest.mark.parametrize("cell", [0.02, 0.05, 0.1])
@@ -51,5 +51,5 @@ def test_how_far_beside_another_a_wall_is_still_the_same_is_counted_in_metres(ce
     cells[:, round(1.5 / cell)] = OCCUPIED
     walls = WallLookup(GridMap(cells, cell))
     same, other = (np.floor(SAME_WALL / cell) + beside for beside in (0, 1))
-    assert (walls.told(walls, Pose2(float(same) * cell, 0.0)) == AGREES).all()
-    assert (walls.told(walls, Pose2(float(other) * cell, 0.0)) == CONTRADICTS).all()
+    assert (walls.agreement_with(walls, Pose2(float(same) * cell, 0.0)) == AGREES).all()
+    assert (walls.agreement_with(walls, Pose2(float(other) * cell, 0.0)) == CONTRADICTS).all()

@@ -36,7 +36,7 @@ def column(col: int, low: int, length: int) -> tuple[slice, slice]:
 
 
 def found(ref: GridMap, mov: GridMap, T_ref_mov: Pose2 | None = None):
-    return find_conflicts(fuse(ref, mov, T_ref_mov or Pose2()))
+    return find_conflicts(fuse((ref, mov), (Pose2(), T_ref_mov or Pose2())))
 
 
 def test_maps_that_say_the_same_have_no_place_of_contradiction():
@@ -122,7 +122,7 @@ def test_maps_that_do_not_touch_have_no_place_of_contradiction():
 def test_the_places_hold_the_wall_that_the_evidence_counts(small_case: Case):
     ref, mov, truth = small_case.ref, small_case.mov, small_case.truth.T_ref_mov
     wrong = Pose2(truth.x + 0.7, truth.y - 0.4, truth.theta + 0.1)
-    told = find_conflicts(fuse(ref, mov, wrong))
+    told = find_conflicts(fuse((ref, mov), (Pose2(), wrong)))
     assert told.wall == pytest.approx(
         evidence(make_wall_map(ref), make_wall_map(mov), wrong, NOWHERE).rigid_contradicting, rel=0.2
     )

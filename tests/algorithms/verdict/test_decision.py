@@ -14,7 +14,7 @@ from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, OCCUPIED_FROM
 from algorithms.maps.map_fusion import fuse
-from algorithms.observations.observation import encounter
+from algorithms.observations.observation import encounter, robots_of
 from algorithms.observations.search_window import WindowConfig, coupled_window
 from algorithms.verdict.decision import Outcome, VerdictConfig, judge, merges_of
 from algorithms.verdict.probability_model import Fit, misfit_of, quantities_of, shipped_model
@@ -25,9 +25,9 @@ from algorithms.verdict.whole_maps import make_whole_maps
 
 REF, MOV, SEEN, T = flat_pair()
 AT = encounter(SEEN)
-WHOLE = make_whole_maps(REF, MOV, [AT], coupled_window([AT], WindowConfig()), 0.25, 0.4)
+WHOLE = make_whole_maps(REF, MOV, robots_of([AT], 0.4), coupled_window([AT], WindowConfig()), 0.25)
 MODEL = shipped_model()
-FUSION = fuse(REF, MOV, T)
+FUSION = fuse((REF, MOV), (Pose2(), T))
 TURNED = T @ Pose2(*AT.x_mov.tolist()) @ Pose2(theta=np.pi) @ Pose2(*(-AT.x_mov).tolist())
 
 CLEAN = Evidence(100.0, 1.0, 98.0, 3.0, across=30.0, floor=60.0)
@@ -214,7 +214,7 @@ def test_a_merge_as_likely_as_is_asked_for_is_accepted_and_one_a_hair_below_is_n
 
 def test_the_cells_are_told_as_they_are_counted_on_the_merged_map():
     beside = Pose2(0.6, 0.4, 0.1) @ T
-    fusion = replace(fuse(REF, MOV, beside), cleared=7)
+    fusion = replace(fuse((REF, MOV), (Pose2(), beside)), cleared=7)
     verdict = judge(fusion, told(CLEAN, beside), None, AT.x_mov, VerdictConfig())
     ref, mov = fusion.ref_cells, fusion.mov_cells
     both = (ref >= FREE) & (mov >= FREE)

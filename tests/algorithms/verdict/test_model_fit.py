@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from algorithms.verdict.calibration import brier_score, calibration_error, reliability
-from algorithms.verdict.model_fit import Example, Told, cross_validated, fit, most_likely_wrong, told_by
+from algorithms.verdict.model_fit import Example, Forecast, cross_validated, fit, most_likely_wrong, predict
 from algorithms.verdict.probability_model import QUANTITIES
 
 NAMES = list(QUANTITIES)
@@ -63,17 +63,17 @@ def test_buildings_of_a_wrong_pair_are_both_left_out():
 def test_right_answers_beside_each_other_do_not_compete():
     twice = np.array([[1.0, 1.0, 1.0, 1.0], [1.0, 1.0, 1.0, 1.0]]) * SIGNS * 3
     model = fit(made_up(500))
-    both = told_by(model, [Example(twice, np.array([True, True]), ("a",))])
-    one = told_by(model, [Example(twice[:1], np.array([True]), ("a",))])
-    rival = told_by(model, [Example(twice, np.array([True, False]), ("a",))])
+    both = predict(model, [Example(twice, np.array([True, True]), ("a",))])
+    one = predict(model, [Example(twice[:1], np.array([True]), ("a",))])
+    rival = predict(model, [Example(twice, np.array([True, False]), ("a",))])
     assert both.probabilities == pytest.approx(one.probabilities)
     assert rival.probabilities[0] <= 0.5
 
 
 def test_above_the_most_likely_wrong_answer_nothing_wrong_is_accepted():
-    told = Told(np.array([0.2, 0.7, 0.9, 0.95]), np.array([False, False, True, True]))
+    told = Forecast(np.array([0.2, 0.7, 0.9, 0.95]), np.array([False, False, True, True]))
     assert most_likely_wrong(told) == 0.7
-    assert most_likely_wrong(Told(np.array([0.9]), np.array([True]))) == 0.0
+    assert most_likely_wrong(Forecast(np.array([0.9]), np.array([True]))) == 0.0
 
 
 probabilities = st.lists(st.floats(0, 1), min_size=1, max_size=60)

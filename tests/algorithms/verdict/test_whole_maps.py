@@ -15,7 +15,7 @@ from algorithms.common import parallel_kernels as kernels
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.maps.grid_map import OCCUPIED
 from algorithms.methods.registry import METHODS, merge
-from algorithms.observations.observation import encounter
+from algorithms.observations.observation import encounter, robots_of
 from algorithms.observations.search_window import WindowConfig, coupled_window
 from algorithms.optimisation.particle_swarm import SwarmConfig
 from algorithms.simulator.odometry_drift import OdometryDrift
@@ -33,7 +33,7 @@ DEFAULT = replace(METHODS["spectra-proven"].defaults, swarm=SwarmConfig(particle
 
 
 def whole_of(ref, mov, at):
-    return make_whole_maps(ref, mov, [at], coupled_window([at], WindowConfig()), 0.25, 0.4)
+    return make_whole_maps(ref, mov, robots_of([at], 0.4), coupled_window([at], WindowConfig()), 0.25)
 
 
 WHOLE = whole_of(REF, MOV, AT)
@@ -54,10 +54,10 @@ TURNED = about(0.0, 0.0, 180.0)
 def test_an_answer_climbs_to_the_known_pose_and_never_down(dx, dy, degrees):
     begun = about(dx, dy, degrees)
     found = WHOLE.climb(begun)
-    assert WHOLE.value(found) >= WHOLE.value(begun)
+    assert WHOLE.crisp.value_at(found) >= WHOLE.crisp.value_at(begun)
     distance, turn = pose_error(found, T, AT.x_mov)
     assert found == begun or (distance < 0.08 and turn < radians(1))
-    assert found != begun or WHOLE.value(T) < WHOLE.value(begun) + 2 * WORTH_MOVING
+    assert found != begun or WHOLE.crisp.value_at(T) < WHOLE.crisp.value_at(begun) + 2 * WORTH_MOVING
 
 
 def test_a_robot_that_stands_in_the_others_map_does_not_move_the_climb():
@@ -66,9 +66,9 @@ def test_a_robot_that_stands_in_the_others_map_does_not_move_the_climb():
     col, row = REF.grid_coordinates(AT.x_ref).astype(int)
     cells[row - 2 : row + 3, col - 2 : col + 3] = OCCUPIED
     seen = whole_of(replace(REF, cells=cells), MOV, AT)
-    assert seen.value(T) == pytest.approx(WHOLE.value(T), abs=0.3)
-    blind = make_whole_maps(seen.ref.grid, seen.mov.grid, [AT], WHOLE.window, 0.25, 0.0)
-    assert blind.value(T) < WHOLE.value(T) - 0.5
+    assert seen.crisp.value_at(T) == pytest.approx(WHOLE.crisp.value_at(T), abs=0.3)
+    blind = make_whole_maps(seen.ref.grid, seen.mov.grid, robots_of([AT], 0.0), WHOLE.window, 0.25)
+    assert blind.crisp.value_at(T) < WHOLE.crisp.value_at(T) - 0.5
 
 
 def test_an_answer_at_the_top_stays_where_it_is():

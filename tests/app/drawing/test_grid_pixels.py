@@ -73,7 +73,7 @@ def test_a_merged_map_shows_agreement_and_contradiction_in_their_own_colours():
     left, right = l_shaped(), l_shaped()
     changed = right.cells.copy()
     changed[0, 5] = FREE  # one map's wall, the other's free cell
-    picture = render.merged_walls(fuse(left, GridMap(changed, 0.1), Pose2()), LIGHT).pixels
+    picture = render.merged_walls(fuse((left, GridMap(changed, 0.1)), (Pose2(), Pose2())), LIGHT).pixels
     assert tuple(picture[0, 10]) == (*LIGHT.agreed, 255)
     assert tuple(picture[0, 5]) == (*LIGHT.conflict, 255)
     assert picture[5, 5, 3] == 0
@@ -81,7 +81,7 @@ def test_a_merged_map_shows_agreement_and_contradiction_in_their_own_colours():
 
 def test_walls_that_one_map_alone_knows_keep_that_maps_colour():
     left = l_shaped()
-    beside = fuse(left, left, Pose2(5.0, 0.0, 0.0))
+    beside = fuse((left, left), (Pose2(), Pose2(5.0, 0.0, 0.0)))
     picture = render.merged_walls(beside, LIGHT).pixels
     assert tuple(picture[0, 3, :3]) == LIGHT.ref
     assert tuple(picture[0, -3, :3]) == LIGHT.mov

@@ -13,7 +13,7 @@ from app.evaluation.reliability_figure import reliability_figure
 from repository import ROOT
 
 from algorithms.methods.registry import METHODS
-from algorithms.verdict.model_fit import Told
+from algorithms.verdict.model_fit import Forecast
 from app.evaluation.comparison_figure import NOTHING, RIGHT, WRONG, bars_figure, maps_figure
 from app.evaluation.figure_style import COLOURS
 from app.evaluation.method_comparison import ComparedRun
@@ -194,7 +194,7 @@ def test_of_many_cases_each_method_has_its_mean_and_a_dot_for_each(scores):
 def test_a_reliability_diagram_tells_how_many_merges_each_point_stands_for():
     said = np.repeat([0.05, 0.95], [30, 70])
     right = np.r_[np.zeros(30, dtype=bool), np.ones(70, dtype=bool)]
-    files = reliability_figure({"sample": Told(said, right)})
+    files = reliability_figure({"sample": Forecast(said, right)})
     opened(files)
     told = words(files)
     assert {"30", "70"} <= set(told)
@@ -202,7 +202,7 @@ def test_a_reliability_diagram_tells_how_many_merges_each_point_stands_for():
     (curve,) = (path for path in shapes(files, f"stroke: {COLOURS[0]}") if len(path) == 2)
     assert curve[1, 0] > curve[0, 0]
     assert curve[1, 1] < curve[0, 1]
-    badly = reliability_figure({"sample": Told(said, ~right)})
+    badly = reliability_figure({"sample": Forecast(said, ~right)})
     assert any("0.950" in text for text in words(badly))
 
 

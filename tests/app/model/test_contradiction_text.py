@@ -62,7 +62,7 @@ def test_only_denied_walls_stand_out_in_the_colour_of_their_map(palette):
     cells[0, :] = OCCUPIED
     ref, mov = cells.copy(), cells.copy()
     ref[20, 5:15], mov[30, 40:50] = OCCUPIED, OCCUPIED
-    fusion = fuse(GridMap(ref, 0.1), GridMap(mov, 0.1), Pose2())
+    fusion = fuse((GridMap(ref, 0.1), GridMap(mov, 0.1)), (Pose2(), Pose2()))
     pixels = render.denied_walls(fusion, find_conflicts(fusion), palette).pixels
     assert (pixels[20, 5:15] == (*palette.ref, 255)).all()
     assert (pixels[30, 40:50] == (*palette.mov, 255)).all()

@@ -16,9 +16,12 @@ from algorithms.common.pose import Pose2
 from algorithms.files.map_file import read_map
 from algorithms.files.observation_file import observations_from_bytes
 from algorithms.maps.map_fusion import fuse
-from algorithms.methods.merge_result import MergeResult, finish_merge
+from algorithms.methods.baselines.base import BaselineConfig
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
-from algorithms.verdict.decision import Outcome, VerdictConfig
+from algorithms.methods.shared_stages import Found, finish_merge
+from algorithms.observations.pair_problem import PairProblem
+from algorithms.verdict.decision import Outcome
 from algorithms.verdict.probability_model import Fit, quantities_of, shipped_model
 from algorithms.verdict.wall_evidence import Evidence
 from app.model.merge_inputs import MergeInputs
@@ -160,18 +163,10 @@ def test_maps_that_do_not_touch_make_a_page_that_says_that_nothing_is_shared(pag
         quantities=quantities,
         score=shipped_model().score(quantities),
     )
-    ended = finish_merge(
-        named,
-        None,
-        fuse(inputs.ref, inputs.mov, far),
-        result.encounters,
-        result.covariance,
-        VerdictConfig(),
-        value=None,
-        answers=result.answers,
-        method=result.method,
-        seed=0,
-    )
+    problem = PairProblem(inputs.ref, inputs.mov, inputs.observations)
+    found = Found(named, None, result.covariance, result.answers, None)
+    fusion = fuse((inputs.ref, inputs.mov), (Pose2(), far))
+    ended = finish_merge(problem, found, fusion, BaselineConfig(), result.method, 0, {})
     told = page_of(ended, inputs)
     read(told)
     assert told.index("<strong>REFUSED</strong>") < told.lower().index("no wall was seen by both robots")

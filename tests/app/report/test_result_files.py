@@ -91,7 +91,7 @@ def test_the_performance_index_counts_agreement_in_the_area_known_to_both(result
 
 def test_maps_that_share_no_cell_have_no_performance_index(result):
     nothing = np.full_like(result.fusion.mov_cells, UNKNOWN)
-    apart = replace(result, fusion=replace(result.fusion, mov_cells=nothing))
+    apart = replace(result, fusion=replace(result.fusion, layers=(result.fusion.ref_cells, nothing)))
     assert report.report_of(apart)["performance_index_at_estimate"] is None
 
 

@@ -8,10 +8,12 @@ from drawn import T_REF_MOV, flat_pair
 
 from algorithms.common.pose import Pose2
 from algorithms.maps.map_fusion import ConflictRule, fuse
-from algorithms.methods.baselines.base import BaselineConfig, one_stage, run_direct
+from algorithms.methods.baselines.base import BaselineConfig, weigh_best
 from algorithms.methods.merge_result import Answer, MergeResult
+from algorithms.methods.shared_stages import run_search
 from algorithms.methods.steps import AnswersDetail, ObservationDetail, WeighedDetail
 from algorithms.observations.observation import encounter, robots_of
+from algorithms.observations.pair_problem import PairProblem
 from algorithms.verdict.decision import VerdictConfig
 
 REF, MOV, SEEN, _ = flat_pair()
@@ -19,7 +21,7 @@ COVARIANCE = np.diag([1.0, 4.0, 9.0])
 ELSEWHERE = T_REF_MOV @ Pose2(2.0, 1.0, 1.0)
 
 
-def searching(*places: Pose2, calls: list[str] | None = None):
+def searching(*places: Pose2, calls: list[str] | None = None, valued: bool = True):
     """A search that finds these transforms, best first."""
 
     def make():
@@ -27,12 +29,16 @@ def searching(*places: Pose2, calls: list[str] | None = None):
             calls.append("searched")
         return [AnswersDetail(tuple(Answer(T, 7.5 - k, "looked") for k, T in enumerate(places)))]
 
-    return one_stage(("asked",), make, lambda: COVARIANCE)
+    def search(problem, config, seed, runner):
+        found = yield from runner.stage("search", ("asked",), make)
+        return (yield from weigh_best(problem, config, runner, found, COVARIANCE, valued))
+
+    return search
 
 
-def steps(*places: Pose2, config: BaselineConfig | None = None, memo=None, calls=None, **named):
-    search = searching(*places, calls=calls)
-    return list(run_direct(REF, MOV, (SEEN,), config or BaselineConfig(), 5, memo, "mine", search, **named))
+def steps(*places: Pose2, config: BaselineConfig | None = None, memo=None, calls=None, valued=True):
+    problem, search = PairProblem(REF, MOV, (SEEN,)), searching(*places, calls=calls, valued=valued)
+    return list(run_search(search, problem, config or BaselineConfig(), 5, memo, "mine"))
 
 
 def ended(*places: Pose2, **named) -> MergeResult:
@@ -81,7 +87,7 @@ def test_the_cells_are_merged_as_the_settings_say(conflict):
     result = ended(ELSEWHERE, config=BaselineConfig(conflict=conflict))
     robots = robots_of([encounter(SEEN)], VerdictConfig().robot_size)
     assert np.array_equal(
-        result.fusion.merged.cells, fuse(REF, MOV, ELSEWHERE, conflict, robots).merged.cells
+        result.fusion.merged.cells, fuse((REF, MOV), (Pose2(), ELSEWHERE), conflict, robots).merged.cells
     )
 
 

@@ -75,10 +75,10 @@ def test_a_small_move_of_the_camera_needs_no_other_excerpt_and_a_closer_look_doe
 def drawings():
     """Everything that is drawn of a grid, with the grid's shape."""
     ref, mov = speckled(50, 70), speckled(60, 45, seed=1)
-    fusion = fuse(ref, mov, Pose2(0.5, 1.0, 0.4))
+    fusion = fuse((ref, mov), (Pose2(), Pose2(0.5, 1.0, 0.4)))
     walls = WallLookup(ref), WallLookup(mov)
     lifted = augment(ref, ref.origin.apply(np.array([3.0, 2.0])), np.eye(2), 100.0)
-    told = walls[0].told(walls[1], Pose2(0.5, 1.0, 0.4).inverse())
+    told = walls[0].agreement_with(walls[1], Pose2(0.5, 1.0, 0.4).inverse())
     whole, merged = ref.cells.shape, fusion.merged.cells.shape
     return {
         "floor": (partial(render.floor, ref.cells, LIGHT), whole),

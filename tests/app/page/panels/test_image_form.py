@@ -9,10 +9,11 @@ import pytest
 import viser
 from hypothesis import given
 from hypothesis import strategies as st
+from mapfiles import image_map_from_bytes
 from panels import files_panel
 
 from algorithms.common.pose import Pose2
-from algorithms.files.map_file import MapMeta, image_map_from_bytes, meta_to_bytes, parse_meta
+from algorithms.files.map_file import MapMeta, meta_to_bytes, parse_meta
 from algorithms.files.thresholds import MODES, Shading
 from algorithms.maps.grid_map import COARSEST, FINEST, FREE, MOST_TURN, OCCUPIED, UNKNOWN
 from app.model.merge_inputs import Files

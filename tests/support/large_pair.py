@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from algorithms.common.pose import FloatArray
-from algorithms.simulator.buildings.office import campus
+from algorithms.simulator.buildings.office import floor
 from algorithms.simulator.path_planning import PathPlanner
 from algorithms.simulator.portable_random import stream, ticks_of_degrees, whole
 from algorithms.simulator.robot import drive, make_body
@@ -28,7 +28,8 @@ def simulate_large(cells: int = 4000, seed: int = 0) -> SimulatedCase:
     """
     rng = stream(seed, "campus", "large")
     metres = cells * RESOLUTION / 1.03  # a turn by 1.5° makes the raster 3 % wider
-    building = campus(stream(seed, "campus", "building"), metres)
+    shell = stream(seed, "campus", "building")
+    building = floor(shell, shell, metres, metres, 0.05, "campus")
     chosen = _spread_out(building.stops, rng)
     planner = PathPlanner(replace(building, stops=building.stops[chosen]))
     reach = 9.0
