@@ -214,6 +214,23 @@ def test_stopped_early_it_says_so_and_its_gap_covers_the_best(nodes, monkeypatch
     assert np.all(state.ceilings >= every.best_by_sector())
 
 
+def test_with_more_patience_more_is_searched_before_it_stops(monkeypatch):
+    objective, window = dusty()
+    monkeypatch.setattr(certificate, "NODES", 1000)
+    nodes = [last(prove(objective, window, ProofConfig(patience=n))).nodes for n in (1, 2, 4)]
+    assert all(n * 1000 < count < n * 1000 + 500 for n, count in zip((1, 2, 4), nodes, strict=True))
+
+
+@settings(max_examples=40)
+@given(problems(side=16), configs)
+def test_the_best_turn_lies_within_half_a_sector_of_that_which_holds_it(problem, config):
+    state = last(prove(problem.objective, problem.window, config))
+    if state.best is None or state.best_value <= 0:
+        return
+    middle = state.turns[np.argmax(state.found)]
+    assert abs(wrap_angles(state.best[2] - middle)) <= np.pi / len(state.turns) + 1e-9
+
+
 def test_stopped_among_the_rivals_the_best_stays_proven_and_the_ceiling_covers_the_rest(monkeypatch):
     objective, window = dusty(first=0, second=0)
     every = Everything(objective, window)
