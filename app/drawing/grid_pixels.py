@@ -108,10 +108,7 @@ def touches(
     most: int = MOST_PIXELS,
     part: CellRegion = WHOLE,
 ) -> GridPixels:
-    """The walls of one map that the other one agrees with or denies; the rest transparent.
-
-    told : (N,) for every wall cell, as ``WallLookup.agreement_with`` gives it
-    """
+    """The walls that the other map agrees with or denies; ``told`` (N,) by ``WallLookup.agreement_with``."""
     shape = walls.grid.cells[part].shape
     factor = pooling(shape, most)
     within, rows, cols = _within(part, walls.grid.cells.shape, *walls.cells)

@@ -62,8 +62,5 @@ class ModeSwitch:
         (leave or self.close)()
 
     def resume(self, snapshot: PageSnapshot, before: Mode | None) -> bool:
-        """Switch on what a snapshot asks for; whether it asks for any mode.
-
-        before : the mode that was on until now
-        """
+        """Switch on what a snapshot asks for, if anything; ``before``: the mode that was on until now."""
         return any(mode.resume(snapshot, mode is before) for mode in self._modes)

@@ -19,9 +19,8 @@ from app.model.merge_inputs import MergeInputs
 from app.page.cancellable_task import DownloadTask
 from app.page.page_state import PageState
 from app.page.research.comparison_panel import ALL, FAMILIES, Card, ComparePanel
-from app.page.research.other_result import OtherResult
+from app.page.research.other_result import OtherResult, outcome_of
 from app.page.research.other_result_controller import OtherResultController
-from app.page.research.run_summary import outcome_of
 from app.web.browser_events import BrowserEvents
 
 MAKING = "Making the files: tables and pictures."
