@@ -8,10 +8,6 @@ from dataclasses import dataclass
 from app.page.undo.page_snapshot import PageSnapshot
 
 
-def nothing() -> None:
-    """Do nothing."""
-
-
 @dataclass(frozen=True, eq=False)
 class Mode:
     """Lesson, map 2 in the hand, robots being placed, or another method's result.
@@ -27,7 +23,7 @@ class Mode:
     end: Callable[[], None]
     leave: Callable[[], None] | None = None
     redraw: Callable[[], None] | None = None
-    changed: Callable[[], None] = nothing
+    changed: Callable[[], None] = lambda: None
     resume: Callable[[PageSnapshot, bool], bool] = lambda snapshot, was_on: False
     reopen: Callable[[], None] | None = None
 

@@ -172,7 +172,7 @@ def robot(plot: SvgPlot, at: FloatArray, heading: float | None, colour: Rgb, r: 
     plot.sheet.path(points, None, 0, colour, close=True)
 
 
-def scale_bar(plot: SvgPlot, colour: str = INK) -> None:
+def scale_bar(plot: SvgPlot) -> None:
     """How long a metre is, at the lower left of a plot."""
     px = plot.wide / (plot.across[1] - plot.across[0])
     metres = next((m for m in (50, 20, 10, 5, 2, 1, 0.5, 0.2, 0.1) if m * px <= 0.4 * plot.wide), 0.05)

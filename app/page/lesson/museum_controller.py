@@ -41,8 +41,7 @@ class MuseumController:
         self._index = 0
         self._exhibit: Exhibit | None = None
         self._pair = MergeInputs()
-        again = lambda: self.pick(self._index)  # noqa: E731
-        self._panel.connect(self.pick, self.cure, again, self.leave)
+        self._panel.connect(self.pick, self.cure, lambda: self.pick(self._index), self.leave)
         tab.state.subscribe("result", self._result_shown)
 
     def toggle(self) -> None:

@@ -151,8 +151,7 @@ class ComparisonController:
         scores = [ComparedRun(case.name, name, other.trial) for name, other in self._found.items()]
         configs = {name: other.config for name, other in self._found.items()}
         seed = self._state.seed
-        make = lambda check: contest_archive(case, scores, configs, seed)  # noqa: E731
-        self._deliver(MAKING, "compared.zip", make)
+        self._deliver(MAKING, "compared.zip", lambda check: contest_archive(case, scores, configs, seed))
 
     # --- what the work tells ----------------------------------------------------------------------
 
