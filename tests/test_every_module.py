@@ -174,8 +174,6 @@ EXERCISED_BY = {
         "app.page.lesson.figures.search_figures",
         "app.page.lesson.figures.spectra_figures",
         "app.page.lesson.figures.verdict_figure",
-        "app.drawing.svg.chart_plot",
-        "app.drawing.svg.map_raster",
         "app.drawing.svg.svg_canvas",
     },
     "app/page/panels/test_panels.py": {
@@ -194,7 +192,6 @@ EXERCISED_BY = {
         "app.page.research.comparison_panel",
         "app.page.research.heatmap",
         "app.page.research.other_result",
-        "app.page.research.run_summary",
         "app.page.research.sweep_curves",
         "app.page.research.sweep_request",
         "app.drawing.svg.thumbnail",

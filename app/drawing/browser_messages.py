@@ -73,15 +73,9 @@ class BrowserMessages(ABC):
 
     def look_at(self, view: str, centre: FloatArray, radius: float, polar: float, azimuth: float) -> None:
         """Show a ball of the scene in 3-D; radians, polar from straight above."""
-        look = {
-            "view": view,
-            "centre": centre.tolist(),
-            "radius": radius,
-            "polar": polar,
-            "azimuth": azimuth,
-        }
+        ball = {"centre": centre.tolist(), "radius": radius, "polar": polar, "azimuth": azimuth}
         with self._lock:
-            self._pending.update(look=look, follow=True)
+            self._pending.update(look={"view": view, **ball}, follow=True)
 
     def theme(self, palette: Palette) -> None:
         """Light or dark ink, and the colour of what no map knows."""

@@ -108,10 +108,7 @@ def touches(
     most: int = MOST_PIXELS,
     part: CellRegion = WHOLE,
 ) -> GridPixels:
-    """The walls of one map that the other one agrees with or denies; the rest transparent.
-
-    told : (N,) for every wall cell, as ``WallLookup.agreement_with`` gives it
-    """
+    """The walls that the other map agrees with or denies; ``told`` (N,) by ``WallLookup.agreement_with``."""
     shape = walls.grid.cells[part].shape
     factor = pooling(shape, most)
     within, rows, cols = _within(part, walls.grid.cells.shape, *walls.cells)
@@ -194,7 +191,7 @@ def denied_walls(
     factor = pooling(ref.shape, most)
     pixels = _tinted(np.maximum(pool(ref, factor), pool(mov, factor)) >= OCCUPIED_FROM, palette.margin, FAINT)
     for mask, colour in ((found.ref_only, palette.ref), (found.mov_only, palette.mov)):
-        pixels[_pool_mask(mask[part], factor)] = (*colour, 255)
+        pixels[pool(mask[part].astype(np.int8), factor) > 0] = (*colour, 255)
     return GridPixels(pixels, factor)
 
 
@@ -205,11 +202,6 @@ def _within(
     (top, bottom, _), (left, right, _) = (cut.indices(n) for cut, n in zip(part, shape, strict=True))
     within = (rows >= top) & (rows < bottom) & (cols >= left) & (cols < right)
     return within, rows[within] - top, cols[within] - left
-
-
-def _pool_mask(mask: BoolArray, factor: int) -> BoolArray:
-    """Where a block of ``factor`` x ``factor`` cells holds one of the mask."""
-    return mask if factor == 1 else pool(mask.astype(np.int8), factor) > 0
 
 
 def upright(pixels: Pixels) -> Pixels:

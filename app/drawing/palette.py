@@ -66,6 +66,7 @@ DARK = replace(
 )
 
 QUIET: Rgb = (226, 232, 240)  # buttons that are not the point of the page
+STOP: Rgb = (71, 85, 105)  # buttons that stop something
 
 # (256, 3) uint8: even steps of level look like even steps, also in grey
 VIRIDIS: NDArray[np.uint8] = np.ascontiguousarray(

@@ -13,10 +13,7 @@ from app.drawing.grid_pixels import Pixels, upright
 
 
 def data_uri(pixels: Pixels) -> str:
-    """A picture as a PNG inside an address; its colours are few, so an index is kept for each pixel.
-
-    pixels : (H, W, 4) uint8, row 0 at the bottom
-    """
+    """(H, W, 4) pixels, row 0 at the bottom, as a PNG in an address; few colours are kept by an index."""
     flat = np.ascontiguousarray(upright(pixels)).view(np.uint32)[..., 0]
     colours, index = np.unique(flat, return_inverse=True)
     packed = io.BytesIO()
@@ -32,7 +29,8 @@ def data_uri(pixels: Pixels) -> str:
 
 
 def png_base64(pixels: Pixels) -> str:
-    """A picture as a PNG in base64, made in a hurry; row 0 comes first, as it is."""
-    done, packed = cv2.imencode(".png", cv2.cvtColor(pixels, cv2.COLOR_RGBA2BGRA))
+    """(H, W, 3 or 4) a picture as a PNG in base64, made in a hurry; row 0 comes first, as it is."""
+    order = cv2.COLOR_RGBA2BGRA if pixels.shape[2] == 4 else cv2.COLOR_RGB2BGR
+    done, packed = cv2.imencode(".png", cv2.cvtColor(pixels, order))
     assert done  # only a picture without pixels cannot be packed
     return base64.b64encode(packed.tobytes()).decode()

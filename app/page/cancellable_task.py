@@ -6,22 +6,18 @@ then it has touched nothing of the page.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from threading import Lock, RLock
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import viser
 
+from app.drawing.browser_messages import BrowserMessages
 from app.system.cancellation import Cancelled, Check
 from app.web.download import DOWNLOADS
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from app.drawing.browser_messages import BrowserMessages
 
 OFTEN = 0.1  # seconds between two words of how far it is
 
@@ -46,10 +42,7 @@ class CancellableTask:
 
     @contextmanager
     def __call__(self, doing: str, aside: bool = False) -> Iterator[Check]:
-        """Gives what the work calls to look up: it raises Cancelled once Stop was pressed.
-
-        aside : it changes nothing on the page, so that the words from before are right afterwards, too
-        """
+        """Gives what the work calls; it raises Cancelled after Stop. ``aside``: the old words come back."""
         said: dict[str, Any] = {"state": doing, "mood": "running", "progress": 0.05 if aside else 0.3}
         me, told = self._begin(said), perf_counter()
 
@@ -128,10 +121,7 @@ class DownloadTask:
         self._at_work = Lock()
 
     def __call__(self, doing: str, name: str, make: Callable[[Check], bytes]) -> None:
-        """Make a file while it says what it does; where that is left, there is no file, and that is all.
-
-        make : looks up now and then; raises Cancelled
-        """
+        """Make a file, which may be left by Cancelled, while saying what is done; and send it."""
         if not self._at_work.acquire(blocking=False):
             return  # a second press while it is being made
         try:

@@ -58,13 +58,5 @@ class InputsController:
 
     def forget_results(self, inputs: MergeInputs, **more: object) -> None:
         """These are the inputs now; what was found with others no longer counts."""
-        self._state.update(
-            inputs=inputs,
-            result=None,
-            result_config=None,
-            contradictions=None,
-            run=RunState(),
-            search=None,
-            goal=None,
-            **more,
-        )
+        gone = dict.fromkeys(("result", "result_config", "contradictions", "search", "goal"))
+        self._state.update(inputs=inputs, run=RunState(), **gone, **more)

@@ -8,10 +8,6 @@ from dataclasses import dataclass
 from app.page.undo.page_snapshot import PageSnapshot
 
 
-def nothing() -> None:
-    """Do nothing."""
-
-
 @dataclass(frozen=True, eq=False)
 class Mode:
     """Lesson, map 2 in the hand, robots being placed, or another method's result.
@@ -27,7 +23,7 @@ class Mode:
     end: Callable[[], None]
     leave: Callable[[], None] | None = None
     redraw: Callable[[], None] | None = None
-    changed: Callable[[], None] = nothing
+    changed: Callable[[], None] = lambda: None
     resume: Callable[[PageSnapshot, bool], bool] = lambda snapshot, was_on: False
     reopen: Callable[[], None] | None = None
 
@@ -62,8 +58,5 @@ class ModeSwitch:
         (leave or self.close)()
 
     def resume(self, snapshot: PageSnapshot, before: Mode | None) -> bool:
-        """Switch on what a snapshot asks for; whether it asks for any mode.
-
-        before : the mode that was on until now
-        """
+        """Switch on what a snapshot asks for, if anything; ``before``: the mode that was on until now."""
         return any(mode.resume(snapshot, mode is before) for mode in self._modes)

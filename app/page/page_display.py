@@ -182,10 +182,7 @@ class PageDisplay:
     # --- views ------------------------------------------------------------------------------------
 
     def draw(self, live: bool, look: bool = False) -> None:
-        """The run in the chosen view.
-
-        look : the camera goes there, too
-        """
+        """The run in the chosen view; ``look``: the camera goes there, too."""
         state, view = self._state, self._state.view
         if view == MAP:
             self.views.run.show(state.run, state.config, self._panels.run.follow or look, live)
@@ -197,10 +194,7 @@ class PageDisplay:
         self.show_legend()
 
     def show_view(self, draw_map: Callable[[], None] | None = None) -> None:
-        """The chosen view of the newest state.
-
-        draw_map : draws the map where a mode does; None: the run is drawn
-        """
+        """The chosen view of the newest state; ``draw_map`` draws the map where a mode does."""
         state, view = self._state, self._state.view
         self._panels.run.view = view
         self.views.map.visible(view == MAP)
@@ -235,10 +229,7 @@ class PageDisplay:
             self.messages.hud(legend=legend(state.palette, state.view, state.run, mode=mode))
 
     def show_lesson_step(self, look: bool, turn: float | None) -> None:
-        """A run on the map, as far as a step of the lesson goes.
-
-        turn : by which map 2 is turned beside map 1; None: not at all
-        """
+        """A run on the map, as far as a step of the lesson goes; ``turn``: of map 2 beside map 1."""
         state, maps, run = self._state, self.views.map, self._state.run
         if state.view != MAP:
             self.draw(live=False)

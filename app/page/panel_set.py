@@ -28,10 +28,7 @@ from app.web.download import DOWNLOADS
 
 
 class Panels:
-    """Widgets only: what they do is connected by the controllers.
-
-    turned : is called when a person turns to another page of the charts
-    """
+    """Widgets; controllers connect them. ``turned``: a person turned to another page of the charts."""
 
     def __init__(
         self,

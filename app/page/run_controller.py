@@ -29,10 +29,7 @@ from app.web.callback_errors import words
 
 
 class RunController:
-    """Of one tab: listens to its job thread.
-
-    stop_upload : leaves the file that is on its way
-    """
+    """Of one tab: listens to its job thread; ``stop_upload``: leaves the file that is on its way."""
 
     def __init__(self, tab: Tab, runner: Runner, stop_upload: Callable[[], None]) -> None:
         self._state, self._display, self._panels = tab.state, tab.display, tab.panels
@@ -117,16 +114,12 @@ class RunController:
         self._state.update(method=settings.method, config=settings.config, seed=seed)
 
     def _set_speed(self) -> None:
-        self.thread.set_pace(
-            self._panels.run.pace or 0.01
-        )  # a run that is told at a pace comes to its end so
+        # a run that is told at a pace comes to its end so
+        self.thread.set_pace(self._panels.run.pace or 0.01)
         self._display.show_buttons()
 
     def search(self, job: MergeJob, searched: Callable[[RunState | None], None]) -> None:
-        """Run something else than the method.
-
-        searched : is given the run in its end, or None where it was stopped
-        """
+        """Run something else than the method; ``searched`` is given the run, or None where it was stopped."""
         self._searched = searched
         self.thread.request(job)
 

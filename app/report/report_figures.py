@@ -19,10 +19,8 @@ from algorithms.verdict.contradictions import Contradictions
 from app.drawing.grid_pixels import is_free, wall_masks
 from app.drawing.palette import LIGHT, Rgb
 from app.drawing.scene_layout import Rect, known_corners, rect_of
-from app.drawing.svg.chart_plot import draw_chart
-from app.drawing.svg.map_plot import robot, scale_bar, scene
-from app.drawing.svg.map_raster import RasterView, cells_seen, draw_map, under
-from app.drawing.svg.svg_canvas import SvgCanvas, SvgPlot, ticks
+from app.drawing.svg.map_plot import RasterView, cells_seen, draw_map, robot, scale_bar, scene, under
+from app.drawing.svg.svg_canvas import SvgCanvas, SvgPlot, draw_chart, ticks
 from app.model import chart_data as charts
 from app.model.contradiction_text import MOST_PLACES
 from app.model.objective_label import ObjectiveLabel

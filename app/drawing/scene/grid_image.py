@@ -40,10 +40,7 @@ class Size:
 
 @dataclass(frozen=True, eq=False)
 class Closer:
-    """An excerpt that ``image`` lacks.
-
-    excerpt : None where it has one that is not looked at closely any more
-    """
+    """An excerpt that ``image`` lacks; ``excerpt`` None: the one it has is of no use any more."""
 
     image: GridImage
     draw: Draw
@@ -80,10 +77,7 @@ class GridImage:
         self._laid: Closer | None = None  # what lies over it on the page
 
     def show(self, draw: Draw, grid: GridMap, anchor: FloatArray) -> None:
-        """Draw a picture of ``grid``.
-
-        anchor : (2,) point of the grid's frame that lies at the parent's origin; metres
-        """
+        """Draw a grid; ``anchor``: (2,) point of its frame that lies at the parent's origin; metres."""
         picture = self._drawn(draw, grid)
         rows, cols = self._shape
         size = np.array([cols, rows]) * grid.resolution
@@ -135,9 +129,6 @@ class GridImage:
             # an excerpt of the last one lies there until another takes its place
             self._handle.image = self._drawn(draw, grid).pixels
 
-    def hide(self) -> None:
-        self.visible(False)
-
     def visible(self, yes: bool) -> None:
         if self._handle is not None:
             self._handle.visible = self._seen = yes
@@ -152,10 +143,7 @@ class GridImage:
     # --- what is looked at closely ------------------------------------------------------------------
 
     def closer(self, view: CameraView, parent: Pose2) -> Closer | None:
-        """What is to lie over it for this view; None where nothing is to change.
-
-        parent : where the frame that it hangs on lies; scene
-        """
+        """What is to lie over it now, if that changes; ``parent``: where its frame lies; scene."""
         draw, grid = self._draw, self._grid
         if draw is None or grid is None or not self._seen or self._pooled == 1:
             return None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import viser
 from numpy.typing import NDArray
@@ -45,14 +47,14 @@ class HeightsView:
         if detail is None:
             self.hide()
             return
-        radius = self._radius(detail)
+        reach = [np.abs(bars(side)[0]).max(initial=0.5) for side in (detail.ref, detail.mov)]
+        radius = float(max(reach)) * 1.05
         if self._drawn is not detail:
             self.hide()
             self._drawn = detail
             for name, augmented, side in (("1", detail.ref, -1.0), ("2", detail.mov, 1.0)):
                 self._bars(name, augmented, side * APART * radius, radius)
-        items = [*self._floor(-1, radius, palette, 1), *self._floor(1, radius, palette, 2)]
-        self._stage.layer("floor", items)
+        self._stage.layer("floor", _floor(-1, radius, palette, 1) + _floor(1, radius, palette, 2))
         if look:
             self._stage.look_at("heights", np.array([0.0, 0.12 * radius, 0.0]), 1.62 * radius, 0.92, 0.0)
 
@@ -63,11 +65,6 @@ class HeightsView:
         self._drawn = None
         self._stage.layer("floor", None)
 
-    @staticmethod
-    def _radius(detail: AugmentDetail) -> float:
-        reach = [np.abs(bars(side)[0]).max(initial=0.5) for side in (detail.ref, detail.mov)]
-        return float(max(reach)) * 1.05
-
     def _bars(self, name: str, augmented: AugmentedMap, away: float, radius: float) -> None:
         """Unlit stems: a lit colour would no longer be the one of the scale."""
         where, share = bars(augmented)
@@ -77,24 +74,18 @@ class HeightsView:
         top = foot.copy()
         top[:, 1] = share * TALLEST * 2 * radius
         colours = linear(viridis(np.stack([0.55 * share, share], axis=1)))
-        self._handles.append(
-            self._scene.add_line_segments(
-                f"/world/heights/{name}",
-                np.stack([foot, top], axis=1).astype(np.float32),
-                colours,
-                thickness=augmented.grid.resolution,
-                thickness_units="world",
-            )
-        )
+        ends = np.stack([foot, top], axis=1).astype(np.float32)
+        how: Any = {"thickness": augmented.grid.resolution, "thickness_units": "world"}
+        self._handles.append(self._scene.add_line_segments(f"/world/heights/{name}", ends, colours, **how))
 
-    @staticmethod
-    def _floor(side: int, radius: float, palette: Palette, number: int) -> list[Item]:
-        z = side * APART * radius
-        unit = np.array([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]], dtype=float)
-        corners = unit * radius + (0, 0, z)
-        post = np.array([[-radius, 0, z - radius], [-radius, TALLEST * 2 * radius, z - radius]])
-        name = {"t": f"map {number}: {2 * radius:.0f} m around robot 2", "tp": corners[3], "size": 13}
-        return [
-            path(corners, palette.margin, close=True, w=1, dy=14, dx=4, tc=css(palette.text), **name),
-            path(post, palette.margin, w=1.5, tp=post[1], t="peak level", dx=6, tc=css(palette.text)),
-        ]
+
+def _floor(side: int, radius: float, palette: Palette, number: int) -> list[Item]:
+    z = side * APART * radius
+    unit = np.array([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]], dtype=float)
+    corners = unit * radius + (0, 0, z)
+    post = np.array([[-radius, 0, z - radius], [-radius, TALLEST * 2 * radius, z - radius]])
+    name = {"t": f"map {number}: {2 * radius:.0f} m around robot 2", "tp": corners[3], "size": 13}
+    return [
+        path(corners, palette.margin, close=True, w=1, dy=14, dx=4, tc=css(palette.text), **name),
+        path(post, palette.margin, w=1.5, tp=post[1], t="peak level", dx=6, tc=css(palette.text)),
+    ]

@@ -33,10 +33,7 @@ class MapComparison:
         self.mode: Mode = "overlay"
 
     def offer(self, conflicts: Contradictions | None, palette: Palette) -> None:
-        """Map 2 lies over map 1: there is something to compare.
-
-        conflicts : of the merged map; None where the cells are not merged
-        """
+        """Map 2 lies over map 1: compare them; ``conflicts`` None where their cells are not merged."""
         self._conflicts = conflicts
         self._modes = MODES if conflicts is not None else ("overlay", "blink", "curtain")
         if self.mode not in self._modes:

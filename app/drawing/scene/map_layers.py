@@ -118,10 +118,7 @@ class MapLayers:
         self.show("merged")
 
     def compare(self, mode: Mode, conflicts: Contradictions | None) -> None:
-        """Show both maps in this way, where one lies over the other.
-
-        conflicts : of the merged map; None where there is none, and then no difference to show
-        """
+        """Show both maps in this way where they lie; without conflicts there is no difference to show."""
         self._mode, self._conflicts = mode, conflicts
         if not self._hidden:
             self.show(self.which)

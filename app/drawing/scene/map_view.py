@@ -8,7 +8,6 @@ import viser
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import FREE, OCCUPIED_FROM
 from algorithms.methods.steps import AugmentDetail
-from algorithms.verdict.cell_agreement import CellAgreement, WallLookup
 from algorithms.verdict.contradictions import Contradictions
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import LIGHT, Palette
@@ -32,7 +31,7 @@ class MapView:
         self.ground = MapLayers(client.scene, size, stage)
         self.inputs = MergeInputs()
         self.palette = LIGHT
-        self._mov_at = Pose2()
+        self.mov_at = Pose2()  # where map 2's anchor lies, and its turn; scene
         self.mode: Mode = "overlay"
         self.boxed: object = None  # the box that is drawn and looked at
         self.layout = SceneLayout((np.zeros(2), np.zeros(2)))
@@ -68,17 +67,12 @@ class MapView:
         """Show or hide everything of this view; ink comes back with the next ``RunView.show``."""
         if yes:
             self.ground.show(self.ground.which)
-            self.draw_robots(together=self._mov_at != self.layout.apart)
+            self.draw_robots(together=self.mov_at != self.layout.apart)
         else:
             self.ground.hide()
             self.clear(*OF_A_RUN, "robots", "sight", "grip")
 
     # --- map 2 in a person's hand -----------------------------------------------------------------
-
-    @property
-    def mov_at(self) -> Pose2:
-        """Where map 2's anchor lies, and its turn; scene."""
-        return self._mov_at
 
     def hold(self, at: Pose2) -> None:
         """Put map 2 in a person's hand, at a place of the scene."""
@@ -93,13 +87,6 @@ class MapView:
         self._stage.layer("grip", signs.grip(hull, self.palette))
         self._stage.hand({"mov": {"hull": hull, "arm": signs.TURN_ARM, "cell": mov.resolution}})
 
-    def carried(self, at: Pose2) -> None:
-        """The page has moved map 2 by itself."""
-        self._mov_at = at
-
-    def touch(self, walls: tuple[WallLookup, WallLookup], told: tuple[CellAgreement, CellAgreement]) -> None:
-        self.ground.touch(walls, told)
-
     def let_go(self) -> None:
         """Nothing is in a person's hand."""
         self._stage.hand(None)
@@ -110,7 +97,7 @@ class MapView:
     @property
     def together(self) -> bool:
         """Whether map 2 lies over map 1, as it is."""
-        return self.inputs.complete and self.ground.which != "levels" and self._mov_at != self.layout.apart
+        return self.inputs.complete and self.ground.which != "levels" and self.mov_at != self.layout.apart
 
     def compare(self, mode: Mode, conflicts: Contradictions | None) -> None:
         """Show both maps in this way where they lie over each other; a rival would be one map too many."""
@@ -119,21 +106,21 @@ class MapView:
 
     def extent(self) -> Rect:
         """Rectangle around both maps as they lie now."""
-        return self.layout.view(self._mov_at)
+        return self.layout.view(self.mov_at)
 
     # --- parts ------------------------------------------------------------------------------------
 
     def read_out(self, place: FloatArray, story: RunState) -> str:
         """What both maps know of a place in the scene: coordinates, occupancy, level."""
         point = place + self.layout.anchor_ref
-        there = self._mov_at.inverse().apply(place) + self.layout.anchor_mov
+        there = self.mov_at.inverse().apply(place) + self.layout.anchor_mov
         ref, mov = self.inputs.ref, self.inputs.mov
         frame, at = 1, point
         if mov is not None and mov.contains(there) and not (ref is not None and ref.contains(point)):
             frame, at = 2, there
         parts = [f"x {at[0]:.2f} m, y {at[1]:.2f} m in map {frame}"]
         augmented = story.get(AugmentDetail)
-        for number, grid, at in ((1, self.inputs.ref, point), (2, self.inputs.mov, there)):
+        for number, grid, at in ((1, ref, point), (2, mov, there)):
             if grid is None:
                 continue
             value = grid.value_at(at)
@@ -160,13 +147,13 @@ class MapView:
         here, colours = self.layout, self.palette
         self._stage.layer("robots", signs.robots(o, here, colours, mov, together, seen))
         further = signs.further(told, self.inputs.encounters, here, colours, mov, together)
-        sight = signs.sight(o, at, here, colours, mov, together, close=not seen)
+        sight = signs.sight(o, at, here, colours, apart=mov and not together, close=not seen)
         self._stage.layer("sight", further + sight)
 
     def place(self, at: Pose2, milliseconds: float) -> None:
         """Put map 2 at a place of the scene, gliding for so long."""
-        if at != self._mov_at or milliseconds == 0:
-            self._mov_at = at
+        if at != self.mov_at or milliseconds == 0:
+            self.mov_at = at
             self._stage.place_map(2, at, milliseconds)
 
     def clear(self, *names: str) -> None:

@@ -22,17 +22,9 @@ QUIET = 0.55  # opacity of what is told beside the first sighting
 
 
 def robot(
-    at: FloatArray,
-    heading: float | None,
-    sizes: tuple[float, float],
-    colour: Rgb,
-    frame: str = "scene",
-    **more: Any,
+    at: FloatArray, heading: float | None, sizes: tuple[float, float], colour: Rgb, frame: str, **more: Any
 ) -> Item:
-    """A robot; a dot where its heading is not known.
-
-    sizes : of a robot and of a dot; pixels
-    """
+    """A robot, or a dot where its heading is not known; ``sizes`` of both in pixels."""
     if heading is None:
         return mark("dot", at, colour, frame, r=sizes[1], **more)
     return mark("robot", at, colour, frame, a=heading, r=sizes[0], **more)
@@ -60,16 +52,11 @@ def robots(
 
 
 def sight(
-    o: Observation,
-    at: Encounter,
-    layout: SceneLayout,
-    colours: Palette,
-    mov: bool,
-    together: bool,
-    close: bool,
+    o: Observation, at: Encounter, layout: SceneLayout, colours: Palette, apart: bool, close: bool
 ) -> list[Item]:
     """The line of sight, the doubt of its far end, and which two places of the maps are one.
 
+    apart : map 2 lies beside map 1
     close : seen from so near that the doubt is more than a dot
     """
     first = o.observer.xy - layout.anchor_ref
@@ -79,7 +66,7 @@ def sight(
         lowest = doubt[int(doubt[:, 1].argmin())]
         name = {"t": "3 σ of the sighting", "tp": lowest, "dy": 11, "align": "center"}
         items.append(path(doubt, colours.text, w=1, close=True, halo=True, **name))
-    if mov and not together:
+    if apart:
         items.append(path(np.array([ZERO, layout.apart.xy]), colours.margin, w=1, d=[1, 5]))
     return items
 
@@ -92,14 +79,9 @@ def further(
     mov: bool,
     together: bool,
 ) -> list[Item]:
-    """Every sighting beyond the first, quieter and with its number: robots, line of sight and its end.
-
-    together : map 2 lies on map 1; robot 2 then stands at the end of the line as far as T fits
-    """
+    """Every sighting beyond the first, with its number; ``together``: robot 2 stands as far off as T fits."""
     items = []
-    for number, (o, at) in enumerate(zip(seen, places, strict=True), 1):
-        if number == 1:
-            continue
+    for number, (o, at) in enumerate(zip(seen[1:], places[1:], strict=True), 2):
         first, end = o.observer.xy - layout.anchor_ref, at.x_ref - layout.anchor_ref
         _, far = _sides(o, 9)
         name = {"t": str(number), "size": 11, **far}
@@ -123,11 +105,8 @@ def drafts(
     draft: ObservationDraft, others: Sequence[ObservationDraft], layout: SceneLayout, colours: Palette
 ) -> list[Item]:
     """Robots as they are being placed, with knobs on the chosen draft's; the other drafts are quiet."""
-    items = []
-    for one in others:
-        items += _draft(one, layout, colours, QUIET)
-    items += _draft(draft, layout, colours, 1.0)
-    return items
+    shown = [*((one, QUIET) for one in others), (draft, 1.0)]
+    return [item for one, alpha in shown for item in _draft(one, layout, colours, alpha)]
 
 
 def _draft(draft: ObservationDraft, layout: SceneLayout, colours: Palette, alpha: float) -> list[Item]:
@@ -149,9 +128,9 @@ def _draft(draft: ObservationDraft, layout: SceneLayout, colours: Palette, alpha
         there = np.array(draft.observed) - layout.anchor_mov
         name = {"t": "robot 2", **_beside(draft.heading or 0.0)} if chosen else {}
         if chosen:  # where nobody knows which way it looked, the knob can tell
-            knob = ("dot", draft.heading, 1.0) if draft.heading is not None else ("ring", 0.0, QUIET)
-            shape, turn, faint = knob
-            items.append(mark(shape, there, colours.mov, "map2", alpha=faint, a=turn, r=5, arm=KNOB_ARM))
+            known = draft.heading is not None
+            how = {"alpha": 1.0 if known else QUIET, "a": draft.heading or 0.0, "r": 5, "arm": KNOB_ARM}
+            items.append(mark("dot" if known else "ring", there, colours.mov, "map2", **how))
         items.append(robot(there, draft.heading, (9, 7), colours.mov, "map2", alpha=alpha, **name))
     return items
 

@@ -88,13 +88,13 @@ class RunView:
         if window is None or self._maps.inputs.at is None:
             return
         turn = at_hand.T_ref_mov.theta if at_hand else 0.0
-        drawn = signs.windows(window, turn, self._maps.layout, self._maps.palette, view)
-        self._stage.layer("window", drawn)
+        layout, colours = self._maps.layout, self._maps.palette
+        self._stage.layer("window", signs.windows(window, turn, layout, colours, view))
 
     def _rings(self, config: Any) -> None:
         augment = getattr(config, "augment", None)
         if augment is not None:
-            self._stage.layer("aug", signs.rings(augment.covariance(), self._maps.palette, both=True))
+            self._stage.layer("aug", signs.rings(augment.covariance(), self._maps.palette))
 
     def _candidates(self, story: RunState, glide: float) -> Rect:
         colours, found = self._maps.palette, story.get(CandidatesDetail)
@@ -116,18 +116,16 @@ class RunView:
         """Both maps side by side, with lines between the features that look alike; once there is a transform,
         map 2 is turned by it, and the lines that agree run side by side.
         """
-        look = self._beside(detail.T_ref_mov.theta if detail.T_ref_mov is not None else 0.0, 0.0)
-        self._stage.layer(
-            "matches", signs.matches(detail, self._maps.mov_at, self._maps.layout, self._maps.palette)
-        )
+        look, maps = self._beside(detail.T_ref_mov.theta if detail.T_ref_mov else 0.0, 0.0), self._maps
+        self._stage.layer("matches", signs.matches(detail, maps.mov_at, maps.layout, maps.palette))
         return look
 
     def _turned_best(self, detail: TurnsDetail, glide: float) -> Rect:
         """Map 2 beside map 1, turned as agrees best so far."""
-        tried = np.isfinite(detail.scores)
         turn = detail.best
         if turn is None:
-            turn = float(detail.turns[np.nanargmax(np.where(tried, detail.scores, -np.inf))])
+            tried = np.where(np.isfinite(detail.scores), detail.scores, -np.inf)
+            turn = float(detail.turns[tried.argmax()])
         return self._beside(turn, glide * SLIDE_MS)
 
     def _beside(self, turn: float, milliseconds: float, which: Which = "sources") -> Rect:

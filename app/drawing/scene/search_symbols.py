@@ -20,16 +20,14 @@ MOST_MATCHES = 160  # drawn; more would be a blot
 DASHED = {"close": True, "d": [6, 4], "halo": True}
 
 
-def rings(covariance: FloatArray, colours: Palette, both: bool) -> list[Item]:
-    """Σ_aug around the meeting place: one and two standard deviations, in one map or in both."""
+def rings(covariance: FloatArray, colours: Palette) -> list[Item]:
+    """Σ_aug around the meeting place: one and two standard deviations, in both maps."""
     items = []
     for k, name in ((1, "σ_aug"), (2, "2 σ_aug")):
         points = ellipse(ZERO, covariance, k)
         label = {"t": name, "tp": points[16], "dy": -8, "align": "center"}
         how = {"close": True, "w": 1.2, "d": [3, 4], "halo": True}
-        items.append(path(points, colours.margin, **how, **label))
-        if both:
-            items.append(path(points, colours.margin, "map2", **how))
+        items += [path(points, colours.margin, **how, **label), path(points, colours.margin, "map2", **how)]
     return items
 
 
@@ -54,7 +52,6 @@ def _paper_window(
 ) -> list[Item]:
     off = rotation(turn) @ (layout.anchor_mov - w.pivot) - layout.anchor_ref
     low, high = w.low + off, w.high + off
-    corners = rectangle(low, high)
     width, height = (high - low).tolist()
     size = f"{width:.0f} m × {height:.0f} m" if min(width, height) >= 5 else f"{width:.1f} m × {height:.1f} m"
     words = f"paper's window, eqs. (6)–(10): {size}"
@@ -66,21 +63,23 @@ def _paper_window(
     edge, dy = max(clear, key=lambda found: abs(found[0]), default=(y0, 14))
     if width < (x1 - x0) / 4:  # small: above the words of the disc in it
         edge, dy = high[1], -25
-    at = (middle, edge)
     if not edges:
         words += ", beyond this view"
-    label = {"t": words, "tp": np.array(at), "dy": dy, "align": "center", "tc": css(colours.margin)}
+    label = {
+        "t": words,
+        "tp": np.array((middle, edge)),
+        "dy": dy,
+        "align": "center",
+        "tc": css(colours.margin),
+    }
     how = {"close": True, "d": [6, 4], "w": 1.8 if strong else 1.0, "halo": strong}
-    return [path(corners, colours.margin, alpha=1.0 if strong else QUIET, **how, **label)]
+    return [path(rectangle(low, high), colours.margin, alpha=1.0 if strong else QUIET, **how, **label)]
 
 
 def discs(
     w: CoupledWindow, layout: SceneLayout, colours: Palette, strong: bool = True, below: bool = False
 ) -> list[Item]:
-    """The coupled window: for every sighting the disc in which T may put the seen robot.
-
-    below : its name stands at its foot; something else is written above it
-    """
+    """The disc per sighting in which T may put the seen robot; ``below``: its name stands at its foot."""
     items = []
     for number, (x_ref, covariance) in enumerate(zip(w.x_ref, w.covariances, strict=True), 1):
         ring = ellipse(x_ref - layout.anchor_ref, covariance, w.k)
@@ -98,9 +97,8 @@ def discs(
 
 def proof(state: ProofState, layout: SceneLayout, colours: Palette) -> list[Item]:
     """The best so far and its rivals, as map 2's robot would stand there."""
-    items = [
-        mark("dot", layout.placed(Pose2.from_array(pose)).xy, colours.rival, r=4.5) for pose in state.rivals
-    ]
+    rivals = (layout.placed(Pose2.from_array(pose)).xy for pose in state.rivals)
+    items = [mark("dot", at, colours.rival, r=4.5) for at in rivals]
     if state.best is not None:
         at = layout.placed(Pose2.from_array(state.best)).xy
         items.append(mark("star", at, colours.answer, r=9, rim=css(colours.rim)))
@@ -118,10 +116,10 @@ def rival(at: Pose2, hull: FloatArray, heading: float | None, words: str, colour
     foot = outline[int(outline[:, 1].argmin())]
     label = {"t": f"rival: {words}", "tp": foot, "dy": 13, "align": "center", "size": 12}
     label["tc"] = css(colours.rival)
-    items = [path(outline, colours.rival, alpha=0.8, w=1.4, close=True, d=[7, 5], **label)]
+    around = path(outline, colours.rival, alpha=0.8, w=1.4, close=True, d=[7, 5], **label)
     # larger than the star of the answer, which lies on it: both put robot 2 where it was seen
     turned = None if heading is None else heading + at.theta
-    return [*items, robot(at.xy, turned, (13, 12), colours.rival)]
+    return [around, robot(at.xy, turned, (13, 12), colours.rival, "scene")]
 
 
 def margins(sigma_x: float, sigma_y: float, colours: Palette) -> list[Item]:

@@ -63,13 +63,13 @@ class SwarmView:
     def __init__(self, stage: BrowserMessages) -> None:
         self._stage = stage
         self._trail: list[FloatArray] = []
-        self._of: tuple[SearchBox, Palette] | None = None  # whose frame is drawn
+        self._of: tuple[SearchBox | None, Palette | None] = None, None  # whose frame is drawn
 
     def hide(self) -> None:
         for name in ("axes", "swarm", "trail", "best", "rival", "floor"):
             self._stage.layer(name, None)
         self._trail.clear()
-        self._of = None
+        self._of = None, None
 
     def show(self, story: RunState, palette: Palette, look: bool) -> None:
         """Draw the newest snapshot; ``look`` puts the camera before the box."""
@@ -82,9 +82,9 @@ class SwarmView:
             return
         proven = story.get(ProvenDetail)
         known = proven is not None and proven.state.best is not None
-        self._stage.layer("rival", proven_optimum(proven, detail, palette) if proven and known else None)
+        self._stage.layer("rival", proven_optimum(proven, detail, palette) if known else None)
         low, high = detail.box.low, detail.box.high
-        if self._of is None or self._of[0] is not detail.box or self._of[1] is not palette:
+        if self._of[0] is not detail.box or self._of[1] is not palette:
             self._of = detail.box, palette
             self._trail.clear()
             self._stage.layer("axes", self._frame(detail, palette))
@@ -93,24 +93,19 @@ class SwarmView:
         best = to_cube(detail.state.best[None], low, high)[0]
         self._trail = [*self._trail[-TRAIL_LENGTH + 1 :], cube[:TRAILS]]
         glide = {"glide": f"{detail.index}", "n3": True}
-        floor, back, side = cube.copy(), cube.copy(), cube.copy()
-        floor[:, 1], back[:, 2], side[:, 0] = -1, -1, 1
-        self._stage.layer(
-            "floor",
-            [cloud(shadow, palette.margin, r=1.4, alpha=0.28, **glide) for shadow in (floor, back, side)],
-        )
+        shadows = cube.copy(), cube.copy(), cube.copy()  # on the floor, behind, at the side
+        shadows[0][:, 1], shadows[1][:, 2], shadows[2][:, 0] = -1, -1, 1
+        flat = [cloud(shadow, palette.margin, r=1.4, alpha=0.28, **glide) for shadow in shadows]
+        self._stage.layer("floor", flat)
         if len(self._trail) > 1:
             trails = np.stack(self._trail, axis=1)  # (particles, times, 3)
-            self._stage.layer(
-                "trail", [path(line, None, w=1) | {"c": css(palette.particle, 0.35)} for line in trails]
-            )
+            self._stage.layer("trail", [path(line, palette.particle, alpha=0.35, w=1) for line in trails])
         self._stage.layer("swarm", [cloud(cube, palette.particle, r=3, alpha=0.9, **glide)])
         x, y, z = best.tolist()
         feet = [x, -1, z], [x, y, -1], [1, y, z]
         legs = [path(np.array([best, foot]), palette.best, w=1, d=[2, 3]) for foot in feet]
-        self._stage.layer(
-            "best", [*legs, mark("diamond", best, palette.best, r=7, rim="#ffffff", t="swarm best")]
-        )
+        diamond = mark("diamond", best, palette.best, r=7, rim="#ffffff", t="swarm best")
+        self._stage.layer("best", [*legs, diamond])
 
     @staticmethod
     def _frame(detail: RefineDetail, palette: Palette) -> list[Item]:

@@ -5,18 +5,18 @@ Coordinates are pixels of a sheet that is ``WIDE`` across, y down. Every text is
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from math import atan2, ceil, cos, degrees, floor, log10, pi, sin
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.common.pose import FloatArray
 from app.drawing.palette import Palette, Rgb, css
+from app.drawing.png import png_base64
+from app.model.chart_data import Chart
 
 WIDE = 380.0
 INK = "currentColor"
@@ -144,13 +144,10 @@ class SvgCanvas:
         self, pixels: NDArray[np.uint8], x: float, y: float, wide: float, high: float, smooth: bool = False
     ) -> None:
         """(H, W, 3 or 4) pixels, row 0 at the top, stretched over a rectangle."""
-        order = cv2.COLOR_RGBA2BGRA if pixels.shape[2] == 4 else cv2.COLOR_RGB2BGR
-        packed = cv2.imencode(".png", cv2.cvtColor(pixels, order))[1].tobytes()
-        data = base64.b64encode(packed).decode()
         style = "" if smooth else ' style="image-rendering:pixelated"'
         self.parts.append(
             f'<image x="{x:.1f}" y="{y:.1f}" width="{wide:.1f}" height="{high:.1f}" '
-            f'preserveAspectRatio="none"{style} href="data:image/png;base64,{data}"/>'
+            f'preserveAspectRatio="none"{style} href="data:image/png;base64,{png_base64(pixels)}"/>'
         )
 
     def chip(self, x: float, y: float, colour: Colour, words: str, shape: str = "square") -> float:
@@ -192,14 +189,10 @@ class SvgPlot:
 
     def at(self, points: FloatArray | Sequence[Sequence[float]]) -> FloatArray:
         """(N, 2) pixels of (N, 2) points."""
-        p = np.asarray(points, dtype=float).reshape(-1, 2)
+        x, y = np.asarray(points, dtype=float).reshape(-1, 2).T
         (x0, x1), (y0, y1) = self.across, self.up
-        return np.column_stack(
-            [
-                self.x + (p[:, 0] - x0) / (x1 - x0) * self.wide,
-                self.y + self.high - (p[:, 1] - y0) / (y1 - y0) * self.high,
-            ]
-        )
+        across = self.x + (x - x0) / (x1 - x0) * self.wide
+        return np.column_stack([across, self.y + self.high - (y - y0) / (y1 - y0) * self.high])
 
     def one(self, x: float, y: float) -> tuple[float, float]:
         px, py = self.at([(x, y)])[0].tolist()
@@ -264,3 +257,20 @@ class SvgPlot:
 def turn_label(turn: float) -> str:
     """A turn in degrees, as words."""
     return f"{degrees(turn):.1f}°".replace("-", "−")
+
+
+def draw_chart(plot: SvgPlot, chart: Chart, palette: Palette) -> None:
+    """The curves of a chart in a plot of its axes; dots over lines, the first curve on top."""
+    x, *columns = chart.columns
+    for curve, y in zip(chart.curves, columns, strict=True):
+        if curve.kind != "dots":
+            dash = "3 4" if curve.kind == "dash" else ""
+            colour = getattr(palette, curve.colour)
+            plot.curve(x, y, colour, curve.size, fill=curve.kind == "area", dash=dash)
+    for curve, y in reversed(list(zip(chart.curves, columns, strict=True))):
+        for n in np.flatnonzero(np.isfinite(y)) if curve.kind == "dots" else ():
+            at = plot.one(float(x[n]), float(y[n]))
+            if curve.colour == "answer":
+                plot.sheet.star(*at, 8, palette.answer, palette.rim)
+            else:
+                plot.sheet.dot(*at, curve.size / 2, getattr(palette, curve.colour), "#fff", width=1)

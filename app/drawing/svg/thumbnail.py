@@ -13,7 +13,7 @@ from algorithms.maps.grid_map import UNKNOWN, GridMap
 from app.drawing.grid_pixels import Pixels, wall_masks
 from app.drawing.palette import Palette
 from app.drawing.scene_layout import known_hull, rect_of, union
-from app.drawing.svg.map_raster import RasterView, under, walls
+from app.drawing.svg.map_plot import RasterView, under, walls
 
 SIZE = 208, 156  # pixels; shown at half of that
 _NEAR = np.ones((3, 3), np.uint8)  # walls a pixel apart are the same wall here

@@ -60,7 +60,7 @@ class LiveVerdict:
         with state.locks.drawing:
             if state.hand is None or state.view != MAP:
                 return
-            self._maps.touch(walls, agreement)
+            self._maps.ground.touch(walls, agreement)
         if not rests and self._work.newer_within(REST if self._slow > PATIENCE else 0.0):
             return
         manual.value(T)  # what is made once for a pair of maps is not counted

@@ -176,7 +176,7 @@ class MapDragController:
     def _move(self, at: Pose2) -> None:
         self._at = at
         self._state.update(hand=self._maps.layout.transform(at))
-        self._maps.carried(at)
+        self._maps.mov_at = at  # the page has moved it by itself
 
     def _rest(self, at: Pose2, glide: float | None, look: bool = False) -> None:
         """Map 2 lies there from now on; whoever calls holds the action lock.
@@ -246,12 +246,9 @@ class MapDragController:
                 return
             self._modes.close()
             run = RunState(state.config)
-            for stage, detail in (
-                ("observe", ObservationDetail(result.encounters)),
-                ("fuse", result.fusion),
-                ("verdict", result),
-            ):
-                run.tell(Step(stage, detail, 0.0))
+            run.tell(Step("observe", ObservationDetail(result.encounters), 0.0))
+            run.tell(Step("fuse", result.fusion, 0.0))
+            run.tell(Step("verdict", result, 0.0))
             with self._locks.drawing:
                 snapshot = replace(state.snapshot(), hand=result.T_ref_mov)
                 self._undo.history.note(snapshot, "take it by hand")

@@ -9,16 +9,12 @@ from typing import Any
 import viser
 
 from algorithms.maps.grid_map import FARTHEST
-from algorithms.observations.observation import (
-    MOST_RANGE,
-    SIGMA_BEARINGS,
-    SIGMA_RANGES,
-)
+from algorithms.observations.observation import MOST_RANGE, SIGMA_BEARINGS, SIGMA_RANGES
 from app.drawing.palette import LIGHT, QUIET
 from app.model import status_text as words
 from app.model.merge_inputs import MergeInputs
 from app.model.observation_draft import ObservationDraft
-from app.page.panels.html_widgets import box, put, table
+from app.page.panels.html_widgets import Action, box, on_choice, on_press, put, table
 from app.report.result_rows import sighting_rows
 
 # field -> label, hint, least, most, step; angles in degrees
@@ -48,58 +44,39 @@ class ObservationPanel:
     def __init__(self, gui: viser.GuiApi) -> None:
         with gui.add_folder("Observation", order=20.0, expand_by_default=False):
             self._html = gui.add_html("")
-            self._toggle = gui.add_button(
-                "Place robots on the maps",
-                icon=viser.Icon.MAP_PIN,
-                color=QUIET,
-                visible=False,
-                hint="With the mouse, in place of an observation file; or mend the one there is.",
-            )
+            quiet: Any = {"color": QUIET, "visible": False}
+            hint = "With the mouse, in place of an observation file; or mend the one there is."
+            icon = viser.Icon.MAP_PIN
+            self._toggle = gui.add_button("Place robots on the maps", icon=icon, hint=hint, **quiet)
             self._step = gui.add_html("", visible=False)
             self._which = gui.add_dropdown("Observation", ("1",), visible=False, hint="Which one is moved.")
-            self._fields: dict[str, Any] = {}
-            for name, (label, hint, least, most, step) in FIELDS.items():
-                start = max(0.0, least)
-                self._fields[name] = gui.add_number(
-                    label, start, min=least, max=most, step=step, hint=hint, visible=False
+            self._fields: dict[str, Any] = {
+                name: gui.add_number(
+                    label, max(0.0, least), min=least, max=most, step=step, hint=hint, visible=False
                 )
-            self._add = gui.add_button("Add another observation", color=QUIET, visible=False)
-            self._remove = gui.add_button("Remove this observation", color=QUIET, visible=False)
-            self._save = gui.add_button(
-                "Save observation",
-                icon=viser.Icon.DOWNLOAD,
-                color=QUIET,
-                visible=False,
-                hint="observation.yaml, to be loaded again.",
-            )
+                for name, (label, hint, least, most, step) in FIELDS.items()
+            }
+            self._add = gui.add_button("Add another observation", **quiet)
+            self._remove = gui.add_button("Remove this observation", **quiet)
+            hint = "observation.yaml, to be loaded again."
+            self._save = gui.add_button("Save observation", icon=viser.Icon.DOWNLOAD, hint=hint, **quiet)
 
     def connect(
         self,
-        toggle: Callable[[], None],
+        toggle: Action,
         typed: Callable[[str, float], None],
         choose: Callable[[int], None],
-        add: Callable[[], None],
-        remove: Callable[[], None],
-        save: Callable[[], None],
+        add: Action,
+        remove: Action,
+        save: Action,
     ) -> None:
         """What is done where a person begins or ends to place the robots, and meanwhile.
 
         typed  : a field and its new value; metres, radians; called in viser's loop
         choose : the number of an observation, from 0
         """
-        for button, action in (
-            (self._toggle, toggle),
-            (self._add, add),
-            (self._remove, remove),
-            (self._save, save),
-        ):
-            button.on_click(lambda _, action=action: action())
-
-        @self._which.on_update
-        def _(event: viser.GuiEvent[Any]) -> None:
-            if event.client_id is not None:
-                choose(int(self._which.value) - 1)
-
+        on_press((self._toggle, toggle), (self._add, add), (self._remove, remove), (self._save, save))
+        on_choice(self._which, lambda: choose(int(self._which.value) - 1))
         for name, handle in self._fields.items():
 
             async def read(event: viser.GuiEvent[Any], name: str = name) -> None:  # before it is overwritten
@@ -111,8 +88,7 @@ class ObservationPanel:
 
     def show(self, inputs: MergeInputs) -> None:
         """Show the numbers of these inputs; nothing is being placed."""
-        self._html.content = observations_html(inputs)
-        self._html.visible = True
+        self._html.content, self._html.visible = observations_html(inputs), True
         self._toggle.visible = inputs.ref is not None and inputs.mov is not None
         self._toggle.label = "Move the robots by hand" if inputs.observations else "Place robots on the maps"
         self._toggle.color = QUIET if inputs.observations else LIGHT.ref
@@ -121,10 +97,7 @@ class ObservationPanel:
         self._save.visible = bool(inputs.observations)
 
     def edit(self, drafts: list[ObservationDraft], chosen: int, trouble: str = "") -> None:
-        """Show one of the drafts in fields, and what is to be done next.
-
-        trouble : what is wrong with what was just done
-        """
+        """Show a draft in fields, and what is to be done next; ``trouble``: what was wrong with the last."""
         draft, several = drafts[chosen], len(drafts) > 1
         self._html.visible = False
         self._toggle.label, self._toggle.color = "Done", LIGHT.ref
@@ -132,14 +105,11 @@ class ObservationPanel:
         self._step.content = (box(trouble, "refused") if trouble else "") + step
         self._step.visible = True
         options = tuple(str(number) for number in range(1, len(drafts) + 1))
-        put(self._which, options=options)
-        put(self._which, value=str(chosen + 1))
-        self._which.visible = several
+        put(self._which, options=options, value=str(chosen + 1), visible=several)
         for name, value in fields_of(draft).items():
             handle = self._fields[name]
             if value is not None:
-                shown = degrees(value) if name in ANGLES else value
-                handle.value = round(shown, 3)
+                handle.value = round(degrees(value) if name in ANGLES else value, 3)
             put(handle, visible=value is not None)
         whole = draft.missing is None
         self._add.visible, self._remove.visible = whole, several or draft.observer is not None

@@ -8,9 +8,8 @@ from functools import partial
 import numpy as np
 
 from algorithms.common.errors import MapMergeError
-from algorithms.common.pose import FloatArray, Pose2
+from algorithms.common.pose import Pose2
 from algorithms.files.observation_file import OBSERVATION_FILE, observations_to_bytes
-from algorithms.maps.grid_map import GridMap
 from algorithms.observations.observation import Observation
 from app.drawing.legend import legend
 from app.drawing.scene import robot_symbols as signs
@@ -151,7 +150,7 @@ class PlacementController:
             if id == "observed":
                 grid, number, anchor = inputs.mov, 2, layout.anchor_mov
             point = np.array(at) + anchor
-            if rests and before.missing == id and not _on(grid, point):
+            if rests and before.missing == id and not (grid is not None and grid.contains(point)):
                 self._show(f"That is not in map {number}.")
                 return
             x, y = point.tolist()
@@ -203,16 +202,14 @@ class PlacementController:
         others = [one for number, one in enumerate(self._drafts) if number != self._chosen]
         items = signs.drafts(draft, others, self._layout, self._state.palette)
         self._messages.layer("robots", items)
-        self._messages.hud(
-            state=trouble or words.PLACING[draft.missing], mood="refused" if trouble else "idle"
-        )
-        self._messages.hand({"grips": self._grips(draft), **self._place(draft)})
+        state, mood = trouble or words.PLACING[draft.missing], "refused" if trouble else "idle"
+        self._messages.hud(state=state, mood=mood)
+        hand: dict[str, object] = {"grips": self._grips(draft)}
+        if draft.missing is not None:
+            frame = "map2" if draft.missing == "observed" else "scene"
+            hand["place"] = {"id": draft.missing, "f": frame}
+        self._messages.hand(hand)
         self._messages.flush()
-
-    def _place(self, draft: ObservationDraft) -> dict[str, object]:
-        if draft.missing is None:
-            return {}
-        return {"place": {"id": draft.missing, "f": "map2" if draft.missing == "observed" else "scene"}}
 
     def _grips(self, draft: ObservationDraft) -> list[dict[str, object]]:
         layout, grips = self._layout, []
@@ -220,17 +217,11 @@ class PlacementController:
             at = draft.observer.xy - layout.anchor_ref
             grips.append({"id": "observer", "f": "scene", "p": at, "a": draft.observer.theta})
         if draft.seen is not None:
-            grips.append(
-                {"id": "seen", "f": "scene", "p": np.array(draft.seen) - layout.anchor_ref, "a": None}
-            )
+            at = np.array(draft.seen) - layout.anchor_ref
+            grips.append({"id": "seen", "f": "scene", "p": at, "a": None})
         if draft.observed is not None:
             at = np.array(draft.observed) - layout.anchor_mov
-            known = draft.heading is not None  # a heading that is not known can be given by its knob
-            grips.append(
-                {"id": "observed", "f": "map2", "p": at, "a": draft.heading or 0.0, "vague": not known}
-            )
+            vague = draft.heading is None  # a heading that is not known can be given by its knob
+            a = draft.heading or 0.0
+            grips.append({"id": "observed", "f": "map2", "p": at, "a": a, "vague": vague})
         return grips
-
-
-def _on(grid: GridMap | None, point: FloatArray) -> bool:
-    return grid is not None and grid.contains(point)

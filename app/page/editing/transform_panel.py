@@ -13,7 +13,7 @@ from algorithms.methods.merge_result import MergeResult
 from app.drawing.palette import LIGHT, QUIET
 from app.model import verdict_text as words
 from app.model.objective_label import measure_of
-from app.page.panels.html_widgets import box, table
+from app.page.panels.html_widgets import Action, box, on_press, table
 
 HOW = (
     "Drag map 2. To turn it about robot 2, drag the knob, or hold Shift or Alt. Arrow keys: one cell, with "
@@ -21,6 +21,15 @@ HOW = (
 )
 SMALL = "margin:2px 12px 6px;font-size:12px;line-height:1.45;opacity:.85"
 FAR = 1e5  # metres
+BUTTONS = (
+    ("Refine from here", QUIET, "The method's own search, in its box around this place."),
+    (
+        "Snap to proven optimum",
+        QUIET,
+        "The best of the whole circle: it is the method's answer, no longer yours.",
+    ),
+    ("Take this as the answer", LIGHT.ref, "Its verdict stays with it."),
+)
 
 
 class TransformPanel:
@@ -29,55 +38,26 @@ class TransformPanel:
     def __init__(self, gui: viser.GuiApi) -> None:
         self._folder = gui.add_folder("By hand", order=62.0, visible=False)
         with self._folder:
-            self._begin = gui.add_button(
-                "Move map 2 by hand",
-                icon=viser.Icon.HAND_MOVE,
-                color=QUIET,
-                hint="Drag and turn it over map 1, or mend what the method found.",
-            )
+            hint = "Drag and turn it over map 1, or mend what the method found."
+            icon = viser.Icon.HAND_MOVE
+            self._begin = gui.add_button("Move map 2 by hand", icon=icon, color=QUIET, hint=hint)
             self._how = gui.add_html(f'<p style="{SMALL}">{HOW}</p>', visible=False)
             number = {"min": -FAR, "max": FAR, "visible": False}
             self._x = gui.add_number("T: Δx (m)", 0.0, step=0.01, hint="Right, in map 1.", **number)
             self._y = gui.add_number("T: Δy (m)", 0.0, step=0.01, hint="Up, in map 1.", **number)
-            self._turn = gui.add_number(
-                "T: Δθ (°)", 0.0, step=0.1, hint="Counter-clockwise, about robot 2.", **number
-            )
+            hint = "Counter-clockwise, about robot 2."
+            self._turn = gui.add_number("T: Δθ (°)", 0.0, step=0.1, hint=hint, **number)
             self._says = gui.add_html("", visible=False)
-            self._refine = gui.add_button(
-                "Refine from here",
-                color=QUIET,
-                visible=False,
-                hint="The method's own search, in its box around this place.",
-            )
-            self._snap = gui.add_button(
-                "Snap to proven optimum",
-                color=QUIET,
-                visible=False,
-                hint="The best of the whole circle: it is the method's answer, no longer yours.",
-            )
-            self._take = gui.add_button(
-                "Take this as the answer", color=LIGHT.ref, visible=False, hint="Its verdict stays with it."
+            self._refine, self._snap, self._take = (
+                gui.add_button(label, color=colour, visible=False, hint=hint)
+                for label, colour, hint in BUTTONS
             )
 
     def connect(
-        self,
-        toggle: Callable[[], None],
-        typed: Callable[[str, float], None],
-        refine: Callable[[], None],
-        snap: Callable[[], None],
-        take: Callable[[], None],
+        self, toggle: Action, typed: Callable[[str, float], None], refine: Action, snap: Action, take: Action
     ) -> None:
-        """What is done where a person takes map 2 in hand, and then wants something of it.
-
-        typed : x, y or theta and its new value; metres, radians; called in viser's loop
-        """
-        for button, action in (
-            (self._begin, toggle),
-            (self._refine, refine),
-            (self._snap, snap),
-            (self._take, take),
-        ):
-            button.on_click(lambda _, action=action: action())
+        """What is done with map 2 in hand; ``typed``: x, y or theta; metres, radians; in viser's loop."""
+        on_press((self._begin, toggle), (self._refine, refine), (self._snap, snap), (self._take, take))
         self._typed = typed
         for handle in (self._x, self._y, self._turn):
             handle.on_update(self._read)
@@ -110,10 +90,7 @@ class TransformPanel:
 
 
 def weighed_html(result: MergeResult, config: Any, method: Pose2 | None) -> str:
-    """HTML of what the walls say of a transform.
-
-    method : what the method has found, to tell how far off it the hand is
-    """
+    """HTML of what the walls say of a transform, and how far it is off the method's."""
     verdict = result.verdict
     rows: list[tuple[str, ...]] = []
     if result.value is not None and isfinite(result.value):

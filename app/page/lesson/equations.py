@@ -58,11 +58,9 @@ def _drawn(name: str) -> tuple[str, str]:
 
 def equations_html(chosen: Iterable[str]) -> str:
     """HTML of equations one below the other, each with its number at the right."""
-    rows = []
-    for name in chosen:
-        drawn, number = _drawn(name)
-        rows.append(
-            f'<div class="mm-eq" data-equation="{escape(name)}"><span>{drawn}</span>'
-            f"<small>{escape(number)}</small></div>"
-        )
-    return "".join(rows)
+    return "".join(
+        f'<div class="mm-eq" data-equation="{escape(name)}"><span>{drawn}</span>'
+        f"<small>{escape(number)}</small></div>"
+        for name in chosen
+        for drawn, number in [_drawn(name)]
+    )

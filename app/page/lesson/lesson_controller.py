@@ -27,10 +27,7 @@ from app.page.undo.undo_controller import UndoController
 
 
 class LessonController:
-    """Goes through the steps; listens to a job thread of its own.
-
-    folder : of its texts
-    """
+    """Goes through the texts of a folder; listens to a job thread of its own."""
 
     def __init__(self, tab: Tab, undo: UndoController, runs: RunController, folder: Path) -> None:
         self._state, self._panels, self._panel = tab.state, tab.panels, tab.panels.lesson

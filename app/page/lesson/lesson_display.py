@@ -22,10 +22,7 @@ NOT_HERE = "The method as it is set does not come to this. Choose another method
 
 
 class LessonDisplay:
-    """Draws a step as far as the run has come; whoever calls is drawing.
-
-    places : where the dials of the picture stand; empty: where they begin
-    """
+    """Draws a step; whoever calls is drawing; ``places`` of the dials: empty where they begin."""
 
     def __init__(self, state: PageState, display: PageDisplay, panel: LessonPanel) -> None:
         self._state, self._display, self._panel = state, display, panel
@@ -41,16 +38,11 @@ class LessonDisplay:
         self._display.show_buttons()
 
     def words(self, index: int, text: StepText, study: LessonRun, answered: Collection[int]) -> None:
-        """Show what a step says.
-
-        answered : numbers of the things to try whose answers are shown
-        """
+        """Show what a step says; ``answered``: numbers of the things to try whose answers are shown."""
         numbers = numbers_of(study) if study.possible else {}
         self._panel.text(index, text.title, filled(text.body, numbers), text.equations, OWN)
-        answers = [
-            filled(trial.answer, numbers) if k in answered else "" for k, trial in enumerate(text.trials)
-        ]
-        self._panel.trials(text.trials, answers)
+        told = enumerate(filled(trial.answer, numbers) for trial in text.trials)
+        self._panel.trials(text.trials, [answer if k in answered else "" for k, answer in told])
 
     def picture(self, text: StepText, study: LessonRun, says: str, fresh: bool, done: bool) -> None:
         """Draw a step's picture, and what belongs to it on the map; or say why there is none yet.
@@ -60,8 +52,7 @@ class LessonDisplay:
         done  : the run has come to its end
         """
         state, picture = self._state, PICTURES.get(text.picture)
-        ready = picture is not None and study.possible and study.reached(*picture.needs)
-        if picture is None or not ready:
+        if picture is None or not study.possible or not study.reached(*picture.needs):
             waiting = "" if picture is None else NO_MAPS if not study.inputs.complete else WAIT
             over = done or not study.possible
             self._panel.picture(NOT_HERE if waiting == WAIT and over else waiting)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 from html import escape
-from typing import Any
 
 import viser
 
@@ -13,7 +12,7 @@ from app.drawing.palette import QUIET
 from app.page.lesson.equations import equations_html
 from app.page.lesson.figures.figure_registry import FigureSlider, place_of, shown
 from app.page.lesson.lesson_texts import Exercise
-from app.page.panels.html_widgets import box, put
+from app.page.panels.html_widgets import Action, box, on_choice, on_press, put
 
 BACK, NEXT, LEAVE = "◀ Back", "Next ▶", "Leave"
 ANSWER, HIDE, PUT_BACK = "Show the answer", "Hide the answer", "Put it back"
@@ -51,8 +50,8 @@ class LessonPanel:
         self,
         go: Callable[[int], None],
         move: Callable[[int], None],
-        leave: Callable[[], None],
-        slide: Callable[[], None],
+        leave: Action,
+        slide: Action,
         try_: Callable[[int], None],
     ) -> None:
         """What is done where a person goes through the lesson.
@@ -65,15 +64,14 @@ class LessonPanel:
         moves = {BACK: partial(move, -1), NEXT: partial(move, 1), LEAVE: leave}
         self._moves.on_click(lambda event: moves[event.target.value]())
 
-        @self._step.on_update
-        def _(event: viser.GuiEvent[Any]) -> None:
-            if event.client_id is not None and self._step.value in self._titles:
+        def chosen() -> None:
+            if self._step.value in self._titles:
                 go(self._titles.index(self._step.value))
 
+        on_choice(self._step, chosen)
         for slider in self._sliders:
-            slider.on_update(lambda event: slide() if event.client_id is not None else None)
-        for k, button in enumerate(self._buttons):
-            button.on_click(lambda _, k=k: try_(k))
+            on_choice(slider, slide)
+        on_press(*((button, partial(try_, k)) for k, button in enumerate(self._buttons)))
 
     def visible(self, yes: bool) -> None:
         put(self._panel, visible=yes)
@@ -104,7 +102,6 @@ class LessonPanel:
         self.picture("")
         self.dials((), ())
         self.trials((), ())
-        self._body.content = ""
         self._equations.content = box(f"This text cannot be read. {what}", "refused")
 
     def picture(self, svg: str) -> None:
@@ -134,20 +131,13 @@ class LessonPanel:
         )
 
     def trials(self, trials: Sequence[Exercise], told: Sequence[str]) -> None:
-        """Show what there is to try.
-
-        told : the answer to each, "" where it is not shown yet
-        """
+        """Show what there is to try; ``told``: the answer to each, "" where it is not shown yet."""
         for k, (ask, button) in enumerate(zip(self._asks, self._buttons, strict=True)):
             there = k < len(trials)
             if there:
                 answer = f'<div class="mm-answer">{escape(told[k])}</div>' if told[k] else ""
-                content = f'<div class="mm-try"><b>Try</b> {escape(trials[k].ask)}{answer}</div>'
-                put(ask, content=content)
-                if trials[k].button:
-                    label = PUT_BACK if told[k] else trials[k].button
-                else:
-                    label = HIDE if told[k] else ANSWER
-                put(button, label=label)
+                put(ask, content=f'<div class="mm-try"><b>Try</b> {escape(trials[k].ask)}{answer}</div>')
+                on, off = (trials[k].button, PUT_BACK) if trials[k].button else (ANSWER, HIDE)
+                put(button, label=off if told[k] else on)
             put(ask, visible=there)
             put(button, visible=there)

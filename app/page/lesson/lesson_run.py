@@ -29,21 +29,15 @@ DRAWS = 60  # batches of the Monte-Carlo search that are looked at
 
 
 def keep(steps: list[Step], step: Step) -> None:
-    """Add a step of a run; of the search on one candidate the newest alone, or a long one would fill the
-    memory.
-    """
-    if steps:
-        last, new = steps[-1].detail, step.detail
-        if isinstance(last, RefineDetail) and isinstance(new, RefineDetail) and last.index == new.index:
-            steps.pop()
+    """Add a step of a run; of the search on one candidate the newest alone: a long one fills the memory."""
+    last, new = steps[-1].detail if steps else None, step.detail
+    if isinstance(last, RefineDetail) and isinstance(new, RefineDetail) and last.index == new.index:
+        steps.pop()
     steps.append(step)
 
 
 class LessonRun:
-    """One run, as far as it has come. Everything drawn from it is worked out once, when asked for.
-
-    steps : of the run, in their order
-    """
+    """One run, as far as it has come; all that is drawn from it is worked out once, when asked for."""
 
     def __init__(self, inputs: MergeInputs, config: Any, seed: int = 0, steps: tuple[Step, ...] = ()) -> None:
         self.inputs, self.config, self.seed, self.steps = inputs, config, seed, steps
@@ -63,8 +57,7 @@ class LessonRun:
 
     def reached(self, *kinds: type) -> bool:
         """Whether the run has come to all of these."""
-        told = {type(step.detail) for step in self.steps}
-        return told.issuperset(kinds)
+        return {type(step.detail) for step in self.steps}.issuperset(kinds)
 
     def story(self, kind: type, index: int = -1) -> RunState:
         """The run up to a step of a kind, as the page draws it; empty where it has not come to it."""
@@ -93,10 +86,7 @@ class LessonRun:
     @cached_property
     def agreement(self) -> Objective:
         """The agreement, whatever the run maximises."""
-        i, config = self.inputs, self.config
-        assert i.ref is not None
-        assert i.mov is not None
-        coupled = self.get(WindowDetail).coupled
+        i, config, coupled = self.inputs, self.config, self.get(WindowDetail).coupled
         lookup = config.refine.lookup
         return make_agreement(i.ref, i.mov, i.encounters, config.augment, config.agreement, coupled, lookup)
 

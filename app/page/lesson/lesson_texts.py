@@ -31,10 +31,8 @@ EXAMPLE = "begin the file with a line ---, then title: …, then a line ---, the
 
 @dataclass(frozen=True)
 class Exercise:
-    """One thing to try.
+    """One thing to try, and what there is to be seen then, and why; shown when asked for.
 
-    ask      : what to do, and what to look at
-    answer   : what there is to be seen, and why; shown when asked for
     button   : what the button that does it is called; empty where hands and eyes do
     settings : what the button sets
     """
@@ -113,22 +111,18 @@ def read_step(path: Path, pictures: Collection[str], numbers: Collection[str]) -
     picture = fields.text("picture", "name a picture, or leave it out") if "picture" in fields.values else ""
     if picture and picture not in pictures:
         raise fields.error("picture", f"is {shown(picture)}", f"known are {', '.join(sorted(pictures))}")
-    named = _list(fields, "equations", "give a list of names, or leave it out")
-    known = equations.names()
+    named, known = _list(fields, "equations", "give a list of names, or leave it out"), equations.names()
     for name in named:
         if name not in known:
             raise fields.error("equations", f"holds {shown(name)}", f"known are {', '.join(known)}")
-    step = StepText(
-        source=str(path),
-        title=fields.text("title", "give the step a title"),
-        picture=picture,
-        equations=tuple(named),
-        trials=tuple(_trial(fields, k, entry) for k, entry in enumerate(_list(fields, "try", "give a list"))),
-        body=body,
-    )
-    for text in (body, *(words for trial in step.trials for words in (trial.ask, trial.answer))):
-        _check_placeholders(path, text, numbers)
-    return step
+    title = fields.text("title", "give the step a title")
+    trials = tuple(_trial(fields, k, entry) for k, entry in enumerate(_list(fields, "try", "give a list"), 1))
+    for text in (body, *(words for trial in trials for words in (trial.ask, trial.answer))):
+        for found in PLACEHOLDER.findall(text):
+            if found not in numbers:
+                wrong = f"holds {{{found}}}, which is no number of the lesson"
+                raise InputFileError(path, wrong, f"known are {', '.join(numbers)}")
+    return StepText(str(path), title, picture, tuple(named), trials, body)
 
 
 def read_exhibit(path: Path) -> Exhibit:
@@ -186,11 +180,10 @@ def _parts(path: Path) -> tuple[Fields, str]:
     ends = [k for k, line in enumerate(lines) if line.strip() == FENCE]
     if len(ends) < 2 or ends[0] != 0:
         raise InputFileError(path, "has no front matter", EXAMPLE)
-    front, body = lines[1 : ends[1]], lines[ends[1] + 1 :]
-    text = "\n".join(body).strip()
+    front, text = "\n".join(lines[1 : ends[1]]), "\n".join(lines[ends[1] + 1 :]).strip()
     if not text:
         raise InputFileError(path, "has no text below its front matter", EXAMPLE)
-    return parse(str(path), "\n".join(front).encode(), "the front matter of a text"), text
+    return parse(str(path), front.encode(), "the front matter of a text"), text
 
 
 def _list(fields: Fields, key: str, remedy: str) -> list[Any]:
@@ -203,15 +196,14 @@ def _list(fields: Fields, key: str, remedy: str) -> list[Any]:
 def _trial(fields: Fields, index: int, entry: Any) -> Exercise:
     if not isinstance(entry, dict):
         raise fields.error("try", f"holds {shown(entry)}", "give {ask: …, answer: …} per thing to try")
-    own = Fields(fields.source, entry, f"try {index + 1}: ")
+    own = Fields(fields.source, entry, f"try {index}: ")
     own.refuse_unknown("ask", "answer", "button", "set")
     settings = _settings(own, PipelineConfig(), "set") if "set" in entry else ()
     button = own.text("button", "say what the button is called") if "button" in entry else ""
     if bool(button) != bool(settings):
         raise own.error("button and set", "are not both there", "give both of them, or neither")
-    return Exercise(
-        own.text("ask", "say what to try"), own.text("answer", "say what is to be seen"), button, settings
-    )
+    ask, answer = own.text("ask", "say what to try"), own.text("answer", "say what is to be seen")
+    return Exercise(ask, answer, button, settings)
 
 
 def _method(fields: Fields) -> str:
@@ -227,20 +219,16 @@ def _settings(fields: Fields, config: Any, key: str = "settings") -> Settings:
     section = fields.section(key, "give a mapping like {augment.intensity: 1}")
     known = {".".join(setting.path): setting for setting in settings_of(config)}
     for name in section.values:
-        became = what_became_of(name)
-        if became:
+        if became := what_became_of(name):
             raise section.error(name, "is no setting any more", became)
     section.refuse_unknown(*known)
-    out = []
-    for name in section.values:
-        setting = known[name]
-        value = _value(section, name, setting)
+    settings = tuple((known[name].path, _value(section, name, known[name])) for name in section.values)
+    for name, (path, value) in zip(section.values, settings, strict=True):
         try:
-            with_value(config, setting.path, value)
+            with_value(config, path, value)
         except MapMergeError as error:
             raise section.error(name, f"is {shown(section.values[name])}", str(error)) from error
-        out.append((setting.path, value))
-    return tuple(out)
+    return settings
 
 
 def _value(section: Fields, name: str, setting: Setting) -> Any:
@@ -248,19 +236,10 @@ def _value(section: Fields, name: str, setting: Setting) -> Any:
         number = section.number(name, f"give a number in [{setting.bounds.low:g}, {setting.bounds.high:g}]")
         return int(number) if setting.whole else number
     if setting.choices is not None:
-        word = section.text(name, f"give one of {', '.join(setting.choices)}")
+        remedy = f"give one of {', '.join(setting.choices)}"
+        word = section.text(name, remedy)
         for shown_as, option in setting.choices.items():
             if word.lower() == shown_as.lower():
                 return option
-        raise section.error(name, f"is {shown(word)}", f"give one of {', '.join(setting.choices)}")
+        raise section.error(name, f"is {shown(word)}", remedy)
     return section.flag(name, "give true or false")
-
-
-def _check_placeholders(path: Path, text: str, numbers: Collection[str]) -> None:
-    for found in PLACEHOLDER.findall(text):
-        if found not in numbers:
-            raise InputFileError(
-                path,
-                f"holds {{{found}}}, which is no number of the lesson",
-                f"known are {', '.join(numbers)}",
-            )

@@ -9,7 +9,7 @@ from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import pose_error
 from algorithms.methods.registry import METHODS
 from app.model.merge_inputs import Files, MergeInputs
-from app.model.settings import settings_of, value_at, word_for
+from app.model.settings import settings_of, text_for, value_at
 from app.model.status_text import apart_by
 from app.model.view_modes import MUSEUM
 from app.page.inputs_controller import InputsController
@@ -41,8 +41,7 @@ class MuseumController:
         self._index = 0
         self._exhibit: Exhibit | None = None
         self._pair = MergeInputs()
-        again = lambda: self.pick(self._index)  # noqa: E731
-        self._panel.connect(self.pick, self.cure, again, self.leave)
+        self._panel.connect(self.pick, self.cure, lambda: self.pick(self._index), self.leave)
         tab.state.subscribe("result", self._result_shown)
 
     def toggle(self) -> None:
@@ -172,17 +171,7 @@ def _change(old: str, new: str) -> str:
 
 
 def _settings(settings: Settings, config: Any) -> list[tuple[str, ...]]:
+    """Those of the method that has this config, by their labels."""
     known = {setting.path: setting for setting in settings_of(config)}
-    out: list[tuple[str, ...]] = []
-    for path, _ in settings:
-        if path not in known:  # of another method
-            continue
-        setting, value = known[path], value_at(config, path)
-        if setting.choices is not None:
-            words = word_for(setting, value)
-        elif isinstance(value, bool):
-            words = "on" if value else "off"
-        else:
-            words = f"{value:g}"
-        out.append((setting.label, words))
-    return out
+    mine = [known[path] for path, _ in settings if path in known]
+    return [(each.label, text_for(each, value_at(config, each.path), "on", "off")) for each in mine]

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import viser
 
 from app.drawing.palette import LIGHT, QUIET
-from app.page.panels.html_widgets import box, put, table
-
-Row = tuple[str, ...]
+from app.page.panels.html_widgets import Action, box, on_choice, on_press, put, table
 
 
 class MuseumPanel:
@@ -28,22 +25,15 @@ class MuseumPanel:
             self._again = gui.add_button("Once more, uncured", color=QUIET, visible=False)
             self._leave = gui.add_button("Leave the museum", color=QUIET)
 
-    def connect(
-        self,
-        pick: Callable[[int], None],
-        cure: Callable[[], None],
-        again: Callable[[], None],
-        leave: Callable[[], None],
-    ) -> None:
+    def connect(self, pick: Callable[[int], None], cure: Action, again: Action, leave: Action) -> None:
         """What is done where a person picks an exhibit by its number from 0, cures it, or leaves."""
 
-        @self._exhibit.on_update
-        def _(event: viser.GuiEvent[Any]) -> None:
-            if event.client_id is not None and self._exhibit.value in self._titles:
+        def picked() -> None:
+            if self._exhibit.value in self._titles:
                 pick(self._titles.index(self._exhibit.value))
 
-        for button, action in ((self._cure, cure), (self._again, again), (self._leave, leave)):
-            button.on_click(lambda _, action=action: action())
+        on_choice(self._exhibit, picked)
+        on_press((self._cure, cure), (self._again, again), (self._leave, leave))
 
     def visible(self, yes: bool) -> None:
         put(self._folder, visible=yes)
@@ -56,11 +46,10 @@ class MuseumPanel:
         """Show an exhibit before its merge."""
         put(self._exhibit, value=self._titles[index])
         self._body.content = body
-        self._settings.content = ""
-        self._told.content = ""
+        self._settings.content = self._told.content = ""
         self._buttons(cure="", again=False)
 
-    def settings(self, settings: Sequence[Row]) -> None:
+    def settings(self, settings: Sequence[tuple[str, ...]]) -> None:
         """Show what is set for the exhibit, or by its cure."""
         self._settings.content = table(settings, ("set for this exhibit", ""))
 
@@ -82,5 +71,5 @@ class MuseumPanel:
     def _buttons(self, cure: str, again: bool) -> None:
         if cure and self._cure.label != f"Cure: {cure}":
             self._cure.label = f"Cure: {cure}"
-        for button, there in ((self._cure, bool(cure)), (self._again, again)):
-            put(button, visible=there)
+        put(self._cure, visible=bool(cure))
+        put(self._again, visible=again)

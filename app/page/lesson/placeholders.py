@@ -7,6 +7,7 @@ from math import degrees, hypot, pi
 
 import numpy as np
 
+from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import (
@@ -18,8 +19,10 @@ from algorithms.methods.steps import (
     ProvenDetail,
     WindowDetail,
 )
-from algorithms.observations.search_window import CoupledWindow
+from algorithms.observations.observation import Encounter, Observation
+from algorithms.observations.search_window import CoupledWindow, Window
 from algorithms.optimisation.branch_and_bound import ProofState
+from algorithms.verdict.decision import Verdict
 from app.model.objective_label import measure_of
 from app.model.verdict_text import likelihood
 from app.page.lesson.lesson_run import LessonRun
@@ -39,18 +42,16 @@ def _angle(turn: float) -> str:
     return f"{_n(degrees(turn), 1)}°"
 
 
-def _seen(study: LessonRun):  # type: ignore[no-untyped-def]
+def _seen(study: LessonRun) -> Observation:
     return study.inputs.observations[0]
 
 
-def _walls(study: LessonRun, number: int) -> int:
-    grid = study.inputs.ref if number == 1 else study.inputs.mov
-    return 0 if grid is None else int(grid.occupied.sum())
+def _met(study: LessonRun) -> Encounter:
+    return study.get(ObservationDetail).encounter
 
 
-def _cells(study: LessonRun, number: int) -> int:
-    grid = study.inputs.ref if number == 1 else study.inputs.mov
-    return 0 if grid is None else int(grid.cells.size)
+def _walls(grid: GridMap) -> int:
+    return int(grid.occupied.sum())
 
 
 def _twin(study: LessonRun) -> str:
@@ -60,8 +61,8 @@ def _twin(study: LessonRun) -> str:
     return f"{max(others):.0%}" if others else "–"
 
 
-def _size(low: np.ndarray, high: np.ndarray) -> str:
-    wide, tall = (high - low).tolist()
+def _size(window: Window | CoupledWindow) -> str:
+    wide, tall = (window.high - window.low).tolist()
     return f"{_n(wide, 1)} m × {_n(tall, 1)} m"
 
 
@@ -98,7 +99,7 @@ def _rival(study: LessonRun) -> str:
     return f"a rival with {state.rival_value / state.best_value:.0%} of it"
 
 
-def _verdict(study: LessonRun):  # type: ignore[no-untyped-def]
+def _verdict(study: LessonRun) -> Verdict:
     return study.get(MergeResult).verdict
 
 
@@ -114,14 +115,14 @@ NUMBERS: dict[str, Number] = {
     "heading": ((), lambda s: _angle(_seen(s).observer.theta)),
     "sideways_m": ((), lambda s: _n(_seen(s).range * _seen(s).sigma_bearing)),
     "sightings": ((), lambda s: str(len(s.inputs.observations))),
-    "x1": (_MET, lambda s: _place(s.get(ObservationDetail).encounter.x_ref)),
-    "x2": (_MET, lambda s: _place(s.get(ObservationDetail).encounter.x_mov)),
-    "x2_norm_m": (_MET, lambda s: _n(hypot(*s.get(ObservationDetail).encounter.x_mov.tolist()), 1)),
-    "walls1": ((), lambda s: f"{_walls(s, 1):,}"),
-    "walls2": ((), lambda s: f"{_walls(s, 2):,}"),
-    "cells1": ((), lambda s: f"{_cells(s, 1):,}"),
-    "cells2": ((), lambda s: f"{_cells(s, 2):,}"),
-    "walls_share": ((), lambda s: f"{_walls(s, 2) / max(1, _cells(s, 2)):.1%}"),
+    "x1": (_MET, lambda s: _place(_met(s).x_ref)),
+    "x2": (_MET, lambda s: _place(_met(s).x_mov)),
+    "x2_norm_m": (_MET, lambda s: _n(hypot(*_met(s).x_mov.tolist()), 1)),
+    "walls1": ((), lambda s: f"{_walls(s.inputs.ref):,}"),
+    "walls2": ((), lambda s: f"{_walls(s.inputs.mov):,}"),
+    "cells1": ((), lambda s: f"{s.inputs.ref.cells.size:,}"),
+    "cells2": ((), lambda s: f"{s.inputs.mov.cells.size:,}"),
+    "walls_share": ((), lambda s: f"{_walls(s.inputs.mov) / s.inputs.mov.cells.size:.1%}"),
     "intensity": ((), lambda s: f"{s.config.augment.intensity:g}"),
     "spread_m": ((), lambda s: _n(s.config.augment.spread, 1)),
     "peak": ((AugmentDetail,), lambda s: f"{s.get(AugmentDetail).ref.peak:.3g}"),
@@ -132,11 +133,8 @@ NUMBERS: dict[str, Number] = {
     "turns": (_HOUGH, lambda s: str(len(s.get(HoughDetail).match.turns))),
     "turn": (_HOUGH, lambda s: _angle(s.get(HoughDetail).match.turns[0])),
     "next_peak": (_HOUGH, _twin),
-    "paper_window": (_WINDOW, lambda s: _size(s.get(WindowDetail).paper.low, s.get(WindowDetail).paper.high)),
-    "coupled_window": (
-        _WINDOW,
-        lambda s: _size(s.get(WindowDetail).coupled.low, s.get(WindowDetail).coupled.high),
-    ),
+    "paper_window": (_WINDOW, lambda s: _size(s.get(WindowDetail).paper)),
+    "coupled_window": (_WINDOW, lambda s: _size(s.get(WindowDetail).coupled)),
     "window_ratio": (_WINDOW, _ratio),
     "margin_m": ((), lambda s: f"{s.config.window.margin:g}"),
     "deviations": ((), lambda s: f"{s.config.window.deviations:g}"),
@@ -148,10 +146,7 @@ NUMBERS: dict[str, Number] = {
     "sigma_x_m": ((), lambda s: f"{s.config.box.sigma_x:g}"),
     "sigma_theta": ((), lambda s: f"{s.config.box.sigma_theta:g}°"),
     "transforms": (_FOUND, _transforms),
-    "search_value": (
-        (AnswersDetail,),
-        lambda s: _value(s, s.get(AnswersDetail).answers[0].value),
-    ),
+    "search_value": ((AnswersDetail,), lambda s: _value(s, s.get(AnswersDetail).answers[0].value)),
     "search_ended": ((AnswersDetail,), lambda s: s.get(AnswersDetail).answers[0].stopped),
     "blocks": (_PROVEN, lambda s: f"{_proof(s).nodes:,}"),
     "proven_value": (_PROVEN, lambda s: _value(s, _proof(s).best_value)),
@@ -167,10 +162,7 @@ NUMBERS: dict[str, Number] = {
     "off_sigma": (_RESULT, lambda s: _n(_verdict(s).deviation, 1)),
     "rigid_contradiction": (_RESULT, lambda s: f"{_verdict(s).rigid_contradiction:.1%}"),
     "across_m": (_RESULT, lambda s: _n(_verdict(s).wall_across, 0)),
-    "agreeing_m": (
-        _RESULT,
-        lambda s: _n(_verdict(s).shared_wall * (1 - _verdict(s).contradiction), 0),
-    ),
+    "agreeing_m": (_RESULT, lambda s: _n(_verdict(s).shared_wall * (1 - _verdict(s).contradiction), 0)),
     "floor_m2": (_RESULT, lambda s: _n(_verdict(s).shared_floor, 0)),
     "answers_weighed": (_RESULT, lambda s: str(len(s.get(MergeResult).weighed))),
     "probability": (_RESULT, lambda s: likelihood(_verdict(s).probability)),

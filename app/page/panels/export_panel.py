@@ -8,12 +8,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from html import escape
+from typing import Any
 
 import viser
 
 from app.drawing.palette import LIGHT, QUIET
 from app.page.cancellable_task import CancellableTask, DownloadTask
-from app.page.panels.html_widgets import box
+from app.page.panels.html_widgets import box, on_press
 from app.report.result_files import ACTED_UPON, ALONE, ARCHIVE, ResultFiles
 from app.report.ros_transform import publish_command
 from app.system.cancellation import Check
@@ -30,17 +31,15 @@ class ExportPanel:
         self._harvest: ResultFiles | None = None
         gui = client.gui
         with gui.add_folder("Export", order=70):
-            self._all = gui.add_button(
-                "Download everything",
-                icon=viser.Icon.DOWNLOAD,
-                color=QUIET,
-                visible=False,
-                hint="A zip: merged map for Nav2, transform, report to read and print, picture, observation.",
-            )
-            self._all.on_click(lambda _: self._ask(ARCHIVE))
+            hint = "A zip: merged map for Nav2, transform, report to read and print, picture, observation."
+            quiet: Any = {"color": QUIET, "visible": False}
+            icon = viser.Icon.DOWNLOAD
+            self._all = gui.add_button("Download everything", icon=icon, hint=hint, **quiet)
             self._one = gui.add_dropdown("One file", ALONE, visible=False, hint="A file of the zip, alone.")
-            self._alone = gui.add_button("Download this file", color=QUIET, visible=False)
-            self._alone.on_click(lambda _: self._ask(self._one.value))
+            self._alone = gui.add_button("Download this file", **quiet)
+            on_press(
+                (self._all, lambda: self._ask(ARCHIVE)), (self._alone, lambda: self._ask(self._one.value))
+            )
             self.replay = ReplayButton(client, task)
             self.replay.visible(False)
             self._line = gui.add_html("")
@@ -55,11 +54,10 @@ class ExportPanel:
     def outdate(self, why: str = _OUTDATED) -> None:
         """The result is out of date, or not what is seen: it is greyed, and nothing of it can be taken."""
         last = self._harvest
-        if last is None:
-            return
-        self._show(None, there=True)
-        self._note.content = box(why, "plain", faded=True)
-        self._line.content = line_html(last, faded=True)
+        if last is not None:
+            self._show(None, there=True)
+            self._note.content = box(why, "plain", faded=True)
+            self._line.content = line_html(last, faded=True)
 
     def _show(self, harvest: ResultFiles | None, there: bool) -> None:
         self._harvest = harvest
@@ -84,13 +82,11 @@ class ExportPanel:
             yes = gui.add_button("Download the refused map anyway", color=LIGHT.conflict)
             no = gui.add_button("Cancel", color=QUIET)
 
-        def go(really: bool) -> None:
+        def anyway() -> None:
             modal.close()
-            if really:
-                self._send(harvest, name)
+            self._send(harvest, name)
 
-        yes.on_click(lambda _: go(True))
-        no.on_click(lambda _: go(False))
+        on_press((yes, anyway), (no, modal.close))
 
     def _send(self, harvest: ResultFiles, name: str) -> None:
         def make(check: Check) -> bytes:
@@ -119,13 +115,9 @@ class ReplayButton:
         self._deliver = DownloadTask(client, task)
         self._name = ""
         self._make: Callable[[Check], bytes] | None = None
-        self._button = client.gui.add_button(
-            "Save replay",
-            icon=viser.Icon.MOVIE,
-            color=QUIET,
-            disabled=True,
-            hint="One HTML page that plays this run again, without a network: for a talk or a lesson.",
-        )
+        hint = "One HTML page that plays this run again, without a network: for a talk or a lesson."
+        how: Any = {"icon": viser.Icon.MOVIE, "color": QUIET, "disabled": True, "hint": hint}
+        self._button = client.gui.add_button("Save replay", **how)
         self._button.on_click(lambda _: self._save())
 
     def offer(self, name: str | None, make: Callable[[Check], bytes] | None = None) -> None:
@@ -134,7 +126,6 @@ class ReplayButton:
         self._button.disabled = make is None
 
     def visible(self, yes: bool) -> None:
-        """Show the button, or hide it while there is nothing to save."""
         self._button.visible = yes
 
     def _save(self) -> None:

@@ -27,7 +27,6 @@ from app.system.cancellation import CancellableReader, Cancelled, Check, unwatch
 NONE = "(choose)"
 TAKEN = viser.UploadedFile("", b"")  # what a button holds that holds no file any more
 
-
 # key -> label of the button, what the picker offers
 SLOTS = {
     "yaml1": ("Map 1: YAML", ".yaml,.yml"),
@@ -37,7 +36,6 @@ SLOTS = {
     "observation": ("Observation: YAML", ".yaml,.yml"),
 }
 
-MAPS = (1, 2)
 NO_YAML = (
     "Map {}'s image has no YAML file yet: load it, or fill in the form below the image and press “Use this "
     "map”."
@@ -57,10 +55,8 @@ def _large(upload: Upload) -> bool:
     """Whether it takes a while to read. A PNG may be much larger than its file; a map's YAML file is read
     with its image.
     """
-    wide, high = upload.content[16:20], upload.content[20:24]
-    pixels = 0
-    if upload.content.startswith(b"\x89PNG"):
-        pixels = int.from_bytes(wide, "big") * int.from_bytes(high, "big")
+    wide, high = (int.from_bytes(upload.content[k : k + 4], "big") for k in (16, 20))
+    pixels = wide * high if upload.content.startswith(b"\x89PNG") else 0
     return max(len(upload.content), pixels) >= LARGE
 
 
@@ -95,7 +91,7 @@ def inputs_from(
 
     seen = uploads.get("observation")
     inputs = MergeInputs(
-        maps=tuple(read(number) for number in MAPS),
+        maps=tuple(read(number) for number in (1, 2)),
         observations=observations_from_bytes(seen.name, seen.content) if seen else (),
         name="your files" if uploads else "",
     )
@@ -129,12 +125,9 @@ class FilesPanel:
         samples = paths.samples()
         names = [chosen] if chosen and chosen not in samples else []
         with gui.add_folder("Maps", order=10.0):
-            self._sample = gui.add_dropdown(
-                "Sample",
-                (NONE, *names, *samples),
-                initial_value=chosen or NONE,
-                hint="A pair that came along.",
-            )
+            start, hint = chosen or NONE, "A pair that came along."
+            options = (NONE, *names, *samples)
+            self._sample = gui.add_dropdown("Sample", options, initial_value=start, hint=hint)
             self._sample.on_update(lambda _: self._take_sample())
             self._forms: dict[int, ImageForm] = {}
             with gui.add_folder("Upload your own", expand_by_default=False):
@@ -211,15 +204,12 @@ class FilesPanel:
                 del self._uploads[key.replace("image", "yaml")]  # it was filled in for another image
             try:
                 inputs = self._read(upload)
-            except Cancelled:  # nothing has come of it yet
-                self._uploads = before
-                self._offer_forms()
-                return
-            except MapMergeError as error:
+            except (Cancelled, MapMergeError) as error:
                 self._uploads = before  # and what is on the page stays there
                 self._offer_forms()
-                self._tell(key)
-                self._report(error)
+                if isinstance(error, MapMergeError):
+                    self._tell(key)
+                    self._report(error)
                 return
             self._show(inputs)
 
@@ -259,15 +249,14 @@ class FilesPanel:
         rows = []
         for key, (label, _) in SLOTS.items():
             upload = self._uploads.get(key)
-            sign = "✗" if key == bad else "✓" if upload else "·"
-            colour = "#D55E00" if key == bad else "#009E73" if upload else "#9CA3AF"
-            name = "missing" if upload is None else escape(upload.name)
-            if key == "observation" and upload is None and self._placed and self._uploads:
-                sign, colour, name = "✓", "#009E73", "placed by hand"
-            if upload is not None and upload.by_form:
-                name = "filled in below"
+            sign, colour, name = "·", "#9CA3AF", "missing"
             if key == bad:
-                name = "cannot be used"
+                sign, colour, name = "✗", "#D55E00", "cannot be used"
+            elif upload is not None:
+                name = "filled in below" if upload.by_form else escape(upload.name)
+                sign, colour = "✓", "#009E73"
+            elif key == "observation" and self._placed and self._uploads:
+                sign, colour, name = "✓", "#009E73", "placed by hand"
             rows.append(
                 f'<tr><td style="color:{colour};width:1.2em">{sign}</td>'
                 f"<td>{label}</td><td style='opacity:.75;overflow-wrap:anywhere'>{name}</td></tr>"

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from html import escape
 from typing import Any
 
 from app.model.status_text import typeset
+
+Action = Callable[[], None]
 
 SHORT = 6  # letters of a first cell that is a sign or a number, not words
 LONGEST = 26  # letters of a cell that is kept on one line; more would push the table out of its panel
@@ -37,17 +39,24 @@ def table(rows: Iterable[tuple[str, ...]], head: tuple[str, ...] = (), faded: bo
 def box(text: str, mood: str, note: str = "", faded: bool = False) -> str:
     """HTML of a sentence in a coloured box; mood is accepted, bent, refused or plain."""
     colour = {"accepted": "#009E73", "bent": "#E69F00", "refused": "#D55E00"}.get(mood, "#6B7280")
-    small = (
-        f'<div style="font-weight:400;margin-top:4px;opacity:.85">{escape(typeset(note))}</div>'
-        if note
-        else ""
-    )
+    small = f'<div style="font-weight:400;margin-top:4px;opacity:.85">{escape(typeset(note))}</div>'
     dim = ";opacity:.4" if faded else ""
     return (
         f'<div style="margin:4px 10px 8px;padding:8px 10px;border-left:4px solid {colour};'
         f'border-radius:4px;background:{colour}1f;font-size:13px;font-weight:600;line-height:1.4{dim}">'
-        f"{escape(typeset(text))}{small}</div>"
+        f"{escape(typeset(text))}{small if note else ''}</div>"
     )
+
+
+def on_press(*buttons: tuple[Any, Action]) -> None:
+    """Have each button do its action."""
+    for button, action in buttons:
+        button.on_click(lambda _, action=action: action())
+
+
+def on_choice(handle: Any, action: Action) -> None:
+    """Have a widget do this where a person changes it; where the page itself does, nothing."""
+    handle.on_update(lambda event: action() if event.client_id is not None else None)
 
 
 def put(handle: Any, **values: Any) -> None:

@@ -20,12 +20,12 @@ from algorithms.common.pose import Pose2
 from algorithms.files.grey_levels import MOST_WALL
 from algorithms.files.map_file import GreyImage, MapMeta, grey_image, meta_to_bytes, parse_meta
 from algorithms.files.thresholds import MODES, Shading
-from algorithms.maps.grid_map import COARSEST, FARTHEST, FINEST, FREE, FREE_UP_TO, OCCUPIED_FROM, CellArray
+from algorithms.maps.grid_map import COARSEST, FARTHEST, FINEST, OCCUPIED_FROM, CellArray
 from app.drawing import grid_pixels as render
 from app.drawing.palette import LIGHT, QUIET, Rgb, css
 from app.drawing.png import data_uri
 from app.model.merge_inputs import Upload
-from app.page.panels.html_widgets import box, put
+from app.page.panels.html_widgets import box, on_press, put
 from app.system.cancellation import CancellableReader, Check, unwatched
 
 RESOLUTION = 0.05  # metres per cell: what most robots' maps have
@@ -70,55 +70,33 @@ class ImageForm:
             self._about = gui.add_html("")
             self._picture = gui.add_html("")
             self._says = gui.add_html("")
-            self._resolution = gui.add_number(
-                "resolution (m)",
-                RESOLUTION,
-                min=FINEST,
-                max=COARSEST,
-                step=0.0001,
-                hint="Metres per pixel. 0.05 m is usual; a wrong one makes a wrong merge.",
-            )
+            hint = "Metres per pixel. 0.05 m is usual; a wrong one makes a wrong merge."
+            wide: Any = {"min": FINEST, "max": COARSEST, "step": 0.0001}
+            self._resolution = gui.add_number("resolution (m)", RESOLUTION, hint=hint, **wide)
             corner = "of the image's lower left corner, in this robot's own frame. 0 where nobody knows."
             wide = {"min": -FARTHEST, "max": FARTHEST, "step": 0.0001}
             self._x = gui.add_number("origin x (m)", 0.0, hint=f"x {corner}", **wide)
             self._y = gui.add_number("origin y (m)", 0.0, hint=f"y {corner}", **wide)
-            self._yaw = gui.add_number(
-                "yaw (°)", 0.0, min=-180.0, max=180.0, step=0.001, hint=f"Turn {corner} Counter-clockwise."
-            )
+            hint = f"Turn {corner} Counter-clockwise."
+            self._yaw = gui.add_number("yaw (°)", 0.0, min=-180.0, max=180.0, step=0.001, hint=hint)
             self._mode = gui.add_dropdown("mode", MODES, hint="How the grey of a pixel is read.")
             usual = Shading()
-            self._occupied = gui.add_slider(
-                "wall from",
-                min=0.0,
-                max=1.0,
-                step=0.001,
-                initial_value=usual.occupied_thresh,
-                hint="occupied_thresh: a pixel at least so dark is wall; 0 is white, 1 is black.",
-            )
-            self._free = gui.add_slider(
-                "free up to",
-                min=0.0,
-                max=1.0,
-                step=0.001,
-                initial_value=usual.free_thresh,
-                hint="free_thresh: a pixel at most so dark is free floor. Between the two: unknown.",
-            )
+            share: Any = {"min": 0.0, "max": 1.0, "step": 0.001}
+            hint = "occupied_thresh: a pixel at least so dark is wall; 0 is white, 1 is black."
+            start = usual.occupied_thresh
+            self._occupied = gui.add_slider("wall from", initial_value=start, hint=hint, **share)
+            hint = "free_thresh: a pixel at most so dark is free floor. Between the two: unknown."
+            self._free = gui.add_slider("free up to", initial_value=usual.free_thresh, hint=hint, **share)
             self._negate = gui.add_checkbox("negate", False, hint="White is wall and black is free.")
             self._go = gui.add_button("Use this map", color=LIGHT.ref)
-            self._file = gui.add_button(
-                "Download YAML",
-                icon=viser.Icon.DOWNLOAD,
-                color=QUIET,
-                hint="The file that belongs to this image, for map_server, Nav2 and mapmeld.",
-            )
-        for widget in self._widgets():
+            hint = "The file that belongs to this image, for map_server, Nav2 and mapmeld."
+            icon = viser.Icon.DOWNLOAD
+            self._file = gui.add_button("Download YAML", icon=icon, color=QUIET, hint=hint)
+        limits = self._mode, self._occupied, self._free, self._negate
+        self._widgets: tuple[Any, ...] = (self._resolution, self._x, self._y, self._yaw, *limits)
+        for widget in self._widgets:
             widget.on_update(lambda _: self._changed())
-        self._go.on_click(lambda _: self._taken())
-        self._file.on_click(lambda _: self._download())
-
-    def _widgets(self) -> tuple[Any, ...]:
-        numbers = (self._resolution, self._x, self._y, self._yaw)
-        return (*numbers, self._mode, self._occupied, self._free, self._negate)
+        on_press((self._go, self._taken), (self._file, self._download))
 
     # --- what it is asked ---------------------------------------------------------------------------
 
@@ -128,17 +106,16 @@ class ImageForm:
         check  : is called now and then while the image is read, and may leave that by raising
         raises : MapMergeError where the image cannot be read; nothing has changed then
         """
-        wanted = image is not None and (text is None or text.by_form)
-        if image is None or not wanted:
+        if image is None or (text is not None and not text.by_form):
             self._image = self._grey = self._used = None
             self._folder.visible = False
             return
         grey = self._grey
         if grey is None or image != self._image:
             grey = grey_image(image.name, CancellableReader(image.content, check))
-        self._image, self._grey = image, grey
-        self._used = text.content if text is not None else None
+        self._image, self._grey, self._used = image, grey, None
         if text is not None:
+            self._used = text.content
             self._write(parse_meta(text.name, text.content))
         self._folder.visible = True
         self._draw()
@@ -147,15 +124,9 @@ class ImageForm:
     def meta(self) -> MapMeta:
         """What is filled in; raises SettingError where that cannot be."""
         assert self._image is not None
-        shading = Shading(
-            bool(self._negate.value),
-            round(float(self._occupied.value), 6),
-            round(float(self._free.value), 6),
-            self._mode.value,
-        )
-        numbers = (self._x, self._y, self._yaw)
-        x, y, yaw = (round(float(number.value), 6) for number in numbers)
-        resolution = round(float(self._resolution.value), 6)
+        numbers = self._resolution, self._x, self._y, self._yaw, self._occupied, self._free
+        resolution, x, y, yaw, occupied, free = (round(float(number.value), 6) for number in numbers)
+        shading = Shading(bool(self._negate.value), occupied, free, self._mode.value)
         if resolution <= 0:
             raise SettingError(f"resolution is {resolution:g} m/cell; give a positive number, e.g. 0.05")
         return MapMeta(self._image.name, resolution, Pose2(x, y, radians(yaw)), shading)
@@ -195,19 +166,15 @@ class ImageForm:
         o, shading = meta.origin, meta.shading
         values = (meta.resolution, o.x, o.y, round(degrees(o.theta), 6), shading.mode)
         wanted = (*values, shading.occupied_thresh, shading.free_thresh, shading.negate)
-        for widget, value in zip(self._widgets(), wanted, strict=True):
+        for widget, value in zip(self._widgets, wanted, strict=True):
             put(widget, value=value)
 
     def _draw(self) -> None:
-        assert self._image is not None
-        assert self._grey is not None
         raw = self._mode.value == "raw"
         for widget in (self._occupied, self._free, self._negate):
-            if widget.visible == raw:
-                widget.visible = not raw
-        about = [f"{self._image.name} came without a YAML file. Say what that would say, or load it."]
-        about.append(WHAT_IT_MEANS[self._mode.value])
-        self._about.content = _small(" ".join(about))
+            put(widget, visible=not raw)
+        about = f"{self._image.name} came without a YAML file. Say what that would say, or load it."
+        self._about.content = _small(f"{about} {WHAT_IT_MEANS[self._mode.value]}")
         try:
             meta = self.meta
         except SettingError as error:
@@ -220,9 +187,8 @@ class ImageForm:
         used = self._used == meta_to_bytes(meta)
         note = "In use." if used else "Not in use yet." if self._used is None else "Changed: not in use yet."
         share = shares(cells)
-        doubt = doubt_about(share, meta.shading) or " ".join(
-            f"{say[:1].upper()}{say[1:]}." for say in remarks
-        )
+        noticed = " ".join(f"{say[:1].upper()}{say[1:]}." for say in remarks)
+        doubt = doubt_about(share, meta.shading) or noticed
         counted = _counted(share, cells.shape, meta.resolution, self._colour)
         self._says.content = counted + _small(note) + (box(doubt, "refused") if doubt else "")
         self._file.disabled = False
@@ -231,27 +197,25 @@ class ImageForm:
 
 def shares(cells: CellArray) -> Shares:
     """How much of a map is wall, free, and neither; they sum to 1."""
-    wall = float(np.count_nonzero(cells >= OCCUPIED_FROM)) / cells.size
-    free = float(np.count_nonzero((cells >= FREE) & (cells <= FREE_UP_TO))) / cells.size
+    wall, free = float(np.mean(cells >= OCCUPIED_FROM)), float(np.mean(render.is_free(cells)))
     return wall, free, 1.0 - wall - free
 
 
 def doubt_about(share: Shares, shading: Shading) -> str:
     """What is odd about a reading of an image, as a sentence; empty where nothing is."""
     wall, free, _ = share
-    raw = shading.mode == "raw"
     if wall > MOST_WALL:
-        other = "Try another mode." if raw else "Is black the wall here? Then take negate away."
-        if not raw and not shading.negate:
-            other = "Is white the wall here? Then tick negate."
-        return f"More than half of it is wall. {other}"
-    if wall == 0:
-        other = "Try another mode." if raw else "Move “wall from” to the left."
-        return f"There is no wall in it: nothing could be merged. {other}"
-    if free < LEAST_FREE:
-        other = "Try another mode." if raw else "Move “free up to” to the right."
-        return f"Hardly anything of it is free floor. {other}"
-    return ""
+        odd, remedy = "More than half of it is wall.", "Is white the wall here? Then tick negate."
+        if shading.negate:
+            remedy = "Is black the wall here? Then take negate away."
+    elif wall == 0:
+        odd = "There is no wall in it: nothing could be merged."
+        remedy = "Move “wall from” to the left."
+    elif free < LEAST_FREE:
+        odd, remedy = "Hardly anything of it is free floor.", "Move “free up to” to the right."
+    else:
+        return ""
+    return f"{odd} {'Try another mode.' if shading.mode == 'raw' else remedy}"
 
 
 def _counted(share: Shares, shape: tuple[int, ...], resolution: float, colour: Rgb) -> str:

@@ -50,10 +50,7 @@ def why_html(verdict: Verdict, faded: bool = False) -> str:
 
 def places_html(found: Contradictions, faded: bool = False) -> str:
     """HTML of the list, most wall first; faded and without effect where it is out of date."""
-    dim = ' style="opacity:.4"' if faded else ""
-    if not found.places:
-        return f'<div class="mm-places"{dim}><p>{summary(found)}</p></div>'
-    off = " disabled" if faded else ""
+    dim, off = (' style="opacity:.4"', " disabled") if faded else ("", "")
     rows = [
         f'<button type="button" data-mm-place="{n}" aria-pressed="false"{off} '
         f'title="Go there; press again for everything.">'

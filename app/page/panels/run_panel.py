@@ -8,10 +8,10 @@ from threading import Lock
 import viser
 
 from algorithms.methods.registry import METHODS
-from app.drawing.palette import LIGHT, QUIET
+from app.drawing.palette import LIGHT, QUIET, STOP
 from app.model.playback import PACES
 from app.model.view_modes import HEIGHTS, LESSON, MAP, MUSEUM, SWARM
-from app.page.panels.html_widgets import put
+from app.page.panels.html_widgets import Action, on_choice, on_press, put
 
 NAMES = {method.title: name for name, method in METHODS.items()}
 
@@ -23,9 +23,8 @@ class RunPanel:
         self.merge = gui.add_button("Merge", color=LIGHT.ref, icon=viser.Icon.ARROWS_JOIN, order=1)
         self._at_work: set[str] = set()  # who can be stopped
         self._counting = Lock()  # they begin and end in threads of their own
-        self.stop = gui.add_button(
-            "Stop", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, disabled=True, order=2
-        )
+        icon = viser.Icon.PLAYER_STOP
+        self.stop = gui.add_button("Stop", color=STOP, icon=icon, disabled=True, order=2)
         hint = "How long each step stays. Instant: as fast as it is computed."
         self._speed = gui.add_button_group("Speed", tuple(PACES), order=3, hint=hint)
         self._speed.value = "Normal"
@@ -36,45 +35,29 @@ class RunPanel:
         self._learn = gui.add_button_group("Learn", (LESSON, MUSEUM), order=4.7, hint=hint)
         self._open: list[str] = []  # which of them are
         with gui.add_folder("Run", order=50):
-            self._method = gui.add_dropdown(
-                "Method", tuple(NAMES), hint="The way to merge; each has its own defaults."
-            )
-            self._seed = gui.add_number(
-                "Seed",
-                0,
-                min=0,
-                max=2**31 - 1,
-                step=1,
-                hint="Random seed: the same seed gives the same answer.",
-            )
+            hint = "The way to merge; each has its own defaults."
+            self._method = gui.add_dropdown("Method", tuple(NAMES), hint=hint)
+            hint = "Random seed: the same seed gives the same answer."
+            self._seed = gui.add_number("Seed", 0, min=0, max=2**31 - 1, step=1, hint=hint)
             self._follow = gui.add_checkbox("Camera follows", True, hint="The camera goes with the run.")
             self._fit = gui.add_button("Show everything", color=QUIET)
             self._dark = gui.add_checkbox("Dark", False, hint="Light writing on a dark page.")
 
     def connect_run(
-        self,
-        merge: Callable[[], None],
-        stop: Callable[[], None],
-        speed: Callable[[], None],
-        method: Callable[[str], None],
-        seed: Callable[[], None],
+        self, merge: Action, stop: Action, speed: Action, method: Callable[[str], None], seed: Action
     ) -> None:
         """What is done where a person wants a merge, or another speed, method or seed of it."""
-        self.merge.on_click(lambda _: merge())
-        self.stop.on_click(lambda _: stop())
-        self._speed.on_click(lambda _: speed())
+        on_press((self.merge, merge), (self.stop, stop), (self._speed, speed))
         self._method.on_update(lambda _: method(NAMES[self._method.value]))
-        self._seed.on_update(lambda event: seed() if event.client_id is not None else None)
+        on_choice(self._seed, seed)
 
-    def connect_view(
-        self, view: Callable[[str], None], fit: Callable[[], None], dark: Callable[[bool], None]
-    ) -> None:
+    def connect_view(self, view: Callable[[str], None], fit: Action, dark: Callable[[bool], None]) -> None:
         """What is done where a person wants to see it otherwise."""
         self._view.on_click(lambda event: view(self._view.value) if event.client_id is not None else None)
         self._fit.on_click(lambda _: fit())
         self._dark.on_update(lambda _: dark(self._dark.value))
 
-    def connect_learn(self, lesson: Callable[[], None], museum: Callable[[], None]) -> None:
+    def connect_learn(self, lesson: Action, museum: Action) -> None:
         """What is done where a person opens or closes the lesson or the museum."""
         self._learn.on_click(lambda _: lesson() if self._learn.value == LESSON else museum())
 

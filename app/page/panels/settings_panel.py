@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from threading import RLock, get_ident
 from typing import Any
 
@@ -90,18 +91,18 @@ class SettingsPanel:
         with self._action:
             if method == self.method:
                 return
-            self._take(method, METHODS[method].defaults)
+            self._take(method)
             self._changed()
 
     def restore(self, method: str, config: Any) -> None:
         with self._action:
             if method != self.method:
-                self._take(method, METHODS[method].defaults)
+                self._take(method)
             self.config = config
             self._write(config)
 
-    def _take(self, method: str, config: Any) -> None:
-        self.method, self.config = method, config
+    def _take(self, method: str) -> None:
+        self.method, self.config = method, METHODS[method].defaults
         for folder in self._folders.values():
             folder.remove()
         self._build()
@@ -119,7 +120,7 @@ class SettingsPanel:
         self._settings = {setting.path: setting for setting in settings_of(self.config)}
         self._folders = {}
         for title, order in ORDER.items():
-            mine = [path for path in self._settings if FOLDERS.get(path[0], "Search") == title]
+            mine = self._paths_in(title)
             if not mine:
                 continue
             front = [path for path in FRONT if path in mine]
@@ -131,34 +132,30 @@ class SettingsPanel:
                     self._add(self._settings[path])
                 if any(_in_metres(self._settings[path]) for path in mine):
                     self._notes[title] = self._gui.add_html("")
-                if front and more:
-                    with self._gui.add_folder("More", expand_by_default=False):
+                if more:
+                    within = self._gui.add_folder("More", expand_by_default=False) if front else nullcontext()
+                    with within:
                         for path in more:
                             self._add(self._settings[path])
-                elif more:
-                    for path in more:
-                        self._add(self._settings[path])
                 reset = self._gui.add_button(f"Reset {title.lower()}", color=QUIET)
                 reset.on_click(lambda _, mine=tuple(mine): self._reset(mine))
         self._show_cells()
         self._hide_idle()
 
+    def _paths_in(self, title: str) -> list[Path]:
+        """The settings of a folder."""
+        return [path for path in self._settings if FOLDERS.get(path[0], "Search") == title]
+
     def _add(self, setting: Setting) -> None:
         hint, value = setting.hint or None, setting.default
         if setting.bounds is not None:
             b, kind = setting.bounds, int if setting.whole else float
-            handle: Any = self._gui.add_slider(
-                setting.label,
-                min=kind(b.low),
-                max=kind(b.high),
-                step=kind(b.step),
-                initial_value=kind(value),
-                hint=hint,
-            )
+            ends = {"min": kind(b.low), "max": kind(b.high), "step": kind(b.step)}
+            start: Any = kind(value)
+            handle: Any = self._gui.add_slider(setting.label, initial_value=start, hint=hint, **ends)
         elif setting.choices is not None:
-            handle = self._gui.add_dropdown(
-                setting.label, tuple(setting.choices), initial_value=word_for(setting, value), hint=hint
-            )
+            words, start = tuple(setting.choices), word_for(setting, value)
+            handle = self._gui.add_dropdown(setting.label, words, initial_value=start, hint=hint)
         else:
             handle = self._gui.add_checkbox(setting.label, value, hint=hint)
         self._handles[setting.path] = handle
@@ -184,27 +181,25 @@ class SettingsPanel:
                 config = with_value(config, path, value)
         return config
 
-    def sync(self) -> None:
-        """Take in what the widgets say now: a message of theirs may have been lost on the way."""
+    def sync(self) -> bool:
+        """Take in what the widgets say now: a message of theirs may have been lost on the way.
+
+        Whether that is anything new; what cannot be set is reported.
+        """
+        before = self.config
         try:
             self.config = self.read()
         except SettingError as error:
             self._report(error)
             self._write(self.config)
+        return self.config != before
 
     def _read(self) -> None:
         if self._writer == get_ident():
             return
         with self._action:
-            try:
-                config = self.read()
-            except SettingError as error:
-                self._report(error)
-                self._write(self.config)
+            if not self.sync():
                 return
-            if config == self.config:
-                return
-            self.config = config
             self._show_cells()
             self._hide_idle()
             self._changed()
@@ -227,8 +222,7 @@ class SettingsPanel:
         try:
             for path, handle in self._handles.items():
                 value, setting = value_at(config, path), self._settings[path]
-                shown = word_for(setting, value) if setting.choices is not None else value
-                put(handle, value=shown)
+                put(handle, value=word_for(setting, value) if setting.choices is not None else value)
         finally:
             self._writer = 0
         self._show_cells()
@@ -237,24 +231,16 @@ class SettingsPanel:
     def _hide_idle(self) -> None:
         """Show the settings that do something, and the folders that hold one."""
         for path, handle in self._handles.items():
-            shown = not idle(self.config, path)
-            put(handle, visible=shown)
+            put(handle, visible=not idle(self.config, path))
         for title, folder in self._folders.items():
-            mine = [path for path in self._handles if FOLDERS.get(path[0], "Search") == title]
-            shown = not all(idle(self.config, path) for path in mine)
-            put(folder, visible=shown)
+            put(folder, visible=not all(idle(self.config, path) for path in self._paths_in(title)))
 
     def _show_cells(self) -> None:
         """Lengths in cells below the sliders of a folder; the maps may differ in resolution."""
         for title, note in self._notes.items():
-            parts = []
-            for path, setting in self._settings.items():
-                bounds = setting.bounds
-                if FOLDERS.get(path[0], "Search") != title or bounds is None or not _in_metres(setting):
-                    continue
-                if self._cells:
-                    cells = in_cells(value_at(self.config, path), *self._cells)
-                    parts.append(f"{bounds.symbol} = {cells}")
-            note.content = (
-                f'<div style="font-size:11.5px;opacity:.7;margin:-2px 10px 6px">{" · ".join(parts)}</div>'
+            lengths = [self._settings[path] for path in self._paths_in(title)] if self._cells else []
+            said = " · ".join(
+                f"{each.bounds.symbol} = {in_cells(value_at(self.config, each.path), *self._cells)}"
+                for each in filter(_in_metres, lengths)
             )
+            note.content = f'<div style="font-size:11.5px;opacity:.7;margin:-2px 10px 6px">{said}</div>'

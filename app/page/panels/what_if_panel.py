@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import log, pi
 from threading import RLock, get_ident
-from typing import Any
+from typing import Any, NamedTuple
 
 import viser
 
@@ -15,7 +15,6 @@ from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.decision import Verdict, VerdictConfig, judge
 from algorithms.verdict.probability_model import Fit, misfit_of, probability, quantities_of, shipped_model
 from algorithms.verdict.ranking import WINDOW_EDGE, Weighed
-from algorithms.verdict.wall_evidence import Evidence
 from app.drawing.palette import LIGHT, QUIET
 from app.drawing.svg.verdict_bars import bars
 from app.model import verdict_text as words
@@ -30,12 +29,8 @@ MOST_LIKELY = 99.9  # per cent, of another answer
 DEVIATION, OTHER = "deviation", "other"  # beside the fields of Evidence
 
 
-@dataclass(frozen=True)
-class Dial:
-    """A slider.
-
-    most : its upper end; in metres and m² it grows with what is there
-    """
+class Dial(NamedTuple):
+    """A slider; ``most`` is its upper end: in metres and m² it grows with what is there."""
 
     label: str
     hint: str
@@ -75,29 +70,23 @@ def numbers_of(result: MergeResult) -> dict[str, float]:
 
 
 def supposed(result: MergeResult, rules: VerdictConfig, changed: Mapping[str, float]) -> Verdict:
-    """The verdict that a merge would have, were some of its numbers others.
-
-    changed : by the names of ``DIALS``, in their units
-    """
+    """The verdict on a merge with some numbers changed: by the names of ``DIALS``, in their units."""
     named, *others = result.weighed
     changed = dict(changed)
     if "rigid_agreeing" in changed:  # more wall that agrees agrees when patches slip, too
         more = changed["rigid_agreeing"] - named.evidence.rigid_agreeing
         changed["agreeing"] = max(0.0, named.evidence.agreeing + more)
-    evidence: Evidence = replace(
-        named.evidence, **{name: value for name, value in changed.items() if hasattr(named.evidence, name)}
-    )
+    walls = {name: value for name, value in changed.items() if hasattr(named.evidence, name)}
+    evidence = replace(named.evidence, **walls)
     deviations = list(named.deviations)
     if DEVIATION in changed and deviations:
         deviations[deviations.index(max(deviations))] = changed[DEVIATION]
     quantities = quantities_of(Fit(evidence, misfit_of(deviations, WINDOW_EDGE)))
     score = shipped_model().score(quantities)
-    other = replace(
-        named, evidence=evidence, deviations=tuple(deviations), quantities=quantities, score=score
-    )
+    found = {"evidence": evidence, "deviations": tuple(deviations), "quantities": quantities, "score": score}
     if OTHER in changed:
         others = _with_best(others, named, changed[OTHER] / 100)
-    return judge(result.fusion, other, others, result.encounter.x_mov, rules)
+    return judge(result.fusion, replace(named, **found), others, result.encounter.x_mov, rules)
 
 
 def _with_best(others: list[Weighed], named: Weighed, likely: float) -> list[Weighed]:
@@ -145,7 +134,7 @@ class WhatIfPanel:
                 self._write(self._result)
             finally:
                 self._writer = 0
-            self._tell()
+            self._tell(self._result)
 
     def _write(self, result: MergeResult) -> None:
         for name, value in numbers_of(result).items():
@@ -154,19 +143,15 @@ class WhatIfPanel:
             while most < value and name not in (DEVIATION, OTHER):
                 most *= 2
             handle.max = most
-            self._shown[name] = round(min(value, most) / dial.step) * dial.step
-            handle.value = self._shown[name]
+            self._shown[name] = handle.value = round(min(value, most) / dial.step) * dial.step
 
     def _read(self) -> None:
-        if self._writer == get_ident():
-            return
-        with self._turn:
-            self._tell()
+        if self._writer != get_ident():
+            with self._turn:
+                if self._result is not None:
+                    self._tell(self._result)
 
-    def _tell(self) -> None:
-        result = self._result
-        if result is None:
-            return
+    def _tell(self, result: MergeResult) -> None:
         # what was not moved counts with all its digits
         changed = {
             name: float(handle.value)

@@ -19,9 +19,8 @@ from app.model.merge_inputs import MergeInputs
 from app.page.cancellable_task import DownloadTask
 from app.page.page_state import PageState
 from app.page.research.comparison_panel import ALL, FAMILIES, Card, ComparePanel
-from app.page.research.other_result import OtherResult
+from app.page.research.other_result import OtherResult, outcome_of
 from app.page.research.other_result_controller import OtherResultController
-from app.page.research.run_summary import outcome_of
 from app.web.browser_events import BrowserEvents
 
 MAKING = "Making the files: tables and pictures."
@@ -152,8 +151,7 @@ class ComparisonController:
         scores = [ComparedRun(case.name, name, other.trial) for name, other in self._found.items()]
         configs = {name: other.config for name, other in self._found.items()}
         seed = self._state.seed
-        make = lambda check: contest_archive(case, scores, configs, seed)  # noqa: E731
-        self._deliver(MAKING, "compared.zip", make)
+        self._deliver(MAKING, "compared.zip", lambda check: contest_archive(case, scores, configs, seed))
 
     # --- what the work tells ----------------------------------------------------------------------
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from html import escape
-from typing import Literal
+from typing import Any, Literal
 
 import viser
 
 from algorithms.methods.registry import METHODS, Family
-from app.drawing.palette import LIGHT, QUIET
+from app.drawing.palette import LIGHT, QUIET, STOP
 from app.model.status_text import typeset
-from app.page.panels.html_widgets import put
-from app.page.research.run_summary import RunSummary
+from app.page.panels.html_widgets import Action, on_press, put
+from app.page.research.other_result import RunSummary
 
 OURS, PAPER, RIVALS, ALL, NONE = "Ours", "Paper's", "Rivals", "All", "None"
 FAMILIES: dict[Family, tuple[str, str]] = {
@@ -57,9 +57,8 @@ class ComparePanel:
         gui.add_html(f'<p style="{SMALL}">{INTRO}</p>')
         self._groups = gui.add_button_group("", (OURS, PAPER, RIVALS, ALL, NONE), hint=HINT)
         self._run = gui.add_button("Compare methods", color=LIGHT.ref, icon=viser.Icon.SCALE, disabled=True)
-        self._stop = gui.add_button(
-            "Stop comparing", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, visible=False
-        )
+        icon = viser.Icon.PLAYER_STOP
+        self._stop = gui.add_button("Stop comparing", color=STOP, icon=icon, visible=False)
         self._says = gui.add_html(says_html(""))
         self._cards: dict[str, viser.GuiHtmlHandle] = {}
         for family, (title, _) in FAMILIES.items():
@@ -67,27 +66,13 @@ class ComparePanel:
             for name, method in METHODS.items():
                 if method.family == family:
                     self._cards[name] = gui.add_html(card_html(name, Card(chosen=False)))
-        self._save = gui.add_button(
-            "Download tables and pictures",
-            color=QUIET,
-            icon=viser.Icon.DOWNLOAD,
-            visible=False,
-            hint="A zip: a table of the methods, every transform, the merged maps side by side.",
-        )
+        hint = "A zip: a table of the methods, every transform, the merged maps side by side."
+        quiet: Any = {"color": QUIET, "icon": viser.Icon.DOWNLOAD, "visible": False}
+        self._save = gui.add_button("Download tables and pictures", hint=hint, **quiet)
 
-    def connect(
-        self,
-        run: Callable[[], None],
-        stop: Callable[[], None],
-        group: Callable[[str], None],
-        save: Callable[[], None],
-    ) -> None:
-        """What is done where a person compares; what is pressed in a card comes by the browser's events.
-
-        group : ticks all methods of a group, and no others
-        """
-        for button, action in ((self._run, run), (self._stop, stop), (self._save, save)):
-            button.on_click(lambda _, action=action: action())
+    def connect(self, run: Action, stop: Action, group: Callable[[str], None], save: Action) -> None:
+        """What is done where a person compares; ``group`` ticks all methods of a group, and no others."""
+        on_press((self._run, run), (self._stop, stop), (self._save, save))
         self._groups.on_click(lambda _: group(self._groups.value))
 
     def possible(self, count: int, ready: bool, busy: bool, harvest: bool) -> None:
@@ -124,8 +109,8 @@ def card_html(name: str, card: Card) -> str:
         f'<label title="Run this method, too: {escape(name)}">'
         f'<input type="checkbox" data-mm-pick="{name}"{checked}><span>{title}</span></label>'
     )
-    body = _body(name, card)
-    return f'<div class="mm-method" data-method="{name}" data-state="{card.state}">{head}{body}</div>'
+    where = f'class="mm-method" data-method="{name}" data-state="{card.state}"'
+    return f"<div {where}>{head}{_body(name, card)}</div>"
 
 
 def _body(name: str, card: Card) -> str:

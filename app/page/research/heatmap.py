@@ -21,11 +21,7 @@ LONGEST = 10  # letters of a word beside it
 def heat_svg(
     plan: SweepPlan, points: Points, measure: str, judged: bool, here: int | None, palette: Palette
 ) -> str:
-    """SVG of the field; every cell that is there tells its number and can be pressed: see research.js.
-
-    here : number of the point whose settings the sliders have
-    """
-    assert plan.y is not None
+    """SVG of the field, its cells to be pressed (research.js); ``here``: the point that the sliders have."""
     columns, rows = len(plan.x.values), len(plan.y.values)
     left = 26 + 6.0 * max(4, *(len(_short(plan, value)) for value in plan.y.values))
     wide = WIDE - left - RIGHT
@@ -33,8 +29,7 @@ def heat_svg(
     cell = wide / columns, high / rows
     values = field(plan, points, measure)
     low, top = span(values, measure, len(plan.seeds))
-    sheet = SvgCanvas(height=TOP + high + 78, width=WIDE)
-    title = title_of(measure, plan, judged)
+    sheet, title = SvgCanvas(height=TOP + high + 78, width=WIDE), title_of(measure, plan, judged)
     sheet.text(4, 13, title, 12, bold=True)
     pixels = np.full((rows, columns, 3), palette.unknown, dtype=np.uint8)
     known = np.isfinite(values)
@@ -53,7 +48,10 @@ def heat_svg(
             f' fill="#000" fill-opacity="0"{ring}><title>{escape(words, quote=False)}</title></rect>'
         )
     _ticks(sheet, plan, cell, left, high)
-    _scale(sheet, left, TOP + high + 52, wide, text_of(low, measure), text_of(top, measure))
+    y = TOP + high + 52
+    sheet.image(VIRIDIS[None, :, :], left, y, wide, 9, smooth=True)
+    sheet.text(left, y + 21, text_of(low, measure), 10)
+    sheet.text(left + wide, y + 21, text_of(top, measure), 10, "end")
     sheet.text(left, TOP + high + 34, plan.setting(plan.x).label, 11)
     colour = worded(palette.rim, palette) if not palette.dark else palette.text
     sheet.text(11, TOP + high / 2, plan.setting(plan.y).label, 11, "middle", colour, turn=-90)
@@ -66,14 +64,12 @@ def _at(plan: SweepPlan, axis: SweepAxis, number: int) -> str:
 
 def _short(plan: SweepPlan, value: Any) -> str:
     """A value of the second setting, as it stands beside its row."""
-    assert plan.y is not None
     word = word_of(plan, plan.y, value)
     return word if len(word) <= LONGEST else f"{word[: LONGEST - 1]}…"
 
 
 def _ticks(sheet: SvgCanvas, plan: SweepPlan, cell: tuple[float, float], left: float, high: float) -> None:
     """A word per row and column; of many, as many as there is room for."""
-    assert plan.y is not None
     longest = max(len(word_of(plan, plan.x, value)) for value in plan.x.values)
     every = max(-(-len(plan.x.values) // MOST_WORDS), int(-(-(6.0 * longest + 6) // cell[0])))
     for k in range(0, len(plan.x.values), every):
@@ -83,9 +79,3 @@ def _ticks(sheet: SvgCanvas, plan: SweepPlan, cell: tuple[float, float], left: f
     for k in range(0, len(plan.y.values), every):
         y = TOP + high - (k + 0.5) * cell[1] + 3.5
         sheet.text(left - 5, y, _short(plan, plan.y.values[k]), 10, "end")
-
-
-def _scale(sheet: SvgCanvas, left: float, y: float, wide: float, low: str, high: str) -> None:
-    sheet.image(VIRIDIS[None, :, :], left, y, wide, 9, smooth=True)
-    sheet.text(left, y + 21, low, 10)
-    sheet.text(left + wide, y + 21, high, 10, "end")

@@ -1,10 +1,10 @@
-"""Another method's transform, shown over map 1 in place of one's own result: to be looked at, not taken."""
+"""What came of another method, in words; its transform shown over map 1: to be looked at, not taken."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from math import degrees
-from typing import Any
+from typing import Any, Literal
 
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
@@ -16,17 +16,62 @@ from algorithms.observations.observation import Observation, encounters_of
 from app.evaluation.method_run import MethodRun
 from app.model.run_state import RunState
 from app.page.panels.html_widgets import box, table
-from app.page.research.run_summary import outcome_of, verdict_mood
 
 NOT_YOURS = "This is another method's merge, to be looked at. Go back to your own to take it away."
+
+Mood = Literal["accepted", "bent", "refused", "plain"]
+
+
+@dataclass(frozen=True)
+class RunSummary:
+    """A sentence, what mapmeld's verdict says, and numbers.
+
+    mood : accepted where right, refused where wrong; where nobody knows the verdict's; plain: not merged
+    """
+
+    says: str
+    verdict: str
+    numbers: str
+    mood: Mood
+
+
+def outcome_of(trial: MethodRun) -> RunSummary:
+    if trial.failed:
+        return RunSummary("Could not be run.", sentence(trial.reason), "", "plain")
+    seconds = f"{trial.seconds:.2f} s"
+    if trial.T_ref_mov is None:
+        return RunSummary("No transform found.", sentence(trial.reason), seconds, "plain")
+    index = "" if trial.index is None else f"eq. (23) {trial.index:.1%} · "
+    judged: dict[bool | None, Mood] = {True: "accepted", False: "refused", None: verdict_mood(trial)}
+    return RunSummary(_judgement(trial), trial.reason, f"{index}{seconds}", judged[trial.right])
+
+
+def _judgement(trial: MethodRun) -> str:
+    """What the truth says; where none is known, what the verdict says."""
+    if trial.right is None:
+        return {"accepted": "Accepted.", "bent": "Accepted, bent."}.get(verdict_mood(trial), "Refused.")
+    if trial.distance is None or trial.angle is None:  # maps that share no place
+        return "✓ Right." if trial.right else "✗ Wrong: they share no place."
+    metres, turn = trial.distance, degrees(trial.angle)
+    off = f"{metres:.{1 if metres >= 10 else 2}f} m, {turn:.{0 if turn >= 10 else 1}f}°"
+    return f"✓ Right to {off}" if trial.right else f"✗ Wrong by {off}"
+
+
+def verdict_mood(trial: MethodRun) -> Mood:
+    """The verdict's own colour, whatever the truth says."""
+    if trial.bent:
+        return "bent"
+    return "accepted" if trial.accepted else "refused"
+
+
+def sentence(words: str) -> str:
+    """A finding as a sentence."""
+    return f"{words[:1].upper()}{words[1:]}" + ("" if words.endswith((".", "!", "?")) else ".")
 
 
 @dataclass(frozen=True)
 class OtherResult:
-    """What a method has found on the loaded pair.
-
-    config : the settings it ran with
-    """
+    """What a method has found on the loaded pair, with the settings it ran with."""
 
     method: str
     config: Any
@@ -40,26 +85,18 @@ class OtherResult:
     @property
     def pose(self) -> Pose2:
         """Where it puts map 2."""
-        assert self.trial.pose is not None
         return self.trial.pose
 
     def run(self, ref: GridMap, mov: GridMap, seen: tuple[Observation, ...], own: RunState) -> RunState:
-        """The end of a run that found this; raises TooLargeError.
-
-        own : of the page's own run, whose levels are kept: they do not depend on the answer
-        """
+        """The end of a run that found this, with the levels of the page's own; raises TooLargeError."""
         run = RunState(self.config)
         augmented = own.get(AugmentDetail)
         if augmented is not None:
             run.tell(Step("augment", augmented, 0.0))
-        encounters = encounters_of(seen, ref, mov)
         answers = AnswersDetail((Answer(self.pose, 0.0, "of another method"),))
-        for stage, detail in (
-            ("observe", ObservationDetail(encounters)),
-            ("search", answers),
-            ("fuse", fuse((ref, mov), (Pose2(), self.pose))),
-        ):
-            run.tell(Step(stage, detail, 0.0))  # type: ignore[arg-type]
+        run.tell(Step("observe", ObservationDetail(encounters_of(seen, ref, mov)), 0.0))
+        run.tell(Step("search", answers, 0.0))
+        run.tell(Step("fuse", fuse((ref, mov), (Pose2(), self.pose)), 0.0))
         return run
 
     def sentence(self) -> str:
@@ -70,18 +107,15 @@ class OtherResult:
 
     def html(self) -> str:
         """HTML of the same for the dock."""
-        summary = outcome_of(self.trial)
+        summary, T = outcome_of(self.trial), self.pose
         rows = [
-            ("T: Δx", f"{self.pose.x:.3f} m"),
-            ("T: Δy", f"{self.pose.y:.3f} m"),
-            ("T: Δθ", f"{degrees(self.pose.theta):.2f}°"),
+            ("T: Δx", f"{T.x:.3f} m"),
+            ("T: Δy", f"{T.y:.3f} m"),
+            ("T: Δθ", f"{degrees(T.theta):.2f}°"),
             ("eq. (23)", "–" if self.trial.index is None else f"{self.trial.index:.1%}"),
             ("time of the merge", f"{self.trial.seconds:.2f} s"),
             ("seed", f"{self.seed}"),
         ]
         says = "" if self.trial.right is None else f" {summary.says}"
-        return (
-            box(f"{self.title}.{says}", summary.mood)
-            + box(summary.verdict, verdict_mood(self.trial), NOT_YOURS)
-            + table(rows)
-        )
+        verdict = box(summary.verdict, verdict_mood(self.trial), NOT_YOURS)
+        return box(f"{self.title}.{says}", summary.mood) + verdict + table(rows)

@@ -9,8 +9,7 @@ from algorithms.maps.map_fusion import Fusion
 from algorithms.verdict.contradictions import Contradictions, find_conflicts
 from app.model.run_state import RunState
 from app.page.modes import Mode
-from app.page.research.other_result import NOT_YOURS, OtherResult
-from app.page.research.run_summary import verdict_mood
+from app.page.research.other_result import NOT_YOURS, OtherResult, verdict_mood
 from app.page.run_controller import RunController
 from app.page.tab import Tab
 from app.page.undo.page_snapshot import PageSnapshot
@@ -65,12 +64,8 @@ class OtherResultController:
     def _merged_by(self, other: OtherResult) -> tuple[RunState, Contradictions]:
         """The run that found it, and where the maps then contradict each other; raises TooLargeError."""
         i = self._state.inputs
-        assert i.ref is not None
-        assert i.mov is not None
         run = other.run(i.ref, i.mov, i.observations, self._state.run)
-        fusion = run.get(Fusion)
-        assert fusion is not None
-        return run, find_conflicts(fusion)
+        return run, find_conflicts(run.get(Fusion))
 
     def _show(self, other: OtherResult, run: RunState, contradictions: Contradictions) -> None:
         """Draw it; whoever calls is drawing."""

@@ -23,7 +23,7 @@ from app.page.panels.settings_panel import FRONT, idle
 from app.page.research import sweep_curves as curves
 from app.page.research.comparison_controller import MAKING
 from app.page.research.heatmap import heat_svg
-from app.page.research.run_summary import sentence
+from app.page.research.other_result import sentence
 from app.page.research.sweep_panel import NOTHING, AxisFields, SweepPanel
 from app.page.research.sweep_request import labelled, planned, suggestion
 from app.page.run_controller import RunController
@@ -200,10 +200,9 @@ class SweepController:
     def told(self, part: SweepPoint) -> None:
         self._points[self._numbers[part.x, part.y]] = part
         done, total = len(self._points), len(self._numbers)
-        fresh, seconds = done - self._known, self._work.seconds
-        left = ""
+        fresh, left = done - self._known, ""
         if fresh > 0 and done < total:
-            left = f" About {max(1, round(seconds / fresh * (total - done)))} s left."
+            left = f" About {max(1, round(self._work.seconds / fresh * (total - done)))} s left."
         self._panel.say(f"{self._count()}{left}", done / total)
         self._draw()
 
@@ -245,24 +244,12 @@ class SweepController:
                 self._panel.heat(heat_svg(plan, points, measure, self._judged, here, palette))
                 self._panel.points((), (), None)
                 return
-            label = plan.setting(plan.x).label
-            self._panel.curve(
-                curves.title_of(measure, plan, self._judged),
-                label,
-                curves.ticks(plan),
-                curves.by_factor(plan.x),
-                curves.reach(plan.x),
-                curves.height(plan, points, measure),
-                curves.columns(plan, points, measure, here),
-            )
+            label, title = plan.setting(plan.x).label, curves.title_of(measure, plan, self._judged)
+            across, up = curves.reach(plan.x), curves.height(plan, points, measure)
+            data = curves.columns(plan, points, measure, here)
+            log = curves.by_factor(plan.x)
+            self._panel.curve(title, label, curves.ticks(plan), log, across, up, data)
             counted = curves.RIGHT if self._judged else curves.ACCEPTED
-            rows = [
-                (n, (curves.word_of(plan, plan.x, points[n].x), *self._numbers_of(points[n], counted)))
-                for n in sorted(points)
-            ]
+            listed = curves.AGREEMENT, counted, curves.TIME
+            rows = [(n, curves.row(plan, points[n], listed)) for n in sorted(points)]
             self._panel.points((label, "eq. (23)", counted.lower(), "time"), rows, here)
-
-    def _numbers_of(self, point: SweepPoint, counted: str) -> list[str]:
-        listed = curves.AGREEMENT, counted, curves.TIME
-        values = [(measure, curves.reading(point, measure)) for measure in listed]
-        return ["–" if found is None else curves.text_of(found.middle, measure) for measure, found in values]

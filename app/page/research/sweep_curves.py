@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from app.evaluation.parameter_sweep import SweepAxis, SweepPlan, SweepPoint
 from app.evaluation.sweep_axes import looks_even_by_factor
-from app.model.settings import word_for
+from app.model.settings import text_for
 
 AGREEMENT, RIGHT, ACCEPTED, TIME = "Agreement", "Right", "Accepted", "Time"
 
@@ -57,14 +57,20 @@ def reading(point: SweepPoint, measure: str) -> MeasuredValue | None:
         index = point.index
         return None if index is None else MeasuredValue(index.mean, index.low, index.high)
     if measure == TIME:
-        seconds = point.seconds
-        return MeasuredValue(seconds.median, seconds.low, seconds.high)
+        return MeasuredValue(point.seconds.median, point.seconds.low, point.seconds.high)
     count = point.right if measure == RIGHT else point.accepted
     return None if count is None else MeasuredValue(count, count, count)
 
 
 def text_of(value: float, measure: str) -> str:
     return {AGREEMENT: f"{value:.1%}", TIME: f"{value:.2f} s"}.get(measure, f"{value:.0f}")
+
+
+def row(plan: SweepPlan, point: SweepPoint, listed: Sequence[str]) -> list[str]:
+    """A point in a table: the value of the first setting, and these measures."""
+    values = [(measure, reading(point, measure)) for measure in listed]
+    told = ("–" if found is None else text_of(found.middle, measure) for measure, found in values)
+    return [word_of(plan, plan.x, point.x), *told]
 
 
 # ---- where points stand
@@ -107,11 +113,7 @@ def nearest(plan: SweepPlan, points: Points, share: float) -> int | None:
 
 def word_of(plan: SweepPlan, axis: SweepAxis, value: Any) -> str:
     """A value of a setting, as a person reads it."""
-    if isinstance(value, bool):
-        return "on" if value else "off"
-    if isinstance(value, int | float):
-        return f"{value:g}"
-    return word_for(plan.setting(axis), value)
+    return text_for(plan.setting(axis), value, "on", "off")
 
 
 def ticks(plan: SweepPlan, most: int = MOST_TICKS) -> tuple[tuple[float, str], ...]:
@@ -142,13 +144,10 @@ def columns(plan: SweepPlan, points: Points, measure: str, here: int | None) -> 
 
 def height(plan: SweepPlan, points: Points, measure: str) -> tuple[float, float]:
     """Lower and upper end of the y axis, in whole steps, so that it seldom changes while a curve grows."""
-    values = [value for point in points.values() if (value := reading(point, measure)) is not None]
     if measure in (RIGHT, ACCEPTED):
         return -0.04 * len(plan.seeds), 1.04 * len(plan.seeds)
-    low, high = (
-        min((each.low for each in values), default=0.0),
-        max((each.high for each in values), default=1.0),
-    )
+    values = [value for point in points.values() if (value := reading(point, measure)) is not None]
+    low, high = min((v.low for v in values), default=0.0), max((v.high for v in values), default=1.0)
     if measure == TIME:
         step = 10.0 ** floor(log10(max(high, 1e-3)))
         return 0.0, step * ceil(1.05 * high / step)
@@ -161,7 +160,6 @@ def height(plan: SweepPlan, points: Points, measure: str) -> tuple[float, float]
 
 def field(plan: SweepPlan, points: Points, measure: str) -> Numbers:
     """(rows, columns) the measure over both settings, row 0 the first value of the second; NaN: not yet."""
-    assert plan.y is not None
     cells = np.full(len(plan.y.values) * len(plan.x.values), np.nan)
     for n, point in points.items():
         value = reading(point, measure)

@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from html import escape
 from typing import Any
 
-import numpy as np
 import viser
 from viser import uplot
 
-from algorithms.common.setting_bounds import Bounds
-from app.drawing.palette import LIGHT, QUIET, css
+from app.drawing.palette import LIGHT, QUIET, STOP, css
 from app.model.settings import Setting
 from app.model.status_text import typeset
-from app.page.panels.html_widgets import put
-from app.page.research.comparison_panel import says_html
+from app.page.panels.chart_widgets import nothing
+from app.page.panels.html_widgets import Action, on_choice, on_press, put
+from app.page.research.comparison_panel import SMALL, says_html
 from app.page.research.sweep_curves import AGREEMENT, Numbers, measures
 from app.page.research.sweep_request import Wanted
 
 NOTHING = "none"
-SMALL = "margin:4px 12px 6px;font-size:12px;line-height:1.4;opacity:.8"
 FONT = "11px system-ui, sans-serif"
 Row = tuple[int, Sequence[str]]
-MARK = '<div class="mm-curve"></div>'  # research.js finds the chart below it
 
 
 class AxisFields:
@@ -33,15 +31,12 @@ class AxisFields:
         self._none = (NOTHING,) if none else ()
         self._suggested = (0.0, 1.0)
         self.setting = gui.add_dropdown(label, self._none or ("…",), hint=hint)
-        self._range = gui.add_vector2(
-            "from, to", (0.0, 1.0), step=0.01, visible=False, hint="First and last value."
-        )
-        self._count = gui.add_number(
-            "values", 5, min=2, max=60, step=1, visible=False, hint="How many, both ends included."
-        )
-        self._factor = gui.add_checkbox(
-            "equal factors", False, visible=False, hint="1, 2, 4, 8 instead of 1, 2, 3, 4."
-        )
+        how: Any = {"visible": False, "hint": "First and last value."}
+        self._range = gui.add_vector2("from, to", (0.0, 1.0), step=0.01, **how)
+        how["hint"] = "How many, both ends included."
+        self._count = gui.add_number("values", 5, min=2, max=60, step=1, **how)
+        how["hint"] = "1, 2, 4, 8 instead of 1, 2, 3, 4."
+        self._factor = gui.add_checkbox("equal factors", False, **how)
 
     def offer(self, labels: Sequence[str], chosen: str) -> None:
         """The settings there are to choose from."""
@@ -54,15 +49,13 @@ class AxisFields:
         bounds = setting.bounds if setting is not None else None
         if bounds is not None:
             step = 1.0 if setting is not None and setting.whole else min(bounds.step, 0.01)
-            self._range.step, self._range.precision = step, _decimals(bounds, step)
+            self._range.step = step
+            self._range.precision = 0 if step >= 1 else 4 if bounds.high <= 1 else 2
             self._range.value = self._suggested = (low, high)
             self._factor.value = by_factor
-        for handle, there in (
-            (self._range, bounds is not None),
-            (self._count, bounds is not None),
-            (self._factor, bounds is not None and bounds.high > 0),
-        ):
-            put(handle, visible=there)
+        put(self._range, visible=bounds is not None)
+        put(self._count, visible=bounds is not None)
+        put(self._factor, visible=bounds is not None and bounds.high > 0)
 
     @property
     def untouched(self) -> bool:
@@ -79,10 +72,6 @@ class AxisFields:
         return Wanted(label, float(low), float(high), int(self._count.value), self._factor.value)
 
 
-def _decimals(bounds: Bounds, step: float) -> int:
-    return 0 if step >= 1 else 4 if bounds.high <= 1 else 2
-
-
 class SweepPanel:
     """Widgets; they know nothing of a run."""
 
@@ -90,20 +79,16 @@ class SweepPanel:
         self._of = gui.add_html("")
         first = "Which setting changes from merge to merge."
         second = "Another one: every value of it with every value of the first."
-        self.axes = (
-            AxisFields(gui, "setting", False, first),
-            AxisFields(gui, "second", True, second),
-        )
+        self.axes = AxisFields(gui, "setting", False, first), AxisFields(gui, "second", True, second)
         hint = "Merges per point, each with its own seed."
         self._seeds = gui.add_number("seeds", 5, min=1, max=50, step=1, hint=hint)
         icon = viser.Icon.CHART_DOTS
         self._run = gui.add_button("Run the sweep", color=LIGHT.ref, icon=icon, disabled=True)
-        self._stop = gui.add_button(
-            "Stop sweeping", color=(71, 85, 105), icon=viser.Icon.PLAYER_STOP, visible=False
-        )
+        icon = viser.Icon.PLAYER_STOP
+        self._stop = gui.add_button("Stop sweeping", color=STOP, icon=icon, visible=False)
         self._says = gui.add_html(says_html(""))
         self._measures = gui.add_button_group("", measures(judged=True), visible=False)
-        gui.add_html(MARK)
+        gui.add_html('<div class="mm-curve"></div>')  # research.js finds the chart below it
         self._curve = self._chart(gui)
         self._heat = gui.add_html("")
         self._points = gui.add_html("")
@@ -115,32 +100,25 @@ class SweepPanel:
 
     def connect(
         self,
-        run: Callable[[], None],
-        stop: Callable[[], None],
+        run: Action,
+        stop: Action,
         choose: Callable[[AxisFields], None],
-        measure: Callable[[], None],
-        save: Callable[[], None],
+        measure: Action,
+        save: Action,
     ) -> None:
-        """What is done where a person sweeps; what is pressed in the pictures comes by the browser's events.
-
-        choose : another setting was chosen in these fields
-        """
-        buttons = (self._run, run), (self._stop, stop), (self._measures, measure), (self._save, save)
-        for button, action in buttons:
-            button.on_click(lambda _, action=action: action())
+        """What is done where a person sweeps; ``choose``: another setting was chosen in these fields."""
+        on_press((self._run, run), (self._stop, stop), (self._measures, measure), (self._save, save))
         for fields in self.axes:
-            fields.setting.on_update(
-                lambda event, fields=fields: choose(fields) if event.client_id is not None else None
-            )
+            on_choice(fields.setting, partial(choose, fields))
 
     def _chart(self, gui: viser.GuiApi) -> viser.GuiUplotHandle:
         colour, here = css(LIGHT.ref), css(LIGHT.best)
+        still = {"x": False, "y": False, "setScale": False}
         edge = {"width": 0, "stroke": colour, "points": {"show": False}}
         dots = {"show": True, "size": 7, "fill": colour, "stroke": colour, "width": 1}
         ring = {"show": True, "size": 13, "fill": "rgba(204,121,167,.35)", "stroke": here, "width": 2}
-        nothing = (np.array([0.0, 1.0]), *(np.full(2, np.nan) for _ in range(4)))
         return gui.add_uplot(
-            nothing,
+            nothing(4),
             (
                 uplot.Series(label="setting"),
                 uplot.Series(label="highest", **edge),  # type: ignore[typeddict-item]
@@ -151,9 +129,7 @@ class SweepPanel:
             bands=(uplot.Band(series=(1, 2), fill="rgba(0,114,178,.18)"),),
             title="…",
             legend=uplot.Legend(show=False),
-            cursor=uplot.Cursor(
-                y=False, drag={"x": False, "y": False, "setScale": False}, points={"show": False}
-            ),
+            cursor=uplot.Cursor(y=False, drag=still, points={"show": False}),
             height=210,
             padding=(10, 14, 0, 0),
             visible=False,
@@ -173,11 +149,9 @@ class SweepPanel:
 
     def tell_method(self, title: str) -> None:
         """Which method is swept."""
-        html = (
-            f'<p style="{SMALL}">Merge the loaded maps again and again while a setting changes. Method: '
-            f"<b>{escape(title)}</b>; all else as its sliders stand.</p>"
-        )
-        put(self._of, content=html)
+        says = "Merge the loaded maps again and again while a setting changes. Method: "
+        says += f"<b>{escape(title)}</b>; all else as its sliders stand."
+        put(self._of, content=f'<p style="{SMALL}">{says}</p>')
 
     def possible(self, ready: bool, busy: bool, harvest: bool) -> None:
         """Whether there is a pair, whether a sweep runs, whether any of its points is there."""
@@ -227,9 +201,7 @@ class SweepPanel:
         put(self._heat, content=f'<div class="mm-heat">{svg}</div>')
         put(self._curve, visible=False)
 
-    def points(
-        self, head: Sequence[str], rows: Sequence[tuple[int, Sequence[str]]], here: int | None
-    ) -> None:
+    def points(self, head: Sequence[str], rows: Sequence[Row], here: int | None) -> None:
         """List points by their number, a button each that loads their settings."""
         if not rows:
             self._points.content = ""

@@ -33,11 +33,7 @@ def planned(
     y: Wanted | None,
     seeds: tuple[int, ...],
 ) -> SweepPlan:
-    """The sweep that is asked for; raises SettingError.
-
-    settings : by their labels
-    y        : the second setting; None: there is none
-    """
+    """The sweep that is asked for of settings by their labels; raises SettingError."""
     if x is None or x.label not in settings:
         raise SettingError("no setting is chosen")
     if y is not None and y.label == x.label:

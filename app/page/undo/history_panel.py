@@ -30,10 +30,7 @@ class HistoryPanel:
 
 
 def steps_html(undo: str, redo: str) -> str:
-    """HTML of both buttons.
-
-    undo, redo : what would be undone, or done again; "" where there is nothing
-    """
+    """HTML of both buttons; ``undo``, ``redo``: what would be undone, or done again, or ""."""
     buttons = []
     for by, sign, name, what, keys in (
         (-1, "↶", "Undo", undo, "Ctrl+Z or ⌘Z"),

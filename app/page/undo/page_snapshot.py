@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
 from typing import Any
-
-import numpy as np
 
 from algorithms.common.pose import Pose2
 from algorithms.methods.merge_result import MergeResult
@@ -58,26 +56,14 @@ class PageSnapshot:
         """The same, to be worked out again when it is needed: the same seed gives the same answer."""
         return replace(self, outcome=None)
 
-    def arrays(self) -> Iterator[Any]:
-        """Everything large that it holds."""
-        yield from (grid.cells for grid in self.inputs.grids)
-        for upload in self.files.uploads.values():
-            yield upload.content
+    def held_bytes(self) -> dict[int, int]:
+        """Bytes by the identity of what holds them, so that what two snapshots share counts once."""
+        held: list[Any] = [grid.cells for grid in self.inputs.grids]
+        held += [upload.content for upload in self.files.uploads.values()]
         if self.result is not None:
             fusion = self.result.fusion
-            yield from (fusion.merged.cells, fusion.ref_cells, fusion.mov_cells)
-
-
-def weight(snapshot: PageSnapshot) -> dict[int, int]:
-    """Bytes by the identity of what holds them, so that what two snapshots share counts once."""
-    return {
-        id(held): held.nbytes if isinstance(held, np.ndarray) else len(held) for held in snapshot.arrays()
-    }
-
-
-def first_label(snapshot: PageSnapshot) -> str:
-    """What to call the snapshot that a tab begins with."""
-    return f"load {snapshot.inputs.name}" if snapshot.inputs.name else "an empty page"
+            held += [fusion.merged.cells, fusion.ref_cells, fusion.mov_cells]
+        return {id(each): memoryview(each).nbytes for each in held}
 
 
 def change(before: PageSnapshot, after: PageSnapshot) -> tuple[str, Hashable]:

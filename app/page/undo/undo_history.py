@@ -8,7 +8,7 @@ from time import monotonic
 from typing import Any
 
 from app.model.run_state import RunState
-from app.page.undo.page_snapshot import PageSnapshot, change, first_label, weight
+from app.page.undo.page_snapshot import PageSnapshot, change
 
 MOST = 80  # entries; the oldest are forgotten
 MOST_BYTES = 300_000_000  # that all of them hold on to, what they share counted once
@@ -30,18 +30,11 @@ class UndoStep:
 
 
 class UndoHistory:
-    """Steps in their order and the one at hand. A new one forgets those that were undone.
+    """Steps in their order; a new one forgets those undone. ``changed`` is called after every change."""
 
-    changed : is called after every change
-    """
-
-    def __init__(
-        self,
-        most: int = MOST,
-        most_bytes: int = MOST_BYTES,
-        changed: Callable[[], None] = lambda: None,
-    ) -> None:
-        self._most, self._most_bytes, self.changed = most, most_bytes, changed
+    def __init__(self, most: int = MOST, most_bytes: int = MOST_BYTES) -> None:
+        self._most, self._most_bytes = most, most_bytes
+        self.changed: Callable[[], None] = lambda: None
         self._steps: list[UndoStep] = []
         self._moving = False  # whether the step at hand may still take in more of the same
         self.position = -1
@@ -57,13 +50,11 @@ class UndoHistory:
         return self._steps[self.position].snapshot if self._steps else None
 
     def note(self, snapshot: PageSnapshot, label: str = "") -> bool:
-        """Record the page after an action; whether there is anything new about it.
-
-        label : what was done; otherwise it is named after what has changed
-        """
+        """Record what was done (else named after what has changed); whether there is anything new."""
         before = self.snapshot
         if before is None:
-            self.record(label or first_label(snapshot), snapshot)
+            name = snapshot.inputs.name
+            self.record(label or (f"load {name}" if name else "an empty page"), snapshot)
             return True
         found, kind = change(before, snapshot)
         if found or label:
@@ -79,9 +70,8 @@ class UndoHistory:
         last = self._steps[-1] if self._steps else None
         if self._moving and kind is not None and last and kind == last.kind and now - last.at <= PAUSE:
             label = _joined(last.label, label)
-            self._steps[-1] = UndoStep(label, snapshot, kind, now)
-        else:
-            self._steps.append(UndoStep(label, snapshot, kind, now))
+            self._steps.pop()
+        self._steps.append(UndoStep(label, snapshot, kind, now))
         self.position, self._moving = len(self._steps) - 1, True
         self._trim()
         self.changed()
@@ -137,7 +127,7 @@ class UndoHistory:
     def _bytes(self) -> int:
         held: dict[int, int] = {}
         for step in self._steps:
-            held |= weight(step.snapshot)
+            held |= step.snapshot.held_bytes()
         return sum(held.values())
 
 

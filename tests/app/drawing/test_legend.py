@@ -54,7 +54,8 @@ def words(entries) -> list[str]:
 @pytest.mark.parametrize("palette", [LIGHT, DARK], ids=["light", "dark"])
 @pytest.mark.parametrize("view", ["Map", "Heights", "Swarm space"])
 def test_at_every_step_each_entry_is_named_once_and_has_a_colour_of_its_palette(steps, palette, view):
-    colours = {css(colour) for name, colour in vars(palette).items() if name != "dark"}
+    others = (colour for name, colour in vars(palette).items() if name not in ("dark", "maps"))
+    colours = {css(colour) for colour in (*palette.maps, *others)}
     for kind in {type(step.detail) for step in steps}:
         entries = legend(palette, view, until(steps, kind))
         assert len(set(words(entries))) == len(entries)

@@ -87,20 +87,18 @@ def _searching(
     """The run up to the candidates, and then this search in the best one's box."""
 
     def story(study: LessonRun, at: At) -> RunState:
-        told = states(study)
-        out = study.story(CandidatesDetail)
+        told, run = states(study), study.story(CandidatesDetail)
         state = told[min(at[0] + ahead, len(told) - 1)]
-        out.tell(Step("refine", RefineDetail(0, 1, study.box, state), 0.0))
-        return out
+        run.tell(Step("refine", RefineDetail(0, 1, study.box, state), 0.0))
+        return run
 
     return story
 
 
 def _looking(study: LessonRun, at: At) -> RunState:
     """The run up to a look at the proof."""
-    told = search.looks(study)
-    wanted = told[min(at[0], len(told) - 1)]
-    return study.story(ProofDetail, [detail is wanted for detail in study.all(ProofDetail)].index(True))
+    chosen = search.looks(study)
+    return study.story(ProofDetail, chosen[min(at[0], len(chosen) - 1)])
 
 
 def _lines(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
@@ -133,8 +131,8 @@ def _moves(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> l
     if after.pulls is not None:
         ends = before.poses[j] + np.concatenate([np.zeros((1, 3)), np.cumsum(after.pulls[:, j], axis=0)])
         ends = ends[:, :2] - layout.anchor_ref
-        for n, colour in enumerate((palette.ref, palette.best, palette.particle)):
-            items.append(path(ends[n : n + 2], colour, w=3.5, halo=True))
+        pulls = enumerate((palette.ref, palette.best, palette.particle))
+        items += [path(ends[n : n + 2], colour, w=3.5, halo=True) for n, colour in pulls]
     return items
 
 
@@ -143,11 +141,6 @@ def _swarm_dials(study: LessonRun) -> tuple[FigureSlider, ...]:
     # at first the particle with the longest way to go
     far = int(np.hypot(*(few[0].poses - few[0].best)[:, :2].T).argmax())
     return (FigureSlider("move", max(1, len(few) - 1), 1), FigureSlider("particle", FEW, far))
-
-
-def _look_dial(study: LessonRun) -> tuple[FigureSlider, ...]:
-    count = len(search.looks(study))
-    return (FigureSlider("look", count, count - 1),)
 
 
 _HALF = search.TURN_STEPS // 2
@@ -186,7 +179,10 @@ PICTURES: dict[str, LessonFigure] = {
     "swarm": LessonFigure(
         (CandidatesDetail,), search.swarm, _searching(lambda study: study.few, 1), _swarm_dials, _moves
     ),
-    "proof": LessonFigure((ProvenDetail,), search.proof, _looking, _look_dial),
+    "proof": LessonFigure(
+        (ProvenDetail,), search.proof, _looking,
+        lambda study: (FigureSlider("look", (count := len(search.looks(study))), count - 1),),
+    ),
     "answers": LessonFigure((MergeResult,), judgement.answers, _up_to(WeighedDetail)),
     "merged": LessonFigure((MergeResult,), maps.merged, _up_to(Fusion)),
     "verdict": LessonFigure((MergeResult,), judgement.verdict, _up_to(MergeResult)),

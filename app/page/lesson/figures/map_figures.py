@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, degrees, pi, sin
+from math import cos, pi, sin
 
 import numpy as np
 
-from algorithms.common.pose import Pose2
-from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN, CellArray
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN, CellArray, GridMap
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import AugmentDetail, HoughDetail
-from algorithms.observations.observation import Encounter
 from app.drawing.draw_items import ellipse
 from app.drawing.grid_pixels import is_free, upright, wall_masks
 from app.drawing.grid_pixels import sheet as painted
-from app.drawing.palette import VIRIDIS, Palette
-from app.drawing.svg.map_plot import map_panel, robot, view_of
-from app.drawing.svg.map_raster import draw_levels, draw_map, under
+from app.drawing.palette import VIRIDIS, Palette, Rgb
+from app.drawing.svg.map_plot import draw_levels, draw_map, map_panel, robot, under, view_of
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number, turn_label, worded
+from app.page.lesson.figures.search_figures import cut_out
 from app.page.lesson.lesson_run import LessonRun
 
 HALF = 184.0  # width of one of two pictures side by side
@@ -27,53 +26,42 @@ HALF = 184.0  # width of one of two pictures side by side
 
 def observation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The sighting in map 1, and the same place in map 2."""
-    i, o = study.inputs, study.inputs.observations[0]
-    met: Encounter = i.encounters[0]
-    assert i.ref is not None
-    assert i.mov is not None
-    sheet, side = SvgCanvas(226), HALF
-    half = max(3.0, 0.75 * o.range + 1.5)
-    middle = (o.observer.xy + met.x_ref) / 2
-    rows = (
-        (0.0, i.ref, middle, palette.ref, "map 1, as robot 1 drew it"),
-        (196.0, i.mov, met.x_mov, palette.mov, "map 2, as robot 2 drew it"),
-    )
-    for x, grid, centre, colour, title in rows:
-        view = view_of(centre, half, side, side)
-        plot = map_panel(sheet, x, side, side, view, draw_map(view, palette, grid, colour), title)
-        if x == 0:
-            seen, here = plot.one(*met.x_ref.tolist()), plot.one(*o.observer.xy.tolist())
-            heading, reach = o.observer.theta, 0.55 * o.range
-            nose = o.observer.xy + reach * 1.25 * np.array([cos(heading), sin(heading)])
-            sheet.path([here, plot.one(*nose.tolist())], palette.margin, 1, dash="3 3")
-            turns = np.linspace(heading, heading + o.bearing, 24)
-            arc = o.observer.xy + reach * np.column_stack([np.cos(turns), np.sin(turns)])
-            sheet.path(plot.at(arc), palette.conflict, 1.8)
-            dark = palette.text
-            rim = palette.free
-            bow = o.observer.xy + 1.25 * reach * np.array(
-                [cos(heading + o.bearing / 2), sin(heading + o.bearing / 2)]
-            )
-            sheet.text(*plot.one(*bow.tolist()), "β", 13, "middle", palette.conflict, True, halo=rim)
-            sheet.path([here, seen], palette.text, 1.8, dash="5 4")
-            away = heading + o.bearing - (0.5 if o.bearing < 0 else -0.5) * pi  # the arc's other side
-            beside = (o.observer.xy + met.x_ref) / 2 + 0.1 * half * np.array([cos(away), sin(away)])
-            px, py = plot.one(*beside.tolist())
-            side_ = "start" if cos(away) > 0 else "end"
-            sheet.text(px, py + 4, f"r = {o.range:.2f} m", 11, side_, dark, halo=rim)
-            robot(plot, o.observer.xy, heading, palette.ref)
-            sheet.dot(*seen, 6, None, palette.conflict, width=2)
-            sheet.text(seen[0] + 9, seen[1] + 4, "x̂₁", 12, colour=palette.conflict, bold=True, halo=rim)
-        else:
-            seen = plot.one(*met.x_mov.tolist())
-            robot(plot, met.x_mov, o.observed_heading, palette.mov)
-            sheet.dot(*seen, 12, None, palette.conflict, width=2)
-            sheet.text(
-                seen[0] + 15, seen[1] + 4, "x̂₂", 12, colour=palette.conflict, bold=True, halo=palette.free
-            )
-    for x, name, place in ((0.0, "x̂₁", met.x_ref), (196.0, "x̂₂", met.x_mov)):
-        words = f"{name} = ({place[0]:.2f}, {place[1]:.2f}) m".replace("-", "−")
-        sheet.text(x, 218, words, 11)
+    i, o, met = study.inputs, study.inputs.observations[0], study.inputs.encounters[0]
+    here, heading, sheet = o.observer.xy, o.observer.theta, SvgCanvas(226)
+    half, reach = max(3.0, 0.75 * o.range + 1.5), 0.55 * o.range
+    red, rim = palette.conflict, palette.free
+
+    def about(x: float, grid: GridMap | None, centre: FloatArray, colour: Rgb, title: str) -> SvgPlot:
+        view = view_of(centre, half, HALF, HALF)
+        return map_panel(sheet, x, HALF, HALF, view, draw_map(view, palette, grid, colour), title)
+
+    def ray(angle: float | FloatArray, length: float) -> FloatArray:
+        """(…, 2) places so far from robot 1."""
+        return here + length * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+    middle = (here + met.x_ref) / 2
+    plot = about(0.0, i.ref, middle, palette.ref, "map 1, as robot 1 drew it")
+    x, y = plot.one(*met.x_ref.tolist())
+    sheet.path(plot.at([here, ray(heading, 1.25 * reach)]), palette.margin, 1, dash="3 3")
+    sheet.path(plot.at(ray(np.linspace(heading, heading + o.bearing, 24), reach)), red, 1.8)
+    bow = plot.one(*ray(heading + o.bearing / 2, 1.25 * reach).tolist())
+    sheet.text(*bow, "β", 13, "middle", red, True, halo=rim)
+    sheet.path(plot.at([here, met.x_ref]), palette.text, 1.8, dash="5 4")
+    away = heading + o.bearing - (0.5 if o.bearing < 0 else -0.5) * pi  # the arc's other side
+    px, py = plot.one(*(middle + 0.1 * half * np.array([cos(away), sin(away)])).tolist())
+    side = "start" if cos(away) > 0 else "end"
+    sheet.text(px, py + 4, f"r = {o.range:.2f} m", 11, side, palette.text, halo=rim)
+    robot(plot, here, heading, palette.ref)
+    sheet.dot(x, y, 6, None, red, width=2)
+    sheet.text(x + 9, y + 4, "x̂₁", 12, colour=red, bold=True, halo=rim)
+
+    plot = about(196.0, i.mov, met.x_mov, palette.mov, "map 2, as robot 2 drew it")
+    x, y = plot.one(*met.x_mov.tolist())
+    robot(plot, met.x_mov, o.observed_heading, palette.mov)
+    sheet.dot(x, y, 12, None, red, width=2)
+    sheet.text(x + 15, y + 4, "x̂₂", 12, colour=red, bold=True, halo=rim)
+    for left, name, place in ((0.0, "x̂₁", met.x_ref), (196.0, "x̂₂", met.x_mov)):
+        sheet.text(left, 218, f"{name} = ({place[0]:.2f}, {place[1]:.2f}) m".replace("-", "−"), 11)
     return sheet.svg("Robot 1 and what it saw in map 1; the same place in map 2")
 
 
@@ -98,12 +86,10 @@ def augmentation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         for k, name in ((1, "σ"), (2, "2 σ")):
             ring = plot.at(ellipse(lifted.x_hat, config.covariance(), k))
             sheet.path(ring, palette.text, 1.2, dash="4 3", close=True, alpha=0.75)
-            top = ring[int(ring[:, 1].argmin())]
-            sheet.text(
-                top[0], top[1] - 3, name, 10, "middle", palette.text, halo=palette.free if k == 1 else None
-            )
-        px, py = plot.one(*lifted.x_hat.tolist())
-        sheet.dot(px, py, 4, palette.conflict, "#fff")
+            x_top, y_top = ring[int(ring[:, 1].argmin())]
+            halo = palette.free if k == 1 else None
+            sheet.text(x_top, y_top - 3, name, 10, "middle", palette.text, halo=halo)
+        sheet.dot(*plot.one(*lifted.x_hat.tolist()), 4, palette.conflict, "#fff")
     level_scale(sheet, 0, 212, 250, detail.ref.peak, "level (1/m²)")
     return sheet.svg("Both maps, their walls coloured by level around the meeting place")
 
@@ -111,10 +97,7 @@ def augmentation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
 def dual(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Some cells of map 1 from near by, their centres, and the first columns of the list."""
     grid, met = study.inputs.ref, study.inputs.encounters[0]
-    assert grid is not None
-    sheet, side, across = SvgCanvas(226), 200.0, 13
-    cell = grid.resolution
-    points = grid.points
+    sheet, side, across, points = SvgCanvas(226), 200.0, 13, grid.points
     if not len(points):
         sheet.text(0, 20, "Map 1 has no wall at all.")
         return sheet.svg("No walls")
@@ -123,10 +106,7 @@ def dual(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     low = np.array([col - across // 2, row - across // 2])
     plot = SvgPlot(sheet, 0, 18, side, side, (low[0], low[0] + across), (low[1], low[1] + across))
     sheet.text(0, 11, f"{across} × {across} cells of map 1", 11, bold=True)
-    patch = np.full((across, across), UNKNOWN, dtype=np.int8)
-    r0, c0 = max(0, low[1]), max(0, low[0])
-    r1, c1 = min(grid.height, low[1] + across), min(grid.width, low[0] + across)
-    patch[r0 - low[1] : r1 - low[1], c0 - low[0] : c1 - low[0]] = grid.cells[r0:r1, c0:c1]
+    patch = cut_out(grid.cells, (low[1], low[0]), across, np.int8(UNKNOWN))
     plot.image(upright(painted(patch, palette.ref, palette).pixels))
     for k in range(across + 1):
         at_ = k / across * side
@@ -137,21 +117,20 @@ def dual(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     order = order[np.lexsort((cols[order], -rows[order]))]
     for r, c in zip(rows, cols, strict=True):
         sheet.dot(*plot.one(low[0] + c + 0.5, low[1] + r + 0.5), 1.8, "#fff")
-    x = 216.0
+    x, stops = 216.0, (12, 66, 122, 150)
     sheet.text(x, 11, "the list, a column each", 11, bold=True)
-    for k, words in enumerate(("n", "x (m)", "y (m)", "1")):
-        sheet.text(x + (12, 66, 122, 150)[k], 32, words, 10.5, "end", alpha=0.7)
+    for stop, words in zip(stops, ("n", "x (m)", "y (m)", "1"), strict=True):
+        sheet.text(x + stop, 32, words, 10.5, "end", alpha=0.7)
     for line, n in enumerate(order.tolist()):
         place = grid.centres(rows[n : n + 1] + low[1], cols[n : n + 1] + low[0])[0]
         px, py = plot.one(low[0] + cols[n] + 0.5, low[1] + rows[n] + 0.5)
         sheet.dot(px, py, 6, palette.conflict)
         sheet.text(px, py + 3.5, str(line + 1), 9, "middle", "#fff", True)
-        y = 50 + 17 * line
         cells = (str(line + 1), f"{place[0]:.3f}", f"{place[1]:.3f}", "1")
-        for k, words in enumerate(cells):
-            sheet.text(x + (12, 66, 122, 150)[k], y, words.replace("-", "−"), 11, "end")
+        for stop, words in zip(stops, cells, strict=True):
+            sheet.text(x + stop, 50 + 17 * line, words.replace("-", "−"), 11, "end")
     sheet.text(x, 50 + 17 * len(order), f"… {len(points):,} in all", 11, alpha=0.8)
-    sheet.text(x + 164, 218, f"a cell: {cell:g} m", 10.5, "end", alpha=0.8)
+    sheet.text(x + 164, 218, f"a cell: {grid.resolution:g} m", 10.5, "end", alpha=0.8)
     return sheet.svg("Cells of map 1 and the list of their centres")
 
 
@@ -172,10 +151,8 @@ def turned(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         plot = map_panel(sheet, x, HALF, HALF, view, draw_levels(view, palette, lifted, T), title)
         sheet.dot(*plot.one(*centre.tolist()), 5, None, palette.conflict, width=2)
     kind = "the twin of a peak" if match.twins[k] else "a peak"
-    words = (
-        f"Candidate {k + 1} of {len(match.turns)}: {kind}, correlation {match.strengths[k]:.0%} of the best."
-    )
-    sheet.text(0, 222, words, 11)
+    words = f"Candidate {k + 1} of {len(match.turns)}: {kind}, correlation"
+    sheet.text(0, 222, f"{words} {match.strengths[k]:.0%} of the best.", 11)
     return sheet.svg("Map 1 beside map 2, turned")
 
 
@@ -207,18 +184,14 @@ def merged(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         sheet.text(x + (r + 0.5) * wide, 51, name, 10, "middle")
         sheet.text(x - 4, y + (r + 0.5) * high + 4, name, 10, "end")
         for c in range(3):
-            colour = colours.get((r, c))
-            left, top = x + c * wide, y + r * high
-            sheet.rect(
-                left + 1, top + 1, wide - 2, high - 2, colour or palette.margin, None, 1 if colour else 0.15
-            )
+            colour, left, top = colours.get((r, c)), x + c * wide, y + r * high
+            how = (colour, None, 1) if colour else (palette.margin, None, 0.15)
+            sheet.rect(left + 1, top + 1, wide - 2, high - 2, *how)
             light = palette.dark and (r, c) == (0, 0)
             ink = "#111827" if light else "#fff" if colour else INK
             share = "–" if (r, c) == (2, 2) else f"{counts[r, c]:,}"
             sheet.text(left + wide / 2, top + high / 2 + 4, share, 10, "middle", ink)
-    sheet.text(
-        x - 44, y + 3 * high + 18, f"turned by {degrees(result.T_ref_mov.theta):.1f}°".replace("-", "−"), 11
-    )
     T = result.T_ref_mov
+    sheet.text(x - 44, y + 3 * high + 18, f"turned by {turn_label(T.theta)}", 11)
     sheet.text(x - 44, y + 3 * high + 33, f"shifted by ({T.x:.2f}, {T.y:.2f}) m".replace("-", "−"), 11)
     return sheet.svg("The merged map, and the cells by what each map says of them")

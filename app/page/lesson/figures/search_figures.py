@@ -13,9 +13,9 @@ from algorithms.methods.steps import AugmentDetail, ProofDetail, WindowDetail
 from algorithms.optimisation.objective import PAD, Objective
 from algorithms.optimisation.optimiser import SearchState
 from app.drawing.draw_items import ellipse, rectangle
+from app.drawing.grid_pixels import upright
 from app.drawing.palette import Palette, css, viridis
-from app.drawing.svg.chart_plot import draw_chart
-from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, ticks, turn_label
+from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, draw_chart, ticks, turn_label
 from app.model import chart_data as charts
 from app.model.objective_label import AGREEMENT, GAMMA, ObjectiveLabel, measure_of
 from app.page.lesson.lesson_run import FEW, LessonRun
@@ -38,9 +38,7 @@ def transforms(x: FloatArray, y: FloatArray, turn: FloatArray | float, pivot: Fl
 def best_of(study: LessonRun) -> Pose2:
     """The best transform that the run has come to."""
     answer = study.story(type(study.steps[-1].detail)).answer if study.steps else None
-    if answer is not None:
-        return answer
-    return study.box.transform(study.box.centre)
+    return study.box.transform(study.box.centre) if answer is None else answer
 
 
 def _landscape(
@@ -96,6 +94,15 @@ def objective(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Landscapes of both objectives")
 
 
+def cut_out(cells: np.ndarray, corner: tuple[int, int], side: int, outside: np.generic) -> np.ndarray:
+    """(side, side) cells from row and column ``corner`` on; beyond the array those of ``outside``."""
+    rows, cols = (np.arange(side) + first for first in corner)
+    inside = np.ix_((rows >= 0) & (rows < cells.shape[0]), (cols >= 0) & (cols < cells.shape[1]))
+    part = np.full((side, side), outside)
+    part[inside] = cells[np.ix_(rows[inside[0].ravel()], cols[inside[1].ravel()])]
+    return part
+
+
 def _few(middle: float, half: float) -> list[float]:
     return [round(middle - half / 2, 1), round(middle + half / 2, 1)]
 
@@ -149,9 +156,8 @@ def swarm(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     sheet = SvgCanvas(284)
     plot = _box_plot(study, sheet, 42, 18, 160)
     sheet.text(0, 11, f"move {k} of {len(told) - 1}: all {FEW} particles", 11, bold=True)
-    for n, (start, end) in enumerate(
-        zip(plot.at(before.poses[:, :2]).tolist(), plot.at(after.poses[:, :2]).tolist(), strict=True)
-    ):
+    ends = (plot.at(state.poses[:, :2]).tolist() for state in (before, after))
+    for n, (start, end) in enumerate(zip(*ends, strict=True)):
         sheet.path([start, end], palette.particle, 1, alpha=0.8)
         sheet.dot(*end, 3, palette.particle)
         if n == j:
@@ -164,7 +170,6 @@ def swarm(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
 
 def _pulls(sheet: SvgCanvas, before: SearchState, after: SearchState, j: int, palette: Palette) -> None:
     """The three terms of eq. (21) on one particle, end to end, and the step they add up to."""
-    assert after.pulls is not None
     here, there = before.poses[j], after.poses[j]
     terms = after.pulls[:, j]
     ends = here + np.concatenate([[np.zeros(3)], np.cumsum(terms, axis=0)])
@@ -186,18 +191,19 @@ def _pulls(sheet: SvgCanvas, before: SearchState, after: SearchState, j: int, pa
     sheet.arrow(corners[0].tolist(), corners[3].tolist(), palette.text, 1.6, dash="4 3")
     sheet.dot(*corners[0].tolist(), 4, palette.text, "#fff", width=1)
     sheet.dot(*plot.one(*there[:2].tolist()), 5, None, palette.text, width=1.8)
-    length = 2 * half
-    sheet.text(374, 190, f"{_length(length)} across", 10, "end", alpha=0.8)
+    sheet.text(374, 190, f"{_length(2 * half)} across", 10, "end", alpha=0.8)
     for n, (name, colour) in enumerate(zip(names, colours, strict=True)):
-        x, y, turn = terms[n].tolist()
         sheet.path([(0, 222 + 16 * n), (16, 222 + 16 * n)], colour, 3)
-        words = f"{name}: {_length(hypot(x, y))}, {degrees(turn):.2f}°".replace("-", "−")
-        sheet.text(24, 226 + 16 * n, words, 11)
+        sheet.text(24, 226 + 16 * n, f"{name}: {_motion(terms[n])}", 11)
     sheet.path([(0, 270), (16, 270)], palette.text, 1.6, dash="4 3")
     step = terms.sum(axis=0)
     bounded = not np.allclose(here + step, there, atol=1e-9)
-    words = f"the step: {_length(hypot(step[0], step[1]))}, {degrees(step[2]):.2f}°".replace("-", "−")
-    sheet.text(24, 274, words + ("; the box stops it" if bounded else ""), 11)
+    sheet.text(24, 274, f"the step: {_motion(step)}{'; the box stops it' if bounded else ''}", 11)
+
+
+def _motion(step: FloatArray) -> str:
+    x, y, turn = step.tolist()
+    return f"{_length(hypot(x, y))}, {degrees(turn):.2f}°".replace("-", "−")
 
 
 def _length(metres: float) -> str:
@@ -206,47 +212,41 @@ def _length(metres: float) -> str:
     return f"{100 * metres:.1f} cm" if metres >= 0.01 else f"{1000 * metres:.1f} mm"
 
 
-def looks(study: LessonRun) -> list[ProofDetail]:
-    """The proof from its beginning to its end, thinned."""
-    told = study.all(ProofDetail)
-    chosen = np.unique(np.linspace(0, len(told) - 1, LOOKS).round().astype(int)) if told else []
-    return [told[k] for k in chosen]
+def looks(study: LessonRun) -> list[int]:
+    """Numbers of the steps of the proof that are looked at, from its beginning to its end."""
+    count = len(study.all(ProofDetail))
+    return np.unique(np.linspace(0, count - 1, LOOKS).round().astype(int)).tolist() if count else []
 
 
 def proof(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Map 1 pooled coarser and coarser, and what is left of every turn."""
-    told, sheet = looks(study), SvgCanvas(318)
-    detail = told[min(at[0], len(told) - 1)]
+    chosen, sheet = looks(study), SvgCanvas(318)
+    state = study.all(ProofDetail)[chosen[min(at[0], len(chosen) - 1)]].state
     table = study.gamma.sides[0].table[PAD:-PAD, PAD:-PAD]
     lifted = study.get(AugmentDetail).ref
-    rows, cols = np.array(table.shape)
+    reach = min(64, max(table.shape) // 2)
     centre = lifted.grid.grid_coordinates(lifted.x_hat) - study.gamma.sides[0].corner
-    reach = min(64, max(rows, cols) // 2)
     col, row = centre.astype(int).tolist()
-    part = np.zeros((2 * reach, 2 * reach), dtype=np.float32)
-    r0, c0, r1, c1 = max(0, row - reach), max(0, col - reach), min(rows, row + reach), min(cols, col + reach)
-    if r1 > r0 and c1 > c0:
-        inside = table[r0:r1, c0:c1]
-        part[r0 - row + reach : r1 - row + reach, c0 - col + reach : c1 - col + reach] = inside
+    part = cut_out(table, (row - reach, col - reach), 2 * reach, np.float32(0))
     top = max(float(part.max()), 1e-12)
     sheet.text(0, 11, "map 1's levels; the highest within 1, 4, 8, 16 cells", 11, bold=True)
     for k, size in enumerate((1, 4, 8, 16)):
         pooled = skimage.measure.block_reduce(part, (size, size), np.max)
-        pixels = viridis(pooled / top)
-        sheet.image(np.ascontiguousarray(pixels[::-1]), 96.0 * k, 18, 90, 90)
+        sheet.image(upright(viridis(pooled / top)), 96.0 * k, 18, 90, 90)
         sheet.text(96.0 * k + 45, 121, f"{size} cell{'s' if size > 1 else ''}", 10, "middle")
-    state = detail.state
     measure = measure_of(study.config)
     chart = charts.proof(state, study.story(ProofDetail).ceiling, measure)
-    assert chart.up is not None
     plot = SvgPlot(sheet, 42, 150, 324, 118, (-180, 180), chart.up)
     left = "proven" if state.proven else f"nothing above {measure.text(state.ceiling)} is left"
     sheet.text(0, 143, f"{state.nodes:,} blocks looked at: {left}", 11, bold=True)
     draw_chart(plot, chart, palette)
     unit = f" ({measure.unit})" if measure.unit else ""
     plot.axes("turn Δθ (°)", f"best{unit}", (-180, -90, 0, 90, 180), ticks(*chart.up, 4))
-    after = sheet.chip(42, 313, palette.margin, "ceiling", "line")
-    after = sheet.chip(after, 313, palette.particle, "best met", "line")
-    after = sheet.chip(after, 313, palette.answer, "best", "dot")
-    sheet.chip(after, 313, palette.rival, "rivals", "dot")
+    x, lines, dots = 42.0, (palette.margin, palette.particle), (palette.answer, palette.rival)
+    for colours, names, shape in (
+        (lines, ("ceiling", "best met"), "line"),
+        (dots, ("best", "rivals"), "dot"),
+    ):
+        for colour, name in zip(colours, names, strict=True):
+            x = sheet.chip(x, 313, colour, name, shape)
     return sheet.svg("Bounds of every turn")

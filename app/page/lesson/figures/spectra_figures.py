@@ -13,8 +13,7 @@ from algorithms.methods.steps import AugmentDetail, HoughDetail, ShiftDetail, Wi
 from app.drawing.draw_items import ellipse, rectangle
 from app.drawing.palette import Palette, viridis
 from app.drawing.scene_layout import known_corners
-from app.drawing.svg.map_plot import map_panel
-from app.drawing.svg.map_raster import RasterView, around, draw_map, walls
+from app.drawing.svg.map_plot import draw_map, map_panel, view_of, walls
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number, turn_label, worded
 from app.model.chart_data import to_one
 from app.page.lesson.lesson_run import LessonRun
@@ -52,10 +51,6 @@ def strongest(votes: FloatArray, step: float, count: int = LINES) -> list[tuple[
     return found
 
 
-def _reach(study: LessonRun) -> float:
-    return 2.5 * float(study.config.augment.spread)
-
-
 def _votes(plot: SvgPlot, votes: FloatArray, step: float) -> None:
     """The accumulator in a plot of θ in degrees and ρ in metres; brightness is the root of the votes."""
     bins, reach = votes.shape[1], plot.up[1]
@@ -69,7 +64,7 @@ def _votes(plot: SvgPlot, votes: FloatArray, step: float) -> None:
 def hough(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both accumulators, their strongest lines marked."""
     first, second, step = study.votes
-    reach, sheet = _reach(study), SvgCanvas(308)
+    reach, sheet = 2.5 * float(study.config.augment.spread), SvgCanvas(308)
     rows = ((18.0, first, palette.ref, "map 1"), (164.0, second, palette.mov, "map 2"))
     for y, votes, colour, name in rows:
         plot = SvgPlot(sheet, 42, y, 324, 100, (0, 180), (-reach, reach))
@@ -88,7 +83,8 @@ def hough(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
 
 def spectrum(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The votes of each map, and below them what is left when each column is squared and summed."""
-    match, reach, sheet = study.get(HoughDetail).match, _reach(study), SvgCanvas(286)
+    match, sheet = study.get(HoughDetail).match, SvgCanvas(286)
+    reach = 2.5 * float(study.config.augment.spread)
     first, second, step = study.votes
     x = np.degrees(match.angles)
     for y, votes, name in ((14.0, first, "map 1"), (80.0, second, "map 2")):
@@ -149,7 +145,7 @@ def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     candidate = told[min(at[0], len(told) - 1)].candidate
     sheet, wide, high = SvgCanvas(320), 210.0, 120.0
     half = 2.2 * study.config.augment.spread
-    view = RasterView(around(lifted.ref.x_hat, half, wide / high), int(2 * wide), int(2 * high))
+    view = view_of(lifted.ref.x_hat, half, wide, high)
     pixels = draw_map(view, palette, lifted.ref.grid, palette.ref)
     pixels = draw_map(view, palette, lifted.mov.grid, palette.mov, candidate.T_ref_mov, pixels)
     both = walls(lifted.ref.grid, view) & walls(lifted.mov.grid, view, candidate.T_ref_mov)
@@ -159,29 +155,24 @@ def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     x0, y0, x1, y1 = view.rect
     below = SvgPlot(sheet, 42, 18 + high + 4, wide, 40, (x0, x1), (0, 1.08))
     beside = SvgPlot(sheet, 42 + wide + 4, 18, 76, high, (0, 1.08), (y0, y1))
-    for curves, places, colour in (
-        ((candidate.x.ref, candidate.y.ref), (candidate.x.ref_at, candidate.y.ref_at), palette.ref),
-        (
-            (candidate.x.mov, candidate.y.mov),
-            (candidate.x.mov_at + candidate.x.shift, candidate.y.mov_at + candidate.y.shift),
-            palette.mov,
-        ),
+    x, y = candidate.x, candidate.y
+    for xs, ys, x_at, y_at, colour in (
+        (x.ref, y.ref, x.ref_at, y.ref_at, palette.ref),
+        (x.mov, y.mov, x.mov_at + x.shift, y.mov_at + y.shift, palette.mov),
     ):
-        below.curve(places[0], to_one(curves[0]), colour, 1.6)
-        inside = (places[1] >= y0) & (places[1] <= y1)
-        points = beside.at(np.column_stack([to_one(curves[1])[inside], places[1][inside]]))
-        sheet.path(points, colour, 1.6)
+        below.curve(x_at, to_one(xs), colour, 1.6)
+        inside = (y_at >= y0) & (y_at <= y1)
+        sheet.path(beside.at(np.column_stack([to_one(ys)[inside], y_at[inside]])), colour, 1.6)
     for frame in (below, beside):
         sheet.rect(frame.x, frame.y, frame.wide, frame.high, None, INK, 0.35)
     sheet.text(38, 18 + high + 28, "XS", 11, "end")
     sheet.text(42 + wide + 42, 11, "YS", 11, "middle")
-    sheet.text(300, 158, "sums of all", 10, alpha=0.8)
-    sheet.text(300, 171, "levels in a", 10, alpha=0.8)
-    sheet.text(300, 184, "column, a row", 10, alpha=0.8)
-    for x, match, name in ((30.0, candidate.x, "x"), (218.0, candidate.y, "y")):
+    for n, words in enumerate(("sums of all", "levels in a", "column, a row")):
+        sheet.text(300, 158 + 13 * n, words, 10, alpha=0.8)
+    for left, match, name in ((30.0, x, "x"), (218.0, y, "y")):
         pad = max(3.0, 0.3 * (match.high - match.low))
-        plot = SvgPlot(sheet, x, 208, 150, 70, (match.low - pad, match.high + pad), (0, 1.15))
-        sheet.text(x, 201, f"C{name.upper()}: sliding along {name}", 11, bold=True)
+        plot = SvgPlot(sheet, left, 208, 150, 70, (match.low - pad, match.high + pad), (0, 1.15))
+        sheet.text(left, 201, f"C{name.upper()}: sliding along {name}", 11, bold=True)
         plot.band(match.low, match.high, palette.margin, 0.3)
         near = (match.shifts >= plot.across[0]) & (match.shifts <= plot.across[1])
         plot.curve(match.shifts[near], match.correlation[near], INK, 1.6)
@@ -197,27 +188,23 @@ def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
 def window(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both windows to scale over map 1, and the coupled one from near by."""
     told, grid = study.get(WindowDetail), study.inputs.ref
-    assert grid is not None
     found = study.all(ShiftDetail)
     turn = found[0].candidate.T_ref_mov.theta if found else 0.0
     coupled, paper = told.coupled, told.paper
     off = rotation(turn) @ (coupled.pivot - paper.pivot)
     low, high = paper.low + off, paper.high + off
-    sheet, side = SvgCanvas(236), 206.0
-    corners = known_corners(grid)
-    ends = np.concatenate([[low, high], corners])
+    sheet, side, small = SvgCanvas(236), 206.0, 156.0
+    ends = np.concatenate([[low, high], known_corners(grid)])
     middle = (ends.min(axis=0) + ends.max(axis=0)) / 2
-    half = 0.54 * float(np.ptp(ends, axis=0).max())
-    view = RasterView(around(middle, half), 2 * int(side), 2 * int(side))
+    view = view_of(middle, 0.54 * float(np.ptp(ends, axis=0).max()), side, side)
     pixels = draw_map(view, palette, grid, palette.ref)
     plot = map_panel(sheet, 0, side, side, view, pixels, "the paper's window")
     sheet.path(plot.at(rectangle(low, high)), palette.conflict, 2, dash="6 4", close=True)
     x_hat = coupled.x_ref[0]
     px, py = plot.one(*x_hat.tolist())
     sheet.dot(px, py, 7, None, palette.best, width=2)
-    small = 156.0
     near = max(0.6, 1.5 * float((coupled.high - coupled.low).max()) / 2)
-    view = RasterView(around(x_hat, near), 2 * int(small), 2 * int(small))
+    view = view_of(x_hat, near, small, small)
     pixels = draw_map(view, palette, grid, palette.ref)
     inset = map_panel(sheet, 222, small, small, view, pixels, "the coupled one, near by")
     for k, name in ((1.0, "1 σ"), (coupled.k, f"{number(coupled.k)} σ")):
@@ -226,20 +213,14 @@ def window(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         sheet.path(ring, palette.best, 2 if strong else 1, dash="" if strong else "3 3", close=True)
         top = ring[int(ring[:, 1].argmin())]
         sheet.text(top[0], top[1] - 3, name, 10, "middle", palette.best, True, halo=palette.free)
-    o = study.inputs.observations[0]
-    sheet.path(inset.at([_towards(x_hat, o.observer.xy, 0.98 * near), x_hat]), palette.text, 1.5, dash="5 4")
+    away = study.inputs.observations[0].observer.xy - x_hat
+    end = x_hat + away * min(1.0, 0.98 * near / max(float(np.hypot(*away)), 1e-12))
+    sheet.path(inset.at([end, x_hat]), palette.text, 1.5, dash="5 4")
     sheet.dot(*inset.one(*x_hat.tolist()), 4, None, palette.conflict, width=2)
     sheet.path([(px + 7, py), (222, 18 + small / 2)], palette.best, 1, dash="2 3")
     sheet.chip(222, 194, palette.conflict, "eqs. (6)–(10)", "line")
     sheet.chip(222, 212, palette.best, "eq. (3), turn known", "line")
     return sheet.svg("The paper's window and the coupled window, to scale")
-
-
-def _towards(start: FloatArray, end: FloatArray, most: float) -> FloatArray:
-    """A point on the way, at most so far."""
-    way = end - start
-    length = float(np.hypot(*way))
-    return np.asarray(start + way * min(1.0, most / length if length else 0.0))
 
 
 def first_turn(study: LessonRun) -> int:

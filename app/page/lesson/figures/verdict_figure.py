@@ -35,17 +35,11 @@ def answers(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         sheet.text(0, y + 12, name, 12, bold=row == 0)
         sheet.text(WIDE, y + 12, f"by itself {verdict_text.likelihood(probability(each.score))}", 11, "end")
         wide = 0.0
-        for metres, colour in (
-            (found.agreeing, palette.agreed),
-            (found.contradicting, palette.conflict),
-        ):
-            long = WIDE * metres / most
-            sheet.rect(wide, y + 18, long, 11, colour)
-            wide += long
-        sheet.text(
-            0, y + 42, f"{found.agreeing:.0f} m agree, {found.contradicting:.1f} m contradict; "
-            f"{found.floor:.0f} m² of floor in common", 10.5, alpha=0.85,
-        )  # fmt: skip
+        for metres, colour in ((found.agreeing, palette.agreed), (found.contradicting, palette.conflict)):
+            sheet.rect(wide, y + 18, WIDE * metres / most, 11, colour)
+            wide += WIDE * metres / most
+        says = f"{found.agreeing:.0f} m agree, {found.contradicting:.1f} m contradict; "
+        sheet.text(0, y + 42, f"{says}{found.floor:.0f} m² of floor in common", 10.5, alpha=0.85)
     y = 30 + ANSWER * len(told) + 8
     after = sheet.chip(0, y, palette.agreed, "wall that agrees")
     sheet.chip(after, y, palette.conflict, "wall that contradicts")

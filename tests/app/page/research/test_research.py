@@ -30,8 +30,7 @@ from app.model.settings import settings_of, with_value
 from app.page.research import sweep_curves as curves
 from app.page.research.comparison_panel import Card, card_html
 from app.page.research.heatmap import heat_svg
-from app.page.research.other_result import OtherResult
-from app.page.research.run_summary import outcome_of
+from app.page.research.other_result import OtherResult, outcome_of
 from app.page.research.sweep_request import MOST_POINTS, Wanted, labelled, planned, suggestion
 
 METHOD = "spectra-swarm"

@@ -20,7 +20,7 @@ from algorithms.spectra.augmented_map import augment
 from algorithms.spectra.hough_spectra import hough_transform
 from app.drawing.palette import DARK, LIGHT, css
 from app.drawing.scene_layout import lay_out
-from app.drawing.svg.map_raster import RasterView, around, walls
+from app.drawing.svg.map_plot import RasterView, around, walls
 from app.drawing.svg.svg_canvas import WIDE, SvgCanvas, SvgPlot, ticks
 from app.drawing.svg.verdict_bars import FULL, bars, values
 from app.model.merge_inputs import MergeInputs
