@@ -9,7 +9,7 @@ from dataclasses import replace
 import cv2
 import numpy as np
 import pytest
-from app.evaluation.reliability_figure import reliability_figure
+from reliability_figure import reliability_figure
 from repository import ROOT
 
 from algorithms.methods.registry import METHODS
