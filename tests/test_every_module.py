@@ -213,8 +213,6 @@ EXERCISED_BY = {
         "app.report.replay.chart_recorder",
         "app.report.replay.html_page",
         "app.report.replay.image_recorder",
-        "app.report.replay.make_replay",
-        "app.report.replay.metadata",
     },
     "app/report/test_html_report.py": {
         "app.drawing.svg.map_plot",

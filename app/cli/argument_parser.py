@@ -6,6 +6,8 @@ import argparse
 import difflib
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from math import inf
 from typing import Any, NoReturn
 
 
@@ -30,26 +32,20 @@ class Parser(argparse.ArgumentParser):
     ) -> tuple[Any, list[str]]:
         """As usual, but an option that nobody knows is told first, with the nearest that there is."""
         words = list(sys.argv[1:] if args is None else args)
-        known = [name for action in self._actions for name in action.option_strings]
-        shown = [
-            name
-            for action in self._actions
-            if action.help != argparse.SUPPRESS  # an old name is taken, but not recommended
-            for name in action.option_strings
-        ]
+        known = self._option_string_actions
         for word in words[: words.index("--")] if "--" in words else words:
             flag = word.split("=", 1)[0]
             if self.strict and flag.startswith("--") and flag not in known:
-                became = self.what_became_of(flag)
-                if became:
+                if became := self.what_became_of(flag):
                     self.error(f"there is no option {flag} any more: {became}")
+                # an old name is taken, but not recommended
+                shown = [name for name, action in known.items() if action.help != argparse.SUPPRESS]
                 self.error(f"there is no option {flag}{did_you_mean(flag, shown)}{self.hint}")
         return super().parse_known_args(words, namespace)
 
     def error(self, message: str) -> NoReturn:
         """One line on stderr, exit status 2."""
-        sys.stderr.write(f"{self.prog}: {message}; see {self.prog} --help\n")
-        self.exit(2)
+        self.exit(2, f"{self.prog}: {message}; see {self.prog} --help\n")
 
 
 class _Formatter(argparse.RawDescriptionHelpFormatter):
@@ -71,20 +67,14 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f", did you mean {near[0]}?" if near else ""
 
 
-def whole_number(low: int, high: int | None = None, fault: str = "") -> Callable[[str], int]:
-    """The ``type`` of an argument that is a whole number in a range.
-
-    fault : what is said of anything else, after the text itself
-    """
-    fault = fault or f"is no whole number from {low} " + ("up" if high is None else f"to {high}")
+def whole_number(low: int, high: float = inf, fault: str = "") -> Callable[[str], int]:
+    """The ``type`` of an argument that is a whole number in a range; ``fault`` is said of anything else."""
+    fault = fault or f"is no whole number from {low} " + ("up" if high == inf else f"to {high}")
 
     def read(text: str) -> int:
-        try:
-            number = int(text)
-        except ValueError:
-            number = low - 1
-        if number < low or (high is not None and number > high):
-            raise argparse.ArgumentTypeError(f"{text} {fault}")
-        return number
+        with suppress(ValueError):
+            if low <= (number := int(text)) <= high:
+                return number
+        raise argparse.ArgumentTypeError(f"{text} {fault}")
 
     return read

@@ -7,10 +7,7 @@ from app.jobs.executor import Executor, SerialExecutor
 
 
 def add_workers(parser: Parser, jobs: int | None) -> None:
-    """Add ``--jobs`` and ``--scheduler``: who does the work.
-
-    jobs : processes unless told otherwise; None: one per core
-    """
+    """Add ``--jobs``, by default ``jobs`` or one per core, and ``--scheduler``."""
     who = parser.add_mutually_exclusive_group()
     who.add_argument(
         "--jobs",
@@ -28,12 +25,7 @@ def add_workers(parser: Parser, jobs: int | None) -> None:
 
 
 def executor_for(jobs: int | None = None, scheduler: str | None = None) -> Executor:
-    """Whoever is asked for.
-
-    jobs      : processes on this machine; None: one per core
-    scheduler : address of a Dask scheduler, whose workers then do it all
-    raises    : SettingError where Dask is not installed or nobody answers there
-    """
+    """So many processes, by default one per core, or the workers of a Dask scheduler; raises SettingError."""
     if scheduler is not None:
         from app.jobs.dask_executor import DaskExecutor
 

@@ -22,18 +22,9 @@ EXIT_BAD_INPUT = 2
 EXIT_BUG = 70  # not 1, which means "refused"
 EXIT_INTERRUPTED = 130
 
-SYSTEM_ERRORS = {
-    errno.EACCES,
-    errno.EDQUOT,
-    errno.EFBIG,
-    errno.EIO,
-    errno.ELOOP,
-    errno.ENAMETOOLONG,
-    errno.ENOSPC,
-    errno.EPERM,
-    errno.EROFS,
-}
-"""What the system may refuse at any time, whatever the program does."""
+# what the system may refuse at any time, whatever the program does
+REFUSALS = ("EACCES", "EDQUOT", "EFBIG", "EIO", "ELOOP", "ENAMETOOLONG", "ENOSPC", "EPERM", "EROFS")
+SYSTEM_ERRORS = {getattr(errno, name) for name in REFUSALS}
 
 COMMANDS = {
     "serve": "watch a merge in the browser",
@@ -84,12 +75,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # whoever read our stdout has gone: not our mistake, and not theirs
         _discard_stdout()
         return EXIT_INTERRUPTED
-    except OSError as error:
-        if error.errno not in SYSTEM_ERRORS:
-            return _report_bug()
-        return _print_error(_system_error(error), EXIT_BAD_INPUT)
-    except Exception:  # of ours: told with its trace, and an exit status of its own
-        return _report_bug()
+    except Exception as error:
+        if isinstance(error, OSError) and error.errno in SYSTEM_ERRORS:
+            return _print_error(_system_error(error), EXIT_BAD_INPUT)
+        traceback.print_exc()  # of ours: told whole, and with a status that nobody takes for a refusal
+        return _print_error("this is a bug of mapmeld; please report the lines above", EXIT_BUG)
 
 
 def entry() -> None:
@@ -139,16 +129,8 @@ def _run(words: list[str]) -> int:
 
 def _hyphened(word: str) -> str:
     """``--box.sigma_x=1`` as ``--box.sigma-x=1``: both spellings of a flag are taken."""
-    if not word.startswith("--"):
-        return word
     flag, equals, value = word.partition("=")
-    return flag.replace("_", "-") + equals + value
-
-
-def _report_bug() -> int:
-    """One of ours: told whole, and with a status that nobody takes for a refusal."""
-    traceback.print_exc()
-    return _print_error("this is a bug of mapmeld; please report the lines above", EXIT_BUG)
+    return flag.replace("_", "-") + equals + value if word.startswith("--") else word
 
 
 def _system_error(error: OSError) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,9 +17,7 @@ if TYPE_CHECKING:
 
 
 def add_reading(parser: Parser) -> None:
-    """Add what says how maps are read: ``--resolution``, for images without a YAML file, and
-    ``--unknown-grey``.
-    """
+    """Add ``--resolution``, for images without a YAML file, and ``--unknown-grey``."""
     parser.add_argument(
         "--resolution",
         type=_resolutions,
@@ -58,10 +57,7 @@ def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, tuple[Obser
 
 
 def case_folder(name: str, parser: Parser, remedy: str = "") -> Path:
-    """The folder of a case, or of the sample of that name; a usage error where there is neither.
-
-    remedy : what else could be given
-    """
+    """The folder of a case, or of the sample of that name; else a usage error with ``remedy``."""
     known, folder = samples(), Path(name)
     if folder.is_dir():
         return folder
@@ -71,10 +67,8 @@ def case_folder(name: str, parser: Parser, remedy: str = "") -> Path:
 
 
 def _resolutions(text: str) -> tuple[float, ...]:
-    try:
-        numbers = [float(part) for part in text.split(",")]
-    except ValueError:
-        numbers = []
-    if len(numbers) not in (1, 2) or not all(0 < number < float("inf") for number in numbers):
-        raise argparse.ArgumentTypeError(f"{text} is neither one positive number nor two with a comma")
-    return tuple(numbers)
+    with suppress(ValueError):
+        numbers = tuple(float(part) for part in text.split(","))
+        if len(numbers) in (1, 2) and all(0 < number < float("inf") for number in numbers):
+            return numbers
+    raise argparse.ArgumentTypeError(f"{text} is neither one positive number nor two with a comma")

@@ -16,9 +16,8 @@ log = logging.getLogger(__name__)
 
 @contextlib.contextmanager
 def browser(url: str, secret: bool) -> Iterator[None]:
-    """Open a browser; for the length of the block a file that leads there may lie in a folder of ours.
-
-    secret : the address holds a token: the browser is given the file, which nobody else may read
+    """Open a browser; for the length of the block a file that leads there may lie in a folder of ours: the
+    browser is given one, which nobody else may read, where the address holds a secret.
     """
     with contextlib.ExitStack() as held:
         if secret:

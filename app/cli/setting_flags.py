@@ -1,7 +1,4 @@
-"""Config dataclasses as flags of the command line, and back again.
-
-A new field with Bounds and a string below it has its flag with no change here.
-"""
+"""Config dataclasses as flags: a new field with Bounds and a string below it has its flag by that alone."""
 
 from __future__ import annotations
 
@@ -84,7 +81,7 @@ def _add(group: Any, setting: Setting) -> None:
     if isinstance(setting.default, bool):
         default, how = "yes" if setting.default else "no", {"action": argparse.BooleanOptionalAction}
     elif setting.choices is not None:
-        options = {str(getattr(option, "value", option)): option for option in setting.choices.values()}
+        options = setting.options
         default = next(word for word, option in options.items() if option == setting.default)
         how = {"type": _choice(options), "metavar": "|".join(options)}
     else:

@@ -88,16 +88,15 @@ def _panel(axes: Axes, case: Case, score: ComparedRun) -> None:
     axes.set_title("\n".join(textwrap.wrap(METHODS[score.method].title, 30)), fontsize=8.5)
     axes.set_xlabel(outcome, color=hue, fontsize=8)
     pose = score.trial.pose
+    in_the_middle: dict[str, Any] = {"transform": axes.transAxes, "ha": "center", "fontsize": 7}
     if pose is None:
         why = textwrap.fill(score.trial.reason.removeprefix("Refused: "), 34, max_lines=7)
-        axes.text(
-            0.5, 0.5, why, transform=axes.transAxes, ha="center", va="center", fontsize=7, color=NOTHING
-        )
+        axes.text(0.5, 0.5, why, va="center", color=NOTHING, **in_the_middle)
         return
     try:
         pixels = overlay(fuse((case.ref, case.mov), (Pose2(), pose)), MOST_PIXELS)
     except TooLargeError:
-        axes.text(0.5, 0.5, "too far apart to be drawn", transform=axes.transAxes, ha="center", fontsize=7)
+        axes.text(0.5, 0.5, "too far apart to be drawn", **in_the_middle)
         return
     axes.imshow(_square(pixels), interpolation="antialiased")
 
@@ -177,20 +176,13 @@ def _means(figure: Figure, scores: Sequence[ComparedRun], methods: Sequence[str]
         if mean is not None:
             axes.barh(row, mean, height=0.75, color=css(LIGHT.unknown), zorder=1)
             axes.text(1.03, row, f"{mean:.3f}", va="center", fontsize=8)
+        trials = [score.trial for score in scores if score.method == name and score.trial.index is not None]
         for right, hue, fill in ((True, RIGHT, RIGHT), (False, WRONG, "white")):
-            values = [
-                score.trial.index
-                for score in scores
-                if score.method == name and score.trial.right is right and score.trial.index is not None
-            ]
-            axes.scatter(
-                values, [row] * len(values), s=16, color=fill, edgecolor=hue, linewidth=0.9, zorder=2
-            )
-    axes.set(
-        xlim=(0, 1.12),
-        title="Eq. (23): bars are means, a dot is a case",
-        xlabel="eq. (23) over the true overlap",
-    )
+            values = [trial.index for trial in trials if trial.right is right]
+            at = [row] * len(values)
+            axes.scatter(values, at, s=16, color=fill, edgecolor=hue, linewidth=0.9, zorder=2)
+    title = "Eq. (23): bars are means, a dot is a case"
+    axes.set(xlim=(0, 1.12), title=title, xlabel="eq. (23) over the true overlap")
     axes.set_yticks(range(len(methods)), methods)
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")

@@ -20,22 +20,12 @@ from app.evaluation.table_files import (
     judged_cells,
     placed_cells,
     text_rows,
-    zip_bytes,
 )
+from app.report.result_files import zip_bytes
 from app.system.hardware import machine
 
-TABLE = {
-    "method": "{}",
-    "n": "{}",
-    "right": "{}",
-    "fine": "{}",
-    "wrong": "{}",
-    "no_answer": "{}",
-    "refused": "{}",
-    "wrong_accepted": "{}",
-    "index": "{:.3f}",
-    "seconds": "{:.2f}",
-}
+COUNTS = ("method", "n", "right", "fine", "wrong", "no_answer", "refused", "wrong_accepted")
+TABLE = {**dict.fromkeys(COUNTS, "{}"), "index": "{:.3f}", "seconds": "{:.2f}"}
 """Columns of the table for people, with how their numbers are written."""
 
 TITLES = {"no_answer": "none", "wrong_accepted": "wrong accepted", "index": "eq. (23)", "seconds": "median s"}
@@ -64,7 +54,7 @@ def contest_files(scores: Sequence[ComparedRun], configs: Configs, seed: int) ->
 
     scores, totals = _in_order(scores), tally(scores)
     about = {
-        "scores": [{"case": s.case, "method": s.method, **s.trial.plain()} for s in scores],
+        "scores": [{"case": s.case, "method": s.method, **asdict(s.trial)} for s in scores],
         "methods": totals,
         "seed": seed,
         "settings": configs,

@@ -16,10 +16,7 @@ from algorithms.simulator.wrong_pairs import crossed
 
 @dataclass(frozen=True)
 class Crossing:
-    """A wrong pair: map 1 and the observer of one case, map 2 and the seen robot of another building's.
-
-    buildings : of both
-    """
+    """A wrong pair: map 1 and the observer of one case, map 2 and the seen robot of another building's."""
 
     observer: Path
     observed: Path
@@ -37,13 +34,13 @@ def name_of_pair(root: Path, pair: Pair) -> str:
 
 
 def read_pair(pair: Pair, rough: bool = False) -> Case:
-    """The case of a pair; raises InputFileError.
-
-    rough : take the badly measured observation of each case
-    """
+    """The case of a pair, its badly measured observation where ``rough``; raises InputFileError."""
     if isinstance(pair, Path):
         return read_case(pair, rough)
-    return crossed_case(read_case(pair.observer, rough), read_case(pair.observed, rough))
+    a, b = read_case(pair.observer, rough), read_case(pair.observed, rough)
+    observations = tuple(map(crossed, a.observations, b.observations))
+    truth = Truth(None, expected="refuse")
+    return Case(f"{a.name} x {b.name}", a.ref, b.mov, observations, a.observation_file, truth)
 
 
 def crossings(root: Path, count: int, seed: int = 0) -> list[Crossing]:
@@ -60,28 +57,12 @@ def crossings(root: Path, count: int, seed: int = 0) -> list[Crossing]:
             known[folder] = building_of(group_of(name_in(root, folder)), truth)
     pairs = [Crossing(a, b, (known[a], known[b])) for a, b in permutations(known, 2) if known[a] != known[b]]
     if not pairs:
-        raise InputFileError(
-            root, "holds cases of one building only", "wrong pairs need two buildings or more"
-        )
+        found, remedy = "holds cases of one building only", "wrong pairs need two buildings or more"
+        raise InputFileError(root, found, remedy)
     return random.Random(seed).sample(pairs, min(count, len(pairs)))
 
 
 def building_of(group: str, truth: Truth | None) -> str:
-    """Which building a case is of: what its truth names as source, without the numbers of surveys (HIH_01);
-    the group of its name where nothing is named.
-    """
+    """The building of a case: its truth's source without the numbers of surveys (HIH_01), or its group."""
     words = [] if truth is None else truth.source.split()
-    kept = [word for word in words if word != "+" and not re.fullmatch(r"\w+_\d+", word)]
-    return " ".join(kept) or group
-
-
-def crossed_case(a: Case, b: Case) -> Case:
-    """The wrong pair that two cases of different buildings make."""
-    return Case(
-        name=f"{a.name} x {b.name}",
-        ref=a.ref,
-        mov=b.mov,
-        observations=tuple(map(crossed, a.observations, b.observations)),
-        observation_file=a.observation_file,
-        truth=Truth(None, expected="refuse"),
-    )
+    return " ".join(word for word in words if word != "+" and not re.fullmatch(r"\w+_\d+", word)) or group

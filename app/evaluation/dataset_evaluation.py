@@ -1,6 +1,4 @@
-"""Every case in a folder, merged and judged against its truth; how many came out right, and whether the
-probabilities are what they say.
-"""
+"""Every case in a folder, merged and judged against its truth: how many are right, how true are they told."""
 
 from __future__ import annotations
 
@@ -27,11 +25,7 @@ OVERALL = "overall"
 
 @dataclass(frozen=True)
 class EvaluationTask:
-    """What is to be run on every case; travels to other processes.
-
-    config : settings of the method
-    rough  : take the badly measured observation of each case
-    """
+    """What is to be run on every case, with its badly measured observation where it is to be rough."""
 
     root: Path
     method: str
@@ -116,23 +110,19 @@ def _work(_: None, given: tuple[Pair, EvaluationTask, Loaded | EvaluatedCase | N
 
 
 def run_case(pair: Pair, order: EvaluationTask, read: Loaded | EvaluatedCase | None = None) -> EvaluatedCase:
-    """Merge one case and judge it. A case that fails says why; it raises nothing but an interrupt.
-
-    read : what ``_read`` has made of it, for somebody who can't read our files; None: it is read here
-    """
+    """Merge one case, which is ``read`` here unless given, and judge it; one that fails says why."""
     read = read or _read(pair, order)
     if isinstance(read, EvaluatedCase):
         return read
-    (case, reading_s), began, truth = read, perf_counter(), None
+    (case, reading_s), began = read, perf_counter()
     result = merge_or_reason(case, order.method, order.config, order.seed)
     outcome: dict[str, Any] = {"error": result}
     if isinstance(result, NoAnswerError):
-        outcome, truth = {"no_answer": str(result)}, judge_case(case, None)
+        outcome = {"no_answer": str(result), "truth": judge_case(case, None)}
     elif not isinstance(result, str):
-        outcome = {"report": report_of(result, order.config, reading_s)}
-        truth = judge_case(case, result)
-    seconds = reading_s + perf_counter() - began
-    return _evaluated(case.name, order, **outcome, truth=truth, seconds=seconds)
+        report = report_of(result, order.config, reading_s)
+        outcome = {"report": report, "truth": judge_case(case, result)}
+    return _evaluated(case.name, order, **outcome, seconds=reading_s + perf_counter() - began)
 
 
 def _read(pair: Pair, order: EvaluationTask) -> Loaded | EvaluatedCase:

@@ -28,15 +28,8 @@ class ComparedRun:
     trial: MethodRun
 
 
-@dataclass(frozen=True)
-class UnreadableCase:
-    """A case that can't be read, and why."""
-
-    reason: str
-
-
-Pairs = Iterable[tuple[str, Case | UnreadableCase]]
-"""Pairs by a name that is theirs alone."""
+Pairs = Iterable[tuple[str, Case | str]]
+"""Pairs by a name that is theirs alone; a text says why one cannot be read."""
 
 
 def defaults_of(names: Iterable[str]) -> dict[str, Any]:
@@ -75,19 +68,19 @@ def pairs_in(root: Path, rough: bool = False) -> tuple[int, Pairs]:
     """
     folders = case_folders(root)
 
-    def read() -> Iterator[tuple[str, Case | UnreadableCase]]:
+    def read() -> Iterator[tuple[str, Case | str]]:
         for folder in folders:
             try:
                 yield name_in(root, folder), read_case(folder, rough)
             except MapMergeError as error:
-                yield name_in(root, folder), UnreadableCase(str(error))
+                yield name_in(root, folder), str(error)
 
     return len(folders), read()
 
 
-def _work(case: Case | UnreadableCase, order: tuple[str, Any, int]) -> MethodRun:
-    if isinstance(case, UnreadableCase):
-        return MethodRun.failure(case.reason)
+def _work(case: Case | str, order: tuple[str, Any, int]) -> MethodRun:
+    if isinstance(case, str):
+        return MethodRun.failure(case)
     method, config, seed = order
     try:
         true = true_fusion(case)

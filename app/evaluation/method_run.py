@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from math import radians
 from time import perf_counter
 from typing import Any, Literal
@@ -44,15 +44,15 @@ class MethodRun:
     failed    : whether the method could not be run
     """
 
-    T_ref_mov: tuple[float, float, float] | None
-    accepted: bool
-    reason: str
-    index: float | None
-    distance: float | None
-    angle: float | None
-    right: bool | None
-    fine: bool | None
-    seconds: float
+    T_ref_mov: tuple[float, float, float] | None = None
+    accepted: bool = False
+    reason: str = ""
+    index: float | None = None
+    distance: float | None = None
+    angle: float | None = None
+    right: bool | None = None
+    fine: bool | None = None
+    seconds: float = 0.0
     failed: bool = False
     bent: bool = False
 
@@ -65,9 +65,6 @@ class MethodRun:
         """Whether it gave a transform that is not right."""
         return self.T_ref_mov is not None and self.right is False
 
-    def plain(self) -> dict[str, Any]:
-        return asdict(self)
-
     @staticmethod
     def of(plain: Mapping[str, Any]) -> MethodRun:
         T = plain["T_ref_mov"]
@@ -75,7 +72,7 @@ class MethodRun:
 
     @staticmethod
     def failure(reason: str) -> MethodRun:
-        return MethodRun(None, False, reason, None, None, None, None, None, 0.0, failed=True)
+        return MethodRun(reason=reason, failed=True)
 
 
 @dataclass(frozen=True)
@@ -119,32 +116,28 @@ def run_method(
     if isinstance(result, str):
         return MethodRun.failure(result)
     merged = result if isinstance(result, MergeResult) else None
-    judged = judge_case(case, merged)
-    strangers = judged is not None and judged.expected == "refuse"
-    index = None if strangers else 0.0
-    if merged is not None and not strangers:
-        index = performance_index(merged.fusion, true) or 0.0
-    T = None if merged is None else merged.T_ref_mov
-    return MethodRun(
-        T_ref_mov=None if T is None else (T.x, T.y, T.theta),
-        accepted=merged is not None and merged.verdict.accepted,
-        reason=str(result) if merged is None else merged.verdict.reason,
-        index=index,
-        distance=None if judged is None else judged.distance,
-        angle=None if judged is None else judged.angle,
-        right=merged is None if strangers else None if judged is None else judged.right,
-        fine=None if judged is None else judged.fine,
-        seconds=elapsed if merged is None else sum(merged.timings_s.values()),
-        bent=merged is not None and merged.verdict.outcome is Outcome.BENT,
-    )
+    found: dict[str, Any] = {"reason": str(result), "index": 0.0, "seconds": elapsed}
+    if merged is not None:
+        T, verdict = merged.T_ref_mov, merged.verdict
+        found = {
+            "T_ref_mov": (T.x, T.y, T.theta),
+            "accepted": verdict.accepted,
+            "reason": verdict.reason,
+            "index": performance_index(merged.fusion, true) or 0.0,
+            "seconds": sum(merged.timings_s.values()),
+            "bent": verdict.outcome is Outcome.BENT,
+        }
+    if (judged := judge_case(case, merged)) is not None:
+        found |= {name: getattr(judged, name) for name in ("distance", "angle", "right", "fine")}
+        if judged.expected == "refuse":
+            found |= {"index": None, "right": merged is None}
+    return MethodRun(**found)
 
 
 def merge_or_reason(
     case: Case, method: str, config: Any, seed: int, memo: StageCache | None = None
 ) -> MergeResult | NoAnswerError | str:
-    """The result of a method; its refusal where it finds no transform; or why it could not be run: a bug in
-    one method must not cost the others.
-    """
+    """The result of a method, its refusal, or why it could not be run: a bug in one must not cost others."""
     try:
         *_, last = methods.run(method, case.ref, case.mov, case.observations, config, seed, memo)
     except NoAnswerError as refusal:
@@ -161,10 +154,7 @@ def reason_of(error: Exception) -> str:
 
 
 def judge_case(case: Case, result: MergeResult | None) -> Judgement | None:
-    """How far a merge is from the truth; None where no truth is known.
-
-    result : None for a method that found no transform, which refuses
-    """
+    """How far a merge, or None where a method found no transform, is from the truth; None without one."""
     truth = case.truth
     if truth is None:
         return None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from hashlib import sha256
 from statistics import fmean, median, pstdev
 from threading import Event
@@ -52,10 +52,7 @@ class SweepAxis:
 
 @dataclass(frozen=True)
 class SweepPlan:
-    """What is swept; all else stays as in ``config``.
-
-    y : a second setting, every value of it with every one of x
-    """
+    """What is swept: every value of x with every one of y, if any; all else stays as in ``config``."""
 
     method: str
     config: Any
@@ -142,11 +139,9 @@ def sweep(
     journal: Checkpoint | None = None,
     stop: Event | None = None,
 ) -> Iterator[SweepPoint]:
-    """Yield every point as it is done; those that the journal knows first.
+    """Yield every point as it is done, coarse to fine; those that the journal knows first.
 
-    Points come coarse to fine, so that a curve shows its shape early and what is left can be estimated.
-    Each is in the journal before it is yielded. Close the generator to stop, or set ``stop`` in another
-    thread.
+    Each is in the journal before it is yielded. Close the generator to stop, or set ``stop`` in a thread.
     """
     journal = Checkpoint() if journal is None else journal
     bases, todo = bases_of(case, plan), []
@@ -167,9 +162,8 @@ def sweep(
             continue
         point = SweepPoint(*place, tuple(map(MethodRun.of, answer)))
         if not point.failed:
-            at = {"x": plain(point.x), "y": plain(point.y)}
-            made_of = {"swept": plan.swept, "made_of": bases[place]}
-            journal.add(_digest(bases[place]), {**at, **made_of, "trials": answer})
+            record = {"x": plain(point.x), "y": plain(point.y), "swept": plan.swept}
+            journal.add(_digest(bases[place]), {**record, "made_of": bases[place], "trials": answer})
         yield point
 
 
@@ -214,7 +208,7 @@ def _work(case: Case, order: tuple[str, Any, tuple[int, ...]]) -> list[dict[str,
     """All seeds of one point: what does not depend on the seed is done once for all of them."""
     method, config, seeds = order
     true, memo = true_fusion(case), StageCache()
-    return [run_method(case, method, config, seed, true, memo).plain() for seed in seeds]
+    return [asdict(run_method(case, method, config, seed, true, memo)) for seed in seeds]
 
 
 def _coarse_first(places: list[tuple[Any, Any]]) -> list[tuple[Any, Any]]:
@@ -237,16 +231,14 @@ def point_keys(case: Case, plan: SweepPlan) -> dict[tuple[Any, Any], str]:
 
 def bases_of(case: Case, plan: SweepPlan) -> dict[tuple[Any, Any], dict[str, str]]:
     """A digest of each thing that the numbers of a place rest on, by its name."""
+    codes = [code(METHODS[plan.method].search.__module__), code(merit.__name__)]
     common = {
         "maps": [_cells_digest(case.ref), _cells_digest(case.mov)],
         "observations": observations_to_bytes(case.observations).decode(),
         "truth": None if case.truth is None else truth_to_bytes(case.truth).decode(),
         "method": plan.method,
         "seeds": plan.seeds,
-        "versions": {
-            **versions(),
-            "code": [code(METHODS[plan.method].search.__module__), code(merit.__name__)],
-        },
+        "versions": {**versions(), "code": codes},
     }
     digests = {name: _digest(value) for name, value in common.items()}
     return {place: {**digests, "settings": _digest(plain(plan.config_at(*place)))} for place in plan.places()}

@@ -8,7 +8,7 @@ from typing import Any
 
 from algorithms.common.errors import SettingError
 from app.evaluation.parameter_sweep import SEEDS, SweepAxis, SweepPlan
-from app.model.settings import Path, Setting, settings_of, what_became_of, with_value
+from app.model.settings import Setting, settings_of, what_became_of, with_value
 
 MOST_VALUES = 200  # of one setting
 GRAMMAR = "NAME=V1,V2,… or NAME=LOW:HIGH:COUNT or NAME=LOW:HIGH:COUNT:log"
@@ -25,10 +25,7 @@ PARTICLE_COUNTS = (10, 20, 50, 100, 200, 300, 400, 600, 800, 1200, 2000)
 
 
 def axis_from(text: str, config: Any) -> SweepAxis:
-    """The axis that a person wrote, e.g. ``augment.spread=1:8:8``; raises SettingError.
-
-    config : of the method that is swept; a value out of the setting's bounds is refused
-    """
+    """The axis that a person wrote, e.g. ``augment.spread=1:8:8``; raises SettingError, out of bounds too."""
     name, equals, values = text.partition("=")
     if not equals or not values:
         raise SettingError(f"{text} is no range of a setting; write {GRAMMAR}")
@@ -44,8 +41,7 @@ def setting_named(name: str, config: Any) -> Setting:
     known = {".".join(setting.path).replace("_", "-"): setting for setting in settings_of(config)}
     found = known.get(name.strip().replace("_", "-"))
     if found is None:
-        became = what_became_of(name.strip())
-        if became:
+        if became := what_became_of(name.strip()):
             raise SettingError(f"there is no setting {name} any more; {became}")
         near = get_close_matches(name, list(known), n=1)
         remedy = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
@@ -84,12 +80,12 @@ def looks_even_by_factor(values: tuple[Any, ...]) -> bool:
 
 
 def intensity_and_spread(method: str, config: Any, cell: float, seeds: tuple[int, ...] = SEEDS) -> SweepPlan:
-    """Fig. 13: eq. (23) over I_a × Σ_a.
-
-    cell : edge of a cell, by which the paper's squared cells become metres
-    """
-    spreads = _legal(config, SPREAD, [in_metres(squared, cell) for squared in SQUARED_CELLS])
-    return SweepPlan(method, config, SweepAxis(SPREAD, spreads), SweepAxis(INTENSITY, INTENSITIES), seeds)
+    """Fig. 13: eq. (23) over I_a × Σ_a; ``cell`` is the edge of a cell in metres."""
+    bounds = next(setting.bounds for setting in settings_of(config) if setting.path == SPREAD)
+    assert bounds is not None
+    spreads = (in_metres(squared, cell) for squared in SQUARED_CELLS)
+    x = SweepAxis(SPREAD, tuple(spread for spread in spreads if bounds.low <= spread <= bounds.high))
+    return SweepPlan(method, config, x, SweepAxis(INTENSITY, INTENSITIES), seeds)
 
 
 def particles(method: str, config: Any, seeds: tuple[int, ...] = SEEDS) -> SweepPlan:
@@ -100,13 +96,6 @@ def particles(method: str, config: Any, seeds: tuple[int, ...] = SEEDS) -> Sweep
 def in_metres(squared_cells: float, cell: float) -> float:
     """A Σ_a of so many squared cells as our spread, a standard deviation."""
     return float(f"{sqrt(squared_cells) * cell:.4g}")
-
-
-def _legal(config: Any, path: Path, values: list[float]) -> tuple[float, ...]:
-    """Those of the values that the setting may take; cells may be of any size."""
-    setting = next(found for found in settings_of(config) if found.path == path)
-    assert setting.bounds is not None
-    return tuple(value for value in values if setting.bounds.low <= value <= setting.bounds.high)
 
 
 def _values(text: str, setting: Setting, name: str) -> tuple[Any, ...]:
@@ -125,9 +114,7 @@ def _values(text: str, setting: Setting, name: str) -> tuple[Any, ...]:
 def _value(word: str, setting: Setting, name: str) -> Any:
     if setting.bounds is not None:
         return _number(word, setting, name)
-    options: dict[str, Any] = {"yes": True, "no": False}
-    if setting.choices is not None:
-        options = {str(getattr(option, "value", option)): option for option in setting.choices.values()}
+    options = {"yes": True, "no": False} if setting.choices is None else setting.options
     if word not in options:
         raise SettingError(f"{name}: {word or 'nothing'} is none of {', '.join(options)}")
     return options[word]

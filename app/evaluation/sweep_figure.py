@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -35,30 +34,12 @@ def sweep_figure(plan: SweepPlan, points: Sequence[SweepPoint], title: str, cell
     return figure_files(lambda figure: _curves(figure, plan, ran, title), width, 3.4)
 
 
-@dataclass(frozen=True)
-class _Curve:
-    """A number over the values of a setting, with its spread over the seeds.
-
-    number : of its colour and marker
-    joined : between choices lies nothing: they are not
-    median : shown with the extremes, instead of the mean with the standard deviation within them
-    """
-
-    at: list[float]
-    spreads: list[Spread | None]
-    number: int
-    joined: bool
-    label: str | None = None
-    width: float = 1.8
-    median: bool = False
-
-
 def _curves(figure: Figure, plan: SweepPlan, points: list[SweepPoint], title: str) -> None:
     judged = [point for point in points if point.right is not None]
     panels = figure.subplots(1, 3 if judged else 2)
     figure.suptitle(title, x=0.01, ha="left")
     at, joined = [plan.x.place(point.x) for point in points], plan.x.numeric
-    _line(panels[0], _Curve(at, [point.index for point in points], 0, joined))
+    _line(panels[0], at, [point.index for point in points], 0, joined)
     _no_closer(panels[0])
     panels[0].set(title="How much agrees", ylabel=INDEX)
     if judged:
@@ -68,7 +49,7 @@ def _curves(figure: Figure, plan: SweepPlan, points: list[SweepPoint], title: st
         panels[1].yaxis.set_major_locator(MaxNLocator(integer=True))
         panels[1].set(title="How often it is right", ylabel=f"right transforms of {seeds}")
         panels[1].set_ylim(-0.03 * seeds, seeds * 1.05)
-    _line(panels[-1], _Curve(at, [point.seconds for point in points], 1, joined, median=True))
+    _line(panels[-1], at, [point.seconds for point in points], 1, joined, median=True)
     panels[-1].set(title="How long it takes", ylabel="time of a merge (s)")
     panels[-1].set_ylim(bottom=0)
     for panel in panels:
@@ -87,9 +68,8 @@ def _both(figure: Figure, plan: SweepPlan, points: list[SweepPoint], title: str,
         at = [plan.x.place(point.x) + beside * number for point in mine]
         # the first is drawn widest: curves that lie on each other are all seen
         width = 1.2 + 1.3 * (len(shown) - 1 - number)
-        indices = [point.index for point in mine]
-        _line(lines, _Curve(at, indices, number, plan.x.numeric, _short(y), width))
-    lines.legend(title=_label(plan, plan.y), title_fontsize=8)
+        _line(lines, at, [point.index for point in mine], number, plan.x.numeric, _short(y), width)
+    lines.legend(title=plan.setting(plan.y).label, title_fontsize=8)
     _no_closer(lines)
     lines.set(title="Mean and spread over the seeds", ylabel=INDEX)
     _name_x(lines, plan, plan.x)
@@ -115,7 +95,8 @@ def _heat(
             )  # fmt: skip
     _ticks(axes.xaxis, plan.x.values)
     _ticks(axes.yaxis, y.values)
-    axes.set(title=f"Mean of {len(plan.seeds)} seeds", xlabel=_label(plan, plan.x), ylabel=_label(plan, y))
+    across, up = plan.setting(plan.x).label, plan.setting(y).label
+    axes.set(title=f"Mean of {len(plan.seeds)} seeds", xlabel=across, ylabel=up)
     if plan.x.path == SPREAD:
 
         def squared_cells(value: float) -> str:
@@ -136,26 +117,37 @@ def _ticks(axis: Any, values: Sequence[Any], text: Any = None) -> None:
     axis.set_ticks(range(0, len(values), every), [(text or _short)(value) for value in values[::every]])
 
 
-def _line(axes: Axes, curve: _Curve) -> None:
-    pairs = [(x, each) for x, each in zip(curve.at, curve.spreads, strict=True) if each is not None]
-    x, spreads = [x for x, _ in pairs], [each for _, each in pairs]
-    if curve.median:
-        middle = [each.median for each in spreads]
-        low, high = [each.low for each in spreads], [each.high for each in spreads]
+def _line(
+    axes: Axes,
+    at: Sequence[float],
+    spreads: Sequence[Spread | None],
+    number: int,
+    joined: bool,
+    label: str | None = None,
+    width: float = 1.8,
+    median: bool = False,
+) -> None:
+    """A number over the values of a setting, with its spread over the seeds.
+
+    number : of its colour and marker
+    joined : between choices lies nothing: they are not
+    median : shown with the extremes, instead of the mean with the standard deviation within them
+    """
+    found = [(x, each) for x, each in zip(at, spreads, strict=True) if each is not None]
+    x = [x for x, _ in found]
+    if median:
+        rows = [(each.median, each.low, each.high) for _, each in found]
     else:
-        middle = [each.mean for each in spreads]
-        low = [max(each.low, each.mean - each.deviation) for each in spreads]
-        high = [min(each.high, each.mean + each.deviation) for each in spreads]
-    colour, marker = COLOURS[curve.number], MARKERS[curve.number]
-    if not curve.joined:
-        reach = np.abs(np.array([low, high]) - middle)
-        axes.errorbar(x, middle, reach, color=colour, fmt=marker, markersize=6, capsize=4, label=curve.label)
+        reach = [(each, each.mean - each.deviation, each.mean + each.deviation) for _, each in found]
+        rows = [(each.mean, max(each.low, below), min(each.high, above)) for each, below, above in reach]
+    middle, low, high = np.reshape(rows, (-1, 3)).T
+    look: dict[str, Any] = {"color": COLOURS[number], "label": label}
+    if not joined:
+        edges = np.abs(np.array([low, high]) - middle)
+        axes.errorbar(x, middle, edges, fmt=MARKERS[number], markersize=6, capsize=4, **look)
         return
-    axes.fill_between(x, low, high, color=colour, alpha=0.18, linewidth=0)
-    size = 3 + curve.width
-    axes.plot(
-        x, middle, color=colour, marker=marker, markersize=size, linewidth=curve.width, label=curve.label
-    )
+    axes.fill_between(x, low, high, color=COLOURS[number], alpha=0.18, linewidth=0)
+    axes.plot(x, middle, marker=MARKERS[number], markersize=3 + width, linewidth=width, **look)
 
 
 def _no_closer(axes: Axes) -> None:
@@ -168,7 +160,7 @@ def _no_closer(axes: Axes) -> None:
 
 
 def _name_x(axes: Axes, plan: SweepPlan, axis: SweepAxis) -> None:
-    axes.set_xlabel(_label(plan, axis))
+    axes.set_xlabel(plan.setting(axis).label)
     if not axis.numeric:
         _ticks(axes.xaxis, axis.values)
         axes.set_xlim(-0.5, len(axis.values) - 0.5)
@@ -178,10 +170,6 @@ def _name_x(axes: Axes, plan: SweepPlan, axis: SweepAxis) -> None:
         axes.xaxis.set_major_locator(LogLocator(subs=(1, 3) if wide else (1, 2, 5)))
         axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
         axes.xaxis.set_minor_locator(NullLocator())
-
-
-def _label(plan: SweepPlan, axis: SweepAxis) -> str:
-    return plan.setting(axis).label
 
 
 def _short(value: Any) -> str:

@@ -15,7 +15,6 @@ from app.evaluation.table_files import (
     json_bytes,
     judged_cells,
     placed_cells,
-    zip_bytes,
 )
 from app.report.result_files import plain
 from app.system.hardware import machine
@@ -61,24 +60,18 @@ def sweep_files(case: Case, plan: SweepPlan, points: Sequence[SweepPoint]) -> di
     }
 
 
-def sweep_archive(case: Case, plan: SweepPlan, points: Sequence[SweepPoint]) -> bytes:
-    """A zip of the files of a sweep, as far as it came."""
-    return zip_bytes(sweep_files(case, plan, points))
-
-
 def points_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
     """A row per point, without anything that was measured with a clock."""
     rows = []
     for point in points:
-        index = point.index
-        numbers: list[float | None] = [None] * 4
-        if index is not None:
-            numbers = [index.mean, index.deviation, index.low, index.high]
-        shares = [fixed(number, 6) for number in numbers]
+        shares = [
+            None if point.index is None else fixed(getattr(point.index, name), 6)
+            for name in ("mean", "deviation", "low", "high")
+        ]
         counts = (point.right, point.accepted, point.failed)
         rows.append((*_at(plan, point), len(point.trials), *shares, *counts))
     index_names = ("index_mean", "index_deviation", "index_min", "index_max")
-    return csv_bytes((*_names(plan), "seeds", *index_names, "right", "accepted", "failed"), rows)
+    return csv_bytes((*plan.swept[::-1], "seeds", *index_names, "right", "accepted", "failed"), rows)
 
 
 def runs_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
@@ -88,23 +81,19 @@ def runs_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
         for point in points
         for seed, trial in zip(plan.seeds, point.trials, strict=False)
     ]
-    return csv_bytes((*_names(plan), "seed", "index", *JUDGED, *PLACED), rows)
+    return csv_bytes((*plan.swept[::-1], "seed", "index", *JUDGED, *PLACED), rows)
 
 
 def times_csv(plan: SweepPlan, points: Iterable[SweepPoint]) -> bytes:
     """A row per point: seconds of a merge, over the seeds."""
+    numbers = ("mean", "median", "low", "high")
+    rows = [
+        (*_at(plan, point), *(fixed(getattr(point.seconds, number), 4) for number in numbers))
+        for point in points
+        if not point.failed
+    ]
     header = ("seconds_mean", "seconds_median", "seconds_min", "seconds_max")
-    rows = []
-    for point in points:
-        if not point.failed:
-            took = point.seconds
-            numbers = (took.mean, took.median, took.low, took.high)
-            rows.append((*_at(plan, point), *(fixed(number, 4) for number in numbers)))
-    return csv_bytes((*_names(plan), *header), rows)
-
-
-def _names(plan: SweepPlan) -> tuple[str, ...]:
-    return tuple(reversed(plan.swept))
+    return csv_bytes((*plan.swept[::-1], *header), rows)
 
 
 def _at(plan: SweepPlan, point: SweepPoint) -> tuple[str, ...]:

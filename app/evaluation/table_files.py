@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import json
-import zipfile
 from collections.abc import Iterable, Mapping, Sequence
 from math import degrees
 from typing import Any
@@ -17,15 +16,6 @@ from app.report.result_files import plain
 def json_bytes(value: Any) -> bytes:
     """A JSON file; settings and arrays in it are written as JSON can hold them."""
     return (json.dumps(plain(value), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
-
-
-def zip_bytes(files: Mapping[str, bytes]) -> bytes:
-    """A zip of files by their names."""
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as target:
-        for name, content in files.items():
-            target.writestr(name, content)
-    return packed.getvalue()
 
 
 def csv_bytes(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
@@ -81,27 +71,15 @@ def text_rows(
     titles  : of columns that are not called by their names
     """
     header = [(titles or {}).get(name, name.replace("_", " ")) for name in columns]
-    return [
-        header,
-        *(
-            ["–" if row[name] is None else form.format(row[name]) for name, form in columns.items()]
-            for row in rows
-        ),
-    ]
+    cells = (
+        ["–" if row[name] is None else form.format(row[name]) for name, form in columns.items()]
+        for row in rows
+    )
+    return [header, *cells]
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
     """A table for a terminal: the first column to the left, numbers to the right."""
-    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    return [
-        "  ".join(
-            [row[0].ljust(widths[0]), *(cell.rjust(w) for cell, w in zip(row[1:], widths[1:], strict=True))]
-        )
-        for row in rows
-    ]
-
-
-def markdown(rows: Sequence[Sequence[str]]) -> str:
-    """A table for a Markdown page, its first row the header."""
-    head, *body = (f"| {' | '.join(row)} |" for row in rows)
-    return "\n".join([head, "|---" + "|---:" * (len(rows[0]) - 1) + "|", *body])
+    first, *widths = (max(map(len, column)) for column in zip(*rows, strict=True))
+    lines = ([row[0].ljust(first), *map(str.rjust, row[1:], widths)] for row in rows)
+    return ["  ".join(cells) for cells in lines]

@@ -58,10 +58,7 @@ class BackgroundJob:
         return self._stop is not None
 
     def start(self, work: Callable[[Event], Iterator[Any]]) -> None:
-        """Do this in place of whatever is going on.
-
-        work : makes a generator that ends soon once its event is set
-        """
+        """Do this in place of whatever is going on: a generator that ends soon once its event is set."""
         stop = Event()
         with self._drawing:
             self.stop()

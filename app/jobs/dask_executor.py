@@ -1,5 +1,4 @@
-"""Work on a Dask cluster that exists already: its scheduler deals out the tasks, and deals them out again
-where a worker has died."""
+"""Work on a Dask cluster that exists already; where a worker has died its scheduler tries the task again."""
 
 from __future__ import annotations
 
@@ -32,14 +31,10 @@ class DaskExecutor(Executor):
     far = True
 
     def __init__(self, address: str) -> None:
-        """Say hello to the scheduler and its workers.
-
-        raises : SettingError where Dask is not installed, nobody answers, there is no worker, or one
-                 of them computes with something else than this process
-        """
+        """Raises SettingError without Dask, an answer or a worker, or where one has other versions."""
         self._address = address
         with self._client() as client:
-            self.jobs = self._greet(client)
+            self.jobs = self._checked_threads(client)
 
     def run(self, work: Work, tasks: Iterable[Task], stop: Event | None = None) -> Iterator[tuple[int, Any]]:
         """As in Executor; raises SettingError where the scheduler goes away."""
@@ -102,7 +97,7 @@ class DaskExecutor(Executor):
                 "give the address that it prints when it starts, e.g. tcp://192.168.0.7:8786"
             ) from error
 
-    def _greet(self, client: Client) -> int:
+    def _checked_threads(self, client: Client) -> int:
         try:
             client.wait_for_workers(1, timeout=PATIENCE_S)
         except (OSError, asyncio.TimeoutError):

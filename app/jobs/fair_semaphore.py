@@ -1,7 +1,6 @@
 """Who computes when many tabs want to: so many at a time, the others in their order.
 
-For merges a turn is one step of a run, not a whole one: all of them go on, and none has to wait for
-another's end.
+For merges a turn is one step of a run: none has to wait for another's end.
 """
 
 from __future__ import annotations
@@ -27,10 +26,8 @@ class FairSemaphore:
 
     @contextmanager
     def take(self, wanted: Callable[[], bool], tell: Callable[[int], None]) -> Iterator[bool]:
-        """A turn, which ends with the block; gives whether there is one.
-
-        wanted : whether it still makes sense to wait; asked now and then
-        tell   : is told how many are before, where it takes a while
+        """A turn, which ends with the block; gives whether there is one: while it waits it asks ``wanted``
+        now and then, and calls ``tell`` once with how many are before it.
         """
         me, began, said = object(), monotonic(), False
         patience = PATIENCE if self._patience is None else self._patience

@@ -60,18 +60,17 @@ class IncrementalPickle:
         """A number for what is new to the other end."""
         number = self._end, self._count
         self._count += 1
-        return self.keep(number, thing)
+        self._keep(number, thing)
+        return number
 
-    def keep(self, number: Number, thing: Any) -> Number:
-        """From now on the thing has this number."""
+    def _keep(self, number: Number, thing: Any) -> None:
         self._things[number] = thing
         self._numbers[id(thing)] = number
-        return number
 
     def made(self, number: Number, kind: Callable[..., Any], *values: Any) -> Any:
         """What has come with its number."""
         thing = kind(*values)
-        self.keep(number, thing)
+        self._keep(number, thing)
         return thing
 
     def thing(self, number: Number) -> Any:

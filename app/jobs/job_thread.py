@@ -1,13 +1,11 @@
-"""One tab's work: newest request wins, one worker computes, and every step is told at a pace.
-
-No viser here: a listener gets what is to be drawn.
-"""
+"""One tab's work: newest request wins, one worker computes, and a listener gets every step at a pace."""
 
 from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import closing
+from functools import partial
 from threading import RLock
 from time import perf_counter
 from typing import Protocol
@@ -47,9 +45,7 @@ class Listener(Protocol):
         """Someone pressed Stop."""
 
     def failed(self, job: MergeJob, story: RunState, error: Exception) -> None:
-        """The run could not go on: a NoAnswerError where the method found no transform, another
-        MapMergeError to be told, or a bug to be logged.
-        """
+        """The run could not go on: with a NoAnswerError, another MapMergeError, or a bug."""
 
 
 class JobThread:
@@ -118,30 +114,26 @@ class JobThread:
         began, story = self._clock(), RunState(job.config)
         self._told, self._pace = (job, story), job.pace
 
-        def fail(error: Exception) -> None:
-            self._deliver(job, lambda: self._listener.failed(job, story, error))
-
         try:
             self._tell(job, story)
-        except MapMergeError as error:
-            fail(error)
         except Exception as error:
-            log.exception("a run of %s ended in a bug", job.method)
-            fail(error)
+            if not isinstance(error, MapMergeError):
+                log.exception("a run of %s ended in a bug", job.method)
+            self._deliver(job, partial(self._listener.failed, job, story, error))
         log.info("run over", extra=facts(method=job.method, seconds=round(self._clock() - began, 3)))
 
     def _tell(self, job: MergeJob, story: RunState) -> None:
         """Iterate the method; draw at most every FRAME, except where a step is meant to be seen."""
 
         def waits(before: int) -> None:
-            self._deliver(job, lambda: self._listener.waits(job, before))
+            self._deliver(job, partial(self._listener.waits, job, before))
 
         def end() -> None:
             self._ended = job
             self._listener.ended(job, story)
 
-        callbacks = RunCallbacks(lambda: self._requests.wants(job), waits)
-        if not self._deliver(job, lambda: self._listener.begun(job)):
+        callbacks = RunCallbacks(partial(self._requests.wants, job), waits)
+        if not self._deliver(job, partial(self._listener.begun, job)):
             return
         drawn_at = -FRAME
         with closing(self.runner.steps(job, callbacks)) as steps:
@@ -153,7 +145,7 @@ class JobThread:
                     return
                 if stay >= FRAME or self._clock() - drawn_at >= FRAME:
                     drawn_at = self._clock()
-                    if not self._deliver(job, lambda: self._listener.show(job, story)):
+                    if not self._deliver(job, partial(self._listener.show, job, story)):
                         return
                     stay -= self._clock() - drawn_at
                 self._waiting.wait(stay, mark)

@@ -18,7 +18,7 @@ class LatestRequest(Generic[T]):
     def __init__(
         self, work: Callable[[T], None], name: str, ended: Callable[[], None] = lambda: None
     ) -> None:
-        """ended : is called in the thread once it was closed"""
+        """``ended`` is called in the thread once it was closed."""
         self._work, self._ended = work, ended
         self._wake = Condition()
         self._waiting: list[T] = []  # one, or none

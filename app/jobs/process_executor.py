@@ -8,7 +8,6 @@ from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import chain
 from multiprocessing import get_context
@@ -31,16 +30,8 @@ SPAWN = get_context("spawn")  # a copy of a process that already has threads can
 Numbered = tuple[int, Task]
 
 
-@dataclass(frozen=True)
-class _Stopped:
-    """Why work has stopped: a process has died.
-
-    suspects  : tasks that were being worked on
-    untouched : the task that nobody had begun
-    """
-
-    suspects: list[Numbered]
-    untouched: list[Numbered]
+Unfinished = tuple[list[Numbered], list[Numbered]]
+"""Where a process has died: the tasks that were being worked on, and the one that nobody had begun."""
 
 
 class ProcessExecutor(Executor):
@@ -57,16 +48,18 @@ class ProcessExecutor(Executor):
                 stopped = yield from self._some(work, left, self.jobs, folder, stop)
                 if stopped is None:
                     return
-                left = chain(stopped.untouched, left)
-                again = iter(stopped.suspects)  # who of them took its process down? Each alone shows it
+                suspects, untouched = stopped
+                left, again = chain(untouched, left), iter(suspects)
+                # who of them took its process down? Each alone shows it
                 while stopped := (yield from self._some(work, again, 1, folder, stop)):
-                    again = chain(stopped.untouched, again)
-                    for number, _ in stopped.suspects:
+                    suspects, untouched = stopped
+                    again = chain(untouched, again)
+                    for number, _ in suspects:
                         yield number, LostTask()
 
     def _some(
         self, work: Work, left: Iterator[Numbered], jobs: int, folder: Path, stop: Event | None
-    ) -> Generator[tuple[int, Any], None, _Stopped | None]:
+    ) -> Generator[tuple[int, Any], None, Unfinished | None]:
         """Yield answers until no task is left; return what a process that died has left behind."""
         # a process ends when nobody holds the other end any more: it is told to, or this one is dead
         listening, line = SPAWN.Pipe(duplex=False)
@@ -82,12 +75,12 @@ class ProcessExecutor(Executor):
                     try:
                         running[pool.submit(_do, work, path, task.order)] = found
                     except BrokenProcessPool:  # an idle process has died meanwhile
-                        return _Stopped((yield from _rescued(running)), [found])
+                        return (yield from _rescued(running)), [found]
                 if not running:
                     return None
                 for future in wait(running, None if stop is None else LOOK_S, FIRST_COMPLETED).done:
                     if isinstance(future.exception(), BrokenProcessPool):
-                        return _Stopped((yield from _rescued(running)), [])
+                        return (yield from _rescued(running)), []
                     number, _ = running.pop(future)
                     yield number, future.result()
             return None
@@ -103,8 +96,8 @@ def _rescued(running: dict[Future[Any], Numbered]) -> Generator[tuple[int, Any],
     """Yield the answers that were there before the pool broke; return the tasks that have none."""
     lost = []
     for future, found in running.items():
-        error = future.exception()  # all are done soon: the pool ends what it can't do any more
-        if isinstance(error, BrokenProcessPool):
+        # all are done soon: the pool ends what it can't do any more
+        if isinstance(future.exception(), BrokenProcessPool):
             lost.append(found)
         else:
             yield found[0], future.result()

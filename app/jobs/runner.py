@@ -44,16 +44,16 @@ class Runner(ABC):
 
 
 class TappedRunner(Runner):
-    """Another's bench; its steps go through somebody's hands on their way."""
+    """Another runner, whose steps pass through a function; who made it closes it."""
 
-    def __init__(self, bench: Runner, through: Callable[[Iterator[Step]], Iterator[Step]]) -> None:
-        self._bench, self._through = bench, through
+    def __init__(self, runner: Runner, through: Callable[[Iterator[Step]], Iterator[Step]]) -> None:
+        self._runner, self._through = runner, through
 
     def steps(
         self, job: MergeJob, callbacks: RunCallbacks, aside: bool = False
     ) -> Generator[Step, None, None]:
-        with closing(self._bench.steps(job, callbacks, aside)) as steps:
+        with closing(self._runner.steps(job, callbacks, aside)) as steps:
             yield from self._through(steps)
 
     def close(self) -> None:
-        """Whose bench it is closes it."""
+        pass

@@ -54,7 +54,7 @@ class WorkerPool:
         self._workers: list[_Worker] = []
         self._lock, self._closed = Lock(), False
 
-    def bench(self) -> Runner:
+    def runner(self) -> Runner:
         """A runner for a tab; it takes no worker before its first run."""
         return PoolRunner(self)
 
@@ -113,11 +113,10 @@ class _Worker:
                 with forked_start.without_interrupt():
                     forked_start.start_parent()
                     process.start()
-            except (EOFError, ConnectionError) as error:  # the process that is copied has died
+            except BaseException as error:
                 line.close()
-                raise WorkerDiedError from error
-            except BaseException:
-                line.close()
+                if isinstance(error, (EOFError, ConnectionError)):  # the process that is copied has died
+                    raise WorkerDiedError from error
                 raise
             finally:
                 theirs.close()  # the process alone holds it, so that its end is heard here
@@ -170,10 +169,7 @@ _numbers = itertools.count()
 
 
 class PoolRunner(Runner):
-    """A tab at its worker.
-
-    epoch : counts how often both had to begin anew with each other
-    """
+    """A tab at its worker; its epoch counts how often both had to begin anew with each other."""
 
     def __init__(self, workers: WorkerPool) -> None:
         self._workers, self._number = workers, next(_numbers)
@@ -228,9 +224,8 @@ class PoolRunner(Runner):
         if worker.life != self._life:
             self._reset()
             self._life = worker.life
-        maps = job.ref, job.mov
-        others = any(new is not old for new, old in zip(maps, self._maps, strict=True))
-        self._maps = maps
+        before, self._maps = self._maps, (job.ref, job.mov)
+        others = any(new is not old for new, old in zip(self._maps, before, strict=True))
         turns = 1 + others  # what was made of other maps is not met again
         for _ in range(turns):
             self._pickler.turn_over()
@@ -241,11 +236,8 @@ class PoolRunner(Runner):
 
     def _next(self, worker: _Worker, run: int, callbacks: RunCallbacks) -> Step | None:
         (data,) = self._checked(worker.ask("next", self._number, run, wanted=callbacks.wanted))
-        if data is None:
-            return None
         with self._in_step(worker):
-            step: Step = self._pickler.unpack(data)
-        return step
+            return None if data is None else self._pickler.unpack(data)
 
     @contextlib.contextmanager
     def _in_step(self, worker: _Worker) -> Iterator[None]:
@@ -258,12 +250,11 @@ class PoolRunner(Runner):
             raise
 
     def _checked(self, answer: tuple[Any, ...]) -> tuple[Any, ...]:
-        if not isinstance(answer[0], Failed):
-            return answer
-        failed = answer[0]
-        if failed.anew:
-            self._reset()
-        raise failed.error from _RemoteError(failed.trace)
+        if isinstance(failed := answer[0], Failed):
+            if failed.anew:
+                self._reset()
+            raise failed.error from _RemoteError(failed.trace)
+        return answer
 
     def _reset(self) -> None:
         self._pickler, self._maps = IncrementalPickle("page"), (None, None)

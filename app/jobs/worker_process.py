@@ -26,10 +26,7 @@ SHARE = 0.5  # of this machine's memory that a worker may have; more is a Memory
 
 @dataclass(frozen=True)
 class Failed:
-    """What went wrong here, for the page.
-
-    anew : both ends no longer agree
-    """
+    """What went wrong here, for the page; anew: both ends no longer agree."""
 
     error: Exception
     trace: str

@@ -72,16 +72,8 @@ X_SPECTRA = Chart("X spectra, eq. (13); map 2 turned and shifted", "x (m)", _MAP
 Y_SPECTRA = Chart("Y spectra, eq. (14); map 2 turned and shifted", "y (m)", _MAPS, up=(0.0, 1.1))
 SHIFT_X = Chart("Correlation, window shaded", "Δx (m)", _SHIFT, up=(0.0, 1.1))
 SHIFT_Y = replace(SHIFT_X, axis="Δy (m)")
-CLIMB = Chart(
-    "Best value so far",
-    "iteration",
-    (
-        Curve("1", "best", size=2.2),
-        Curve("2", "particle", size=1.3),
-        Curve("3", "ref", size=1.3),
-        Curve("4", "margin", size=1.3),
-    ),
-)
+_LATER = [Curve(str(rank), colour, size=1.3) for rank, colour in enumerate(("particle", "ref", "margin"), 2)]
+CLIMB = Chart("Best value so far", "iteration", (Curve("1", "best", size=2.2), *_LATER))
 PROOF = Chart(
     "Best value at every turn",
     "turn Δθ (°), the whole circle",
@@ -134,9 +126,7 @@ def turn_correlation(match: HoughMatch, chosen: float | None) -> Chart:
 
 
 def circle(detail: TurnsDetail, measure: str = "agreement") -> Chart:
-    """Turn in degrees, how well the maps agree, and the best turn; turns that are not tried yet lie where
-    the worst of the others does. The y axis goes from the worst to the best, and a little more.
-    """
+    """Turn in degrees, how well the maps agree (turns not tried yet as badly as the worst), the best turn."""
     x, scores = np.degrees(detail.turns), np.asarray(detail.scores, dtype=np.float64)
     tried = scores[np.isfinite(scores)]
     low, high = (float(tried.min()), float(tried.max())) if len(tried) else (0.0, 1.0)
@@ -163,9 +153,8 @@ def shift_spectra(match: ShiftMatch, form: Chart = X_SPECTRA) -> Chart:
 
 
 def shift_correlation(match: ShiftMatch, form: Chart = SHIFT_X) -> Chart:
-    """Shift in metres, the allowed window as a bar of height 1.05, correlation, the chosen shift.
-
-    The axis reaches over the window and some metres beyond, so that both its edges are seen.
+    """Shift in metres, to beyond the allowed window; the window as a bar of height 1.05, correlation, the
+    chosen shift.
     """
     pad = max(4.0, 0.25 * (match.high - match.low))
     near = (match.shifts >= match.low - pad) & (match.shifts <= match.high + pad)
@@ -186,8 +175,7 @@ def shift_correlation(match: ShiftMatch, form: Chart = SHIFT_X) -> Chart:
 
 def climb(courses: Sequence[Sequence[float]], measure: ObjectiveLabel) -> Chart:
     """Iteration, then best value so far for each refined candidate; one that has ended stays where it was,
-    one that has not begun, or has met nothing in the window yet, lies on the axis (NaN would keep the
-    chart from finding its own scale).
+    one without a value lies on the axis (NaN would keep the chart from finding its scale).
     """
     longest = max([2, *map(len, courses)])
     table = np.zeros((len(CLIMB.curves), longest))
@@ -258,17 +246,8 @@ def candidate_rows(
     """Rank, turn, shift, value of the first look, value after refining."""
     rows = []
     for rank, candidate in enumerate(candidates):
-        T = candidate.T_ref_mov
-        looked = 0.0 if candidate.value is None else candidate.value
+        T, name = candidate.T_ref_mov, f"{rank + 1}{'  + π' if candidate.twin else ''}"
+        looked = measure.number(0.0 if candidate.value is None else candidate.value)
         after = measure.number(refined[rank][-1]) if rank < len(refined) and refined[rank] else "–"
-        rows.append(
-            (
-                f"{rank + 1}{'  + π' if candidate.twin else ''}",
-                f"{degrees(T.theta):.1f}°",
-                f"{T.x:.1f}",
-                f"{T.y:.1f}",
-                measure.number(looked),
-                after,
-            )
-        )
+        rows.append((name, f"{degrees(T.theta):.1f}°", f"{T.x:.1f}", f"{T.y:.1f}", looked, after))
     return rows

@@ -9,7 +9,6 @@ MOST_PLACES = 12  # that are listed, and ringed on the map; the smaller ones are
 
 def summary(found: Contradictions) -> str:
     """How many places there are, how much wall, and what is not listed."""
-    many = len(found.places)
     if found.wall == 0:
         return "No wall of one map lies in the other's free floor."
     if not found.places:

@@ -13,10 +13,7 @@ from algorithms.observations.observation import Encounter, Observation, encounte
 
 @dataclass(frozen=True)
 class Upload:
-    """One file as the browser sent it; its name is never used as a path.
-
-    by_form : it was not sent but made of what a person filled in
-    """
+    """One file as the browser sent it, or made by a form; its name is never used as a path."""
 
     name: str
     content: bytes
@@ -25,11 +22,7 @@ class Upload:
 
 @dataclass(frozen=True, eq=False)
 class Files:
-    """Where inputs came from.
-
-    sample  : name of the sample; "" where they are uploads
-    uploads : files by what they are for
-    """
+    """Where inputs came from: a sample by its name, or uploads by what they are for."""
 
     sample: str = ""
     uploads: Mapping[str, Upload] = field(default_factory=dict)
@@ -123,10 +116,10 @@ class MergeInputs:
                 return slot.missing
         here = [number for number, slot in enumerate(self.maps, 1) if slot.grid is not None]
         absent = [number for number, slot in enumerate(self.maps, 1) if slot.grid is None]
-        if not here:
-            if not self.observations:
-                return "Choose a sample, or load two maps and an observation."
+        if not here and self.observations:
             return "Now load the two maps: a YAML file and an image each."
+        if not here:
+            return "Choose a sample, or load two maps and an observation."
         if absent:
             return f"Map {here[0]} is here. Load map {absent[0]}, too."
         if not self.observations:

@@ -12,6 +12,9 @@ from algorithms.observations.observation import SIGMA_BEARING, SIGMA_RANGE, Obse
 Part = Literal["observer", "seen", "observed"]
 Point = tuple[float, float]
 
+IN_BOTH = ("observer", "range", "bearing", "sigma_range", "sigma_bearing", "bearing_back")
+"""Fields that a draft and an observation share."""
+
 
 @dataclass(frozen=True)
 class ObservationDraft:
@@ -35,16 +38,8 @@ class ObservationDraft:
     @staticmethod
     def of(o: Observation) -> ObservationDraft:
         """The draft that makes just this observation."""
-        return ObservationDraft(
-            o.observer,
-            o.range,
-            o.bearing,
-            (o.observed_x, o.observed_y),
-            o.observed_heading,
-            o.sigma_range,
-            o.sigma_bearing,
-            o.bearing_back,
-        )
+        same = {name: getattr(o, name) for name in IN_BOTH}
+        return ObservationDraft(**same, observed=(o.observed_x, o.observed_y), heading=o.observed_heading)
 
     @property
     def missing(self) -> Part | None:
@@ -68,16 +63,9 @@ class ObservationDraft:
         """The observation; None while something is missing. Raises SettingError where it cannot be."""
         if self.observer is None or self.range is None or self.bearing is None or self.observed is None:
             return None
-        return Observation(
-            self.observer,
-            *self.observed,
-            self.range,
-            self.bearing,
-            self.heading,
-            self.sigma_range,
-            self.sigma_bearing,
-            self.bearing_back,
-        )
+        x, y = self.observed
+        same = {name: getattr(self, name) for name in IN_BOTH}
+        return Observation(**same, observed_x=x, observed_y=y, observed_heading=self.heading)
 
     def stood(self, observer: Pose2) -> ObservationDraft:
         """Robot 1 stood there; what it saw stays where it is in the map."""

@@ -22,11 +22,7 @@ PROOF_CALM = 4000  # blocks after which that time has fallen to half
 
 
 def dwell(step: Step, pace: float, again: bool) -> float:
-    """Seconds that a step stays on the screen.
-
-    pace  : 0 for no waiting
-    again : whether steps of an earlier run are played once more, too
-    """
+    """Seconds that a step stays on the screen, 0 at pace 0; ``again``: also one of an earlier run."""
     if pace <= 0 or (step.reused and not again):
         return 0.0
     if isinstance(step.detail, RefineDetail):

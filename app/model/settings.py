@@ -1,13 +1,11 @@
-"""Config dataclasses as settings a panel can show: label, range, unit, hint; and back again.
-
-A new field with Bounds and a string below it shows up on the page with no change here.
-"""
+"""Config dataclasses as settings that a panel can show: label, range, unit, hint; and back again."""
 
 from __future__ import annotations
 
 import ast
 import inspect
 import itertools
+import re
 import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, is_dataclass, replace
@@ -20,26 +18,13 @@ from algorithms.common.setting_bounds import Bounds, bounds_of
 Path = tuple[str, ...]
 
 
-GONE = (
-    "contradiction",
-    "bent_contradiction",
-    "bent",
-    "wall",
-    "plenty",
-    "bent_wall",
-    "ambiguity",
-    "deviations",
-)
+GONE = re.compile(r"verdict\.((bent_)?(contradiction|wall)|bent|plenty|ambiguity|deviations)")
 """Settings of the verdict that there were: its limits have become one probability."""
 
 
 def what_became_of(name: str) -> str:
-    """What to say of a setting that is gone, as a clause; empty for a name that never was one.
-
-    name : as in ``verdict.bent-wall``
-    """
-    group, _, field = name.lstrip("-").replace("-", "_").partition(".")
-    gone = group == "verdict" and field in GONE
+    """What to say of a setting that is gone, as ``verdict.bent-wall``; empty where it never was one."""
+    gone = GONE.fullmatch(name.lstrip("-").replace("-", "_"))
     return "the verdict's limits have become one probability, verdict.accept_from" if gone else ""
 
 
@@ -63,34 +48,25 @@ class Setting:
     choices: dict[str, Any] | None = None
     whole: bool = False
 
+    @property
+    def options(self) -> dict[str, Any]:
+        """What a choice may be, by the words for it on the command line."""
+        return {str(getattr(option, "value", option)): option for option in (self.choices or {}).values()}
+
 
 @cache
 def field_docs(config_type: type) -> dict[str, str]:
-    """The string below each field of a class and of those it is made from, its lines joined; without those
-    whose source is not there.
-    """
+    """The string below each field of a class and of its bases whose source is there, its lines joined."""
     docs: dict[str, str] = {}
     for base in reversed(config_type.__mro__[:-1]):
-        docs |= _own_docs(base)
-    return docs
-
-
-def _own_docs(config_type: type) -> dict[str, str]:
-    try:
-        tree = ast.parse(textwrap.dedent(inspect.getsource(config_type)))
-    except (OSError, TypeError, SyntaxError):
-        return {}
-    body = tree.body[0].body  # type: ignore[attr-defined]
-    docs = {}
-    for field, after in itertools.pairwise(body):
-        if (
-            isinstance(field, ast.AnnAssign)
-            and isinstance(field.target, ast.Name)
-            and isinstance(after, ast.Expr)
-            and isinstance(after.value, ast.Constant)
-            and isinstance(after.value.value, str)
-        ):
-            docs[field.target.id] = " ".join(after.value.value.split())
+        try:
+            tree = ast.parse(textwrap.dedent(inspect.getsource(base)))
+        except (OSError, TypeError, SyntaxError):
+            continue
+        for pair in itertools.pairwise(tree.body[0].body):  # type: ignore[attr-defined]
+            match pair:
+                case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
+                    docs[name] = " ".join(text.split())
     return docs
 
 

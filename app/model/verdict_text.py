@@ -23,9 +23,7 @@ def fits_nowhere(state: ProofState) -> bool:
 
 
 def rival(result: MergeResult) -> str:
-    """How the rival in doubt differs, and how likely it is: "180° turned, 48%"; empty without one, and where
-    nobody would believe in either.
-    """
+    """How the rival in doubt differs, and how likely it is: "180° turned, 48%"; else empty."""
     other = result.verdict.rival
     if other is None or likelihood_of_rival(result) < LEAST_LIKELY:
         return ""
@@ -50,15 +48,10 @@ def likelihood_of_rival(result: MergeResult) -> float:
 
 
 def of_hand(result: MergeResult, taken: bool = False) -> str:
-    """What the verdict says of a transform made by hand.
-
-    taken : whether it is the answer now
-    """
+    """What the verdict says of a transform made by hand, which is ``taken`` where it is the answer now."""
     reason = result.verdict.reason
-    if taken:
-        return f"By hand. {reason}"
-    clause = reason.split(": ", 1)[-1]
-    return f"By hand, would be {result.verdict.outcome.value}: {clause}"
+    would = f"By hand, would be {result.verdict.outcome.value}: {reason.split(': ', 1)[-1]}"
+    return f"By hand. {reason}" if taken else would
 
 
 def optimum(proof: ProofState) -> str:
@@ -117,10 +110,11 @@ def remedy(result: MergeResult) -> str:
 
 REMEDIES = {
     OTHERS: "A second observation would tell the two places apart; so would maps that share more.",
-    "contradiction": "Are these maps of one building? Check the observation's numbers; a second observation "
-    "may find a better place.",
-    "unbent": "Are these maps of one building? Check the observation's numbers; a second observation "
-    "may find a better place.",
+    **dict.fromkeys(
+        ("contradiction", "unbent"),
+        "Are these maps of one building? Check the observation's numbers; a second observation may find a "
+        "better place.",
+    ),
     "across": "Let one of the robots drive on, so that the maps share more, and merge again; or give a "
     "second observation.",
     "misfit": "Check the observation's numbers, or widen the window.",

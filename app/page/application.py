@@ -106,7 +106,7 @@ def _aside(what: Callable[[], None]) -> None:
 
 def warm_up() -> None:
     """Have what merges ready for it, its kernels compiled: the first Merge need not wait."""
-    runners = [workers.COMMON.bench() for _ in range(WARM)]
+    runners = [workers.COMMON.runner() for _ in range(WARM)]
     job = replace(small_merge(), steps=warm_up_there)
     try:
         for runner in runners:  # each has a process of its own, as long as the others are there

@@ -65,7 +65,7 @@ class Page:
         display.show_theme()
         self._tab = tab = Tab(state, display, panels, ModeSwitch(), history, notices, events)
         stop_upload = partial(uploads.stop, client.client_id)
-        runs = RunController(tab, COMMON.bench(), stop_upload)
+        runs = RunController(tab, COMMON.runner(), stop_upload)
         self._inputs = inputs = InputsController(tab, runs, quota)
         self._undo = undo = UndoController(tab, runs, inputs)
         ViewController(tab, client)
@@ -80,7 +80,7 @@ class Page:
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
         self._sweep = SweepController(state, panels.sweep, messages, events, runs, deliver)
         self._parts = inputs, events, teaching, drag, self._comparison, self._sweep, zoom, runs.thread
-        uploads.welcome(client.client_id, Recipient(partial(panels.run.stoppable, "sending"), notices.report))
+        uploads.connect(client.client_id, Recipient(partial(panels.run.stoppable, "sending"), notices.report))
         events.on("unsend", stop_upload)
         # the dock of the charts gets its width when that of the lesson, beside which it came, is gone
         events.on("left", lambda: None if teaching.open else panels.charts.visible(True))
@@ -108,7 +108,7 @@ class Page:
 
     def close(self) -> None:
         """The tab is gone; what it leaves behind is kept for a while."""
-        self._uploads.farewell(self._client.client_id)
+        self._uploads.disconnect(self._client.client_id)
         self._tab.panels.task.stop()
         with self._tab.state.locks.action:
             self._tab.state.closed = True

@@ -23,7 +23,7 @@ from app.model.run_state import RunState
 from app.model.view_modes import MAP
 from app.page.panels.result_panel import result_html
 from app.page.tab import Tab
-from app.report.replay.make_replay import replay_of
+from app.report.replay.html_page import replay_of
 from app.report.result_files import ResultFiles
 from app.web.callback_errors import words
 

@@ -52,9 +52,8 @@ def report_page(
     report : what report.json says
     check  : is called between the pictures
     """
-    verdict, found = result.verdict, find_conflicts(result.fusion)
-    ended = verdict.outcome.value.capitalize()
-    name = inputs.name or "two maps"
+    found, name = find_conflicts(result.fusion), inputs.name or "two maps"
+    title = f"{result.verdict.outcome.value.capitalize()}: {name}"
     parts = [
         _verdict(result, inputs),
         _pictures(result, inputs, found, check),
@@ -71,7 +70,7 @@ def report_page(
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'
-        f"<title>{escape(f'{ended}: {name}')}</title><style>{_STYLE}</style></head><body>"
+        f"<title>{escape(title)}</title><style>{_STYLE}</style></head><body>"
         f"<header><b>mapmeld</b><span>Report of a merge</span></header><h1>{escape(name)}</h1>"
         f"{''.join(parts)}<footer>Made with {escape(made)}.</footer></body></html>\n"
     )
@@ -85,27 +84,18 @@ def _verdict(result: MergeResult, inputs: MergeInputs) -> str:
     verdict, T = result.verdict, result.T_ref_mov
     then = verdict_text.remedy(result)
     stop, reason = STRONG.get(verdict.outcome, ""), verdict.reason
-    if stop:
-        reason = _bare(reason)
+    if stop:  # what follows "Refused: " or "Merged, bent: ", as a sentence
+        reason = reason.partition(": ")[2]
+        reason = reason[:1].upper() + reason[1:]
     more = f'<p class="then">{escape(then)}</p>' if then else ""
-    where = (
-        f"Map 2 lies in map 1 at x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°."
-        if verdict.accepted
-        else "No robot should act on this transform or on a map made with it. The best place that was found: "
-        f"x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°."
-    )
-    where = typeset(where)
+    found = "No robot should act on this transform or on a map made with it. The best place that was found:"
+    where = "Map 2 lies in map 1 at" if verdict.accepted else found
+    place = typeset(f"{where} x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°.")
     read = "".join(f"<p>{escape(remark)}</p>" for remark in inputs.readings())
     return (
         f'<div class="verdict {verdict_text.mood(verdict)}">{stop}<p>{escape(reason)}</p>{more}</div>'
-        f"{read}<p>{where}</p>"
+        f"{read}<p>{place}</p>"
     )
-
-
-def _bare(reason: str) -> str:
-    """What follows "Refused: " or "Merged, bent: ", as a sentence."""
-    _, _, rest = reason.partition(": ")
-    return rest[:1].upper() + rest[1:]
 
 
 def _pictures(result: MergeResult, inputs: MergeInputs, found: Contradictions, check: Check) -> str:
@@ -152,17 +142,10 @@ def _places(found: Contradictions) -> list[str]:
     said = f"<p>{escape(summary(found))}</p>"
     if not found.places:
         return [said]
-    rows = [
-        (
-            str(n),
-            whose(place),
-            f"{place.wall:.1f} m",
-            f"{2 * place.radius:.1f} m",
-            signed(place.x),
-            signed(place.y),
-        )
-        for n, place in enumerate(found.places[:MOST_PLACES], 1)
-    ]
+    rows = []
+    for n, place in enumerate(found.places[:MOST_PLACES], 1):
+        sizes = (f"{place.wall:.1f} m", f"{2 * place.radius:.1f} m")
+        rows.append((str(n), whose(place), *sizes, signed(place.x), signed(place.y)))
     return [said, _table(rows, "places", ("place", "whose", "wall", "across", "x (m)", "y (m)"))]
 
 
@@ -170,16 +153,13 @@ def _proof(result: MergeResult, config: Any) -> str:
     state, measure = result.proof, measure_of(config)
     if state is None:
         return ""
-    rows = charts.proof_rows(state, measure)
-    head = ("on the search's raster", "turn", measure.unit or measure.name, "of the best")
-    return _section(
-        "Is there a better place?",
-        f"<p>{escape(words.proof_says(state, measure))} {state.nodes:,} blocks were bounded.</p>",
-        _figure(outcome.proof(state, measure), "The best value at every turn of map 2.")
-        if len(state.turns)
-        else "",
-        _table(rows, head=head) if rows else "",
-    )
+    parts = [f"<p>{escape(words.proof_says(state, measure))} {state.nodes:,} blocks were bounded.</p>"]
+    if len(state.turns):
+        parts.append(_figure(outcome.proof(state, measure), "The best value at every turn of map 2."))
+    if rows := charts.proof_rows(state, measure):
+        head = ("on the search's raster", "turn", measure.unit or measure.name, "of the best")
+        parts.append(_table(rows, head=head))
+    return _section("Is there a better place?", *parts)
 
 
 def _seen(inputs: MergeInputs) -> list[str]:
@@ -198,11 +178,8 @@ def _settings(result: MergeResult, config: Any, report: Mapping[str, Any]) -> li
         standard = method.defaults if method and type(method.defaults) is type(config) else config
         rows = [_setting(setting, standard) for setting in settings_of(config)]
         parts.append(_table(rows, "two", ("setting", "value")))
-    times = [
-        (STAGES.get(stage, stage), f"{1000 * seconds:.0f} ms") for stage, seconds in result.timings_s.items()
-    ]
-    parts.append(_table(times, "", ("time per stage", "")))
-    return parts
+    times = ((STAGES.get(stage, stage), f"{1000 * took:.0f} ms") for stage, took in result.timings_s.items())
+    return [*parts, _table(times, "", ("time per stage", ""))]
 
 
 def _setting(setting: Setting, standard: Any) -> Row:

@@ -33,18 +33,13 @@ FAINT: Rgb = (203, 209, 217)  # walls that are not the point
 
 def sources(ref: GridMap, mov: GridMap, seen: Sequence[Observation], met: Sequence[Encounter]) -> str:
     """Both maps as they came, with the sightings in them."""
-    views = []
-    for grid, more in (
-        (ref, [o.observer.xy for o in seen] + [at.x_ref for at in met]),
-        (mov, [at.x_mov for at in met]),
-    ):
-        views.append(_fitted(np.vstack([known_corners(grid), *more]), PAIR, 170.0, 420.0))
+    in_ref = [o.observer.xy for o in seen] + [at.x_ref for at in met]
+    marks = ((ref, in_ref), (mov, [at.x_mov for at in met]))
+    views = [_fitted(np.vstack([known_corners(grid), *at]), PAIR, 170.0, 420.0) for grid, at in marks]
     high = max(high for _, high in views)
     sheet = SvgCanvas(high + 22, FULL)
-    colours, names = (
-        (LIGHT.ref, LIGHT.mov),
-        ("map 1, of the robot that saw", "map 2, of the robot that was seen"),
-    )
+    colours = (LIGHT.ref, LIGHT.mov)
+    names = ("map 1, of the robot that saw", "map 2, of the robot that was seen")
     for k, grid in enumerate((ref, mov)):
         x = k * (PAIR + BETWEEN)
         rect = _widened(views[k][0], PAIR / high)
@@ -73,14 +68,12 @@ def sources(ref: GridMap, mov: GridMap, seen: Sequence[Observation], met: Sequen
 
 def overlay(result: MergeResult, seen: Sequence[Observation]) -> str:
     """Both maps under the transform: whose wall it is, where they agree, where they contradict."""
-    fusion = result.fusion
-    cells = fusion.ref_cells, fusion.mov_cells
-    walls = cells[0] >= OCCUPIED_FROM, cells[1] >= OCCUPIED_FROM
-    free = is_free(cells[0]), is_free(cells[1])
-    plot = _merged_plot(fusion, *wall_masks(walls, free, LIGHT))
-    o, at = seen[0], result.encounters[0]
+    ref, mov = result.fusion.ref_cells, result.fusion.mov_cells
+    walls, free = (ref >= OCCUPIED_FROM, mov >= OCCUPIED_FROM), (is_free(ref), is_free(mov))
+    plot = _merged_plot(result.fusion, *wall_masks(walls, free, LIGHT))
+    o = seen[0]
     robot(plot, o.observer.xy, o.observer.theta, LIGHT.ref)
-    there = result.T_ref_mov.apply(at.x_mov)
+    there = result.T_ref_mov.apply(result.encounter.x_mov)
     heading = None if o.observed_heading is None else o.observed_heading + result.T_ref_mov.theta
     robot(plot, there, heading, LIGHT.mov)
     _name(plot, o.observer.xy, "robot 1", LIGHT.ref)
@@ -95,8 +88,7 @@ def difference(result: MergeResult, found: Contradictions) -> str:
     walls = np.maximum(fusion.ref_cells, fusion.mov_cells) >= OCCUPIED_FROM
     plot = _merged_plot(fusion, (walls, FAINT), (found.ref_only, LIGHT.ref), (found.mov_only, LIGHT.mov))
     px = plot.wide / (plot.across[1] - plot.across[0])
-    listed = list(enumerate(found.places[:MOST_PLACES], 1))
-    for n, place in reversed(listed):  # the largest on top
+    for n, place in reversed([*enumerate(found.places[:MOST_PLACES], 1)]):  # the largest on top
         x, y = plot.one(place.x, place.y)
         r = max(10.0, (place.radius + 0.25) * px)
         plot.sheet.dot(x, y, r, None, "#fff", width=4)
@@ -107,8 +99,9 @@ def difference(result: MergeResult, found: Contradictions) -> str:
     chips = (
         ("map 1 alone, where map 2 saw floor", LIGHT.ref),
         ("map 2 alone, where map 1 saw floor", LIGHT.mov),
+        ("other walls", FAINT),
     )
-    return _finish(plot, (*chips, ("other walls", FAINT)), "Where the maps contradict each other")
+    return _finish(plot, chips, "Where the maps contradict each other")
 
 
 def proof(state: ProofState, measure: ObjectiveLabel) -> str:
@@ -122,12 +115,13 @@ def proof(state: ProofState, measure: ObjectiveLabel) -> str:
     plot.axes(
         "turn of map 2 (°), the whole circle", measure.row, (-180, -90, 0, 90, 180), ticks(*chart.up, 4)
     )
-    entries = [
+    entries = (
         ("ceiling: nothing is better", LIGHT.margin, "line"),
         ("best that was met", LIGHT.particle, "line"),
-    ]
-    entries += [("below this nothing was looked for", LIGHT.rival, "line"), ("rivals", LIGHT.rival, "dot")]
-    entries.append(("optimum" if state.proven else "best so far", LIGHT.answer, "dot"))
+        ("below this nothing was looked for", LIGHT.rival, "line"),
+        ("rivals", LIGHT.rival, "dot"),
+        ("optimum" if state.proven else "best so far", LIGHT.answer, "dot"),
+    )
     after = 50.0
     for words, colour, shape in entries:
         after = sheet.chip(after, 244, colour, words, shape)

@@ -22,7 +22,6 @@ from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.decision import Outcome
 from algorithms.verdict.performance_index import performance_index
-from algorithms.verdict.ranking import Weighed
 from app.drawing import grid_pixels as render
 from app.drawing.palette import LIGHT
 from app.model.merge_inputs import MergeInputs
@@ -53,9 +52,8 @@ def report_of(
 ) -> dict[str, Any]:
     """What report.json says: metres and radians; a number that is not finite is null.
 
-    config : the settings that were used
-    load_s : seconds spent on reading the maps
-    inputs : the files it was made from, as the user named them
+    load_s   : seconds spent on reading the maps
+    inputs   : the files it was made from, as the user named them
     warnings : what is odd about how the maps were read
     """
     found = {
@@ -66,26 +64,29 @@ def report_of(
         "proven_optimal": result.proven_optimal,
         "timings_s": {"load": load_s, **result.timings_s},
         "proof": proof_of(result),
-        "answers": [_answer(weighed) for weighed in result.weighed],
+        "answers": [
+            {
+                "T_ref_mov": asdict(weighed.T_ref_mov),
+                "score": weighed.score,
+                "quantities": weighed.quantities,
+                "deviations": weighed.deviations,
+                "evidence": weighed.evidence,
+            }
+            for weighed in result.weighed
+        ],
         "performance_index_at_estimate": performance_index(result.fusion),
     }
     return _report(found, result.method, result.seed, config, load_s, inputs, warnings)
 
 
-def report_of_no_answer(
-    refusal: NoAnswerError,
-    method: str,
-    seed: int,
-    config: Any = None,
-    load_s: float = 0.0,
-    inputs: Mapping[str, str] | None = None,
-    warnings: Sequence[str] = (),
-) -> dict[str, Any]:
+def report_of_no_answer(refusal: NoAnswerError, method: str, seed: int, *about: Any) -> dict[str, Any]:
     """What report.json says where the method found no transform: the keys of ``report_of``, null where
     there is nothing to say.
+
+    about : config, load_s, inputs and warnings of ``report_of``
     """
     verdict = {"accepted": False, "outcome": Outcome.REFUSED, "probability": 0.0, "reason": str(refusal)}
-    return _report({"verdict": verdict}, method, seed, config, load_s, inputs, warnings)
+    return _report({"verdict": verdict}, method, seed, *about)
 
 
 def _report(
@@ -115,17 +116,6 @@ def _report(
         "versions": versions(),
     }
     return {key: plain(value) for key, value in (report | found).items()}
-
-
-def _answer(weighed: Weighed) -> dict[str, Any]:
-    """An answer that may be right: its transform, its log-odds were it alone, and what it rests on."""
-    return {
-        "T_ref_mov": asdict(weighed.T_ref_mov),
-        "score": weighed.score,
-        "quantities": weighed.quantities,
-        "deviations": weighed.deviations,
-        "evidence": weighed.evidence,
-    }
 
 
 def proof_of(result: MergeResult) -> dict[str, Any] | None:
@@ -187,9 +177,8 @@ def result_files(
 ) -> dict[str, bytes]:
     """All files of a result by name, in the order they are to be written: the report is the last.
 
-    inputs, config : what was merged, and the settings that were used
-    with_merged    : also what a robot would act upon: the merged map and the transform
-    check          : is called now and then
+    with_merged : also what a robot would act upon: the merged map and the transform
+    check       : is called now and then
     """
     files: dict[str, bytes] = {}
     if with_merged:
@@ -205,10 +194,7 @@ def result_files(
 
 @dataclass(frozen=True, eq=False)
 class ResultFiles:
-    """A result with what it was made from; its files are made when they are first asked for.
-
-    config : the settings that were used
-    """
+    """A result, its inputs and settings; its files are made when they are first asked for."""
 
     result: MergeResult
     inputs: MergeInputs
@@ -230,12 +216,14 @@ class ResultFiles:
             self._made.update({OBSERVATION_FILE: observations_to_bytes(i.observations)} | files)
         return self._made
 
-    def archive(self) -> bytes:
-        packed = io.BytesIO()
-        with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as target:
-            for name, content in self.files.items():
-                target.writestr(name, content)
-        return packed.getvalue()
+
+def zip_bytes(files: Mapping[str, bytes]) -> bytes:
+    """A zip of files by their names."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as target:
+        for name, content in files.items():
+            target.writestr(name, content)
+    return packed.getvalue()
 
 
 def plain(value: Any) -> Any:

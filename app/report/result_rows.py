@@ -33,10 +33,6 @@ STAGES = {
 }
 
 
-def _share(index: float | None) -> str:
-    return "–" if index is None else f"{index:.1%}"
-
-
 def numbers(result: MergeResult, inputs: MergeInputs, config: Any = None) -> list[tuple[str, ...]]:
     """The transform with its standard deviations, its value, and the figures of merit."""
     T, verdict = result.T_ref_mov, result.verdict
@@ -54,18 +50,15 @@ def numbers(result: MergeResult, inputs: MergeInputs, config: Any = None) -> lis
         rows.append((measure.row, f"{result.value:{digits}}"))
     truth = inputs.truth.T_ref_mov if inputs.truth else None
     if truth is not None and inputs.ref is not None and inputs.mov is not None:
-        index = performance_index(result.fusion, fuse((inputs.ref, inputs.mov), (Pose2(), truth)))
-        rows.append(("eq. (23), over the true overlap", _share(index)))
-        apart, turned = pose_error(result.T_ref_mov, truth, result.encounter.x_mov)
-        right = inputs.truth.allows(apart, turned)
-        rows.append(
-            (
-                "error to the truth" if right else "✗ WRONG: error to the truth",
-                f"{apart:.3f} m, {degrees(turned):.2f}°",
-            )
-        )
+        true = fuse((inputs.ref, inputs.mov), (Pose2(), truth))
+        over, index = "over the true overlap", performance_index(result.fusion, true)
     else:
-        rows.append(("eq. (23), at the estimated T", _share(performance_index(result.fusion))))
+        over, index = "at the estimated T", performance_index(result.fusion)
+    rows.append((f"eq. (23), {over}", "–" if index is None else f"{index:.1%}"))
+    if truth is not None and inputs.ref is not None and inputs.mov is not None:
+        apart, turned = pose_error(result.T_ref_mov, truth, result.encounter.x_mov)
+        wrong = "" if inputs.truth.allows(apart, turned) else "✗ WRONG: "
+        rows.append((f"{wrong}error to the truth", f"{apart:.3f} m, {degrees(turned):.2f}°"))
     rows += [
         ("likely right", verdict_text.likelihood(verdict.probability)),
         ("acceptance index", f"{verdict.acceptance_index:.1%}"),
@@ -85,22 +78,17 @@ def numbers(result: MergeResult, inputs: MergeInputs, config: Any = None) -> lis
 
 def _rivals(result: MergeResult) -> list[tuple[str, ...]]:
     """The next best place, and the one that leaves the answer in doubt."""
-    verdict = result.verdict
-    if verdict.ambiguity is None:
+    if result.verdict.ambiguity is None:
         return []
-    rows: list[tuple[str, ...]] = [("next best place", verdict_text.odds_of_rival(verdict))]
-    if verdict_text.rival(result):
-        rows.append(("rival in doubt", verdict_text.rival(result)))
-    return rows
+    next_best, rival = verdict_text.odds_of_rival(result.verdict), verdict_text.rival(result)
+    return [("next best place", next_best), *([("rival in doubt", rival)] if rival else [])]
 
 
 def _moved(result: MergeResult) -> list[tuple[str, ...]]:
     """By how much the whole maps moved the search's answer, and what was taken for a robot."""
     rows: list[tuple[str, ...]] = []
-    if result.weighed and result.weighed[0].moved:
-        named = result.weighed[0]
-        off = words.apart(named.T_ref_mov, named.began, result)
-        rows.append(("moved by the whole maps", off))
+    if result.weighed and (named := result.weighed[0]).moved:
+        rows.append(("moved by the whole maps", words.apart(named.T_ref_mov, named.began, result)))
     if result.verdict.cleared_cells:
         rows.append(("cells of robots, cleared", f"{result.verdict.cleared_cells:,}"))
     return rows
@@ -129,19 +117,15 @@ def _deviations(result: MergeResult) -> tuple[float, float]:
 
 def times(result: MergeResult) -> list[tuple[str, ...]]:
     """Milliseconds per stage, and their sum."""
-    rows = [
-        (STAGES.get(stage, stage), f"{1000 * seconds:.1f}") for stage, seconds in result.timings_s.items()
-    ]
-    return [*rows, ("all", f"{1000 * sum(result.timings_s.values()):.1f}")]
+    seconds = result.timings_s | {"all": sum(result.timings_s.values())}
+    return [(STAGES.get(stage, stage), f"{1000 * took:.1f}") for stage, took in seconds.items()]
 
 
 def sighting_rows(o: Observation, at: Encounter) -> list[tuple[str, ...]]:
     """Where the robots were, and what the one measured of the other."""
+    x, y, turn = o.observer.x, o.observer.y, degrees(o.observer.theta)
     rows = [
-        (
-            "robot 1 in map 1",
-            f"{o.observer.x:.2f}, {o.observer.y:.2f} m, {degrees(o.observer.theta):.1f}°",
-        ),
+        ("robot 1 in map 1", f"{x:.2f}, {y:.2f} m, {turn:.1f}°"),
         ("robot 2 in map 2", f"{o.observed_x:.2f}, {o.observed_y:.2f} m"),
         ("range r", f"{o.range:.3f} ± {o.sigma_range:.3f} m"),
         ("bearing β", f"{degrees(o.bearing):.1f} ± {degrees(o.sigma_bearing):.1f}°"),

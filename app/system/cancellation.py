@@ -1,6 +1,4 @@
-"""Work that a person may leave: it looks up now and then, and an exception that no handler of errors
-catches ends it. Until then it has touched nothing.
-"""
+"""Work that a person may leave: it looks up now and then, and an exception that is no error ends it."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""Where static/ and sample_maps/ are, beside the packages in a checkout, inside them in a wheel; and the
-files that a browser gets.
-"""
+"""Files that ship with mapmeld: static/, sample_maps/ and those that a browser gets."""
 
 from __future__ import annotations
 
@@ -11,6 +9,7 @@ ALGORITHMS = _APP.parent / "algorithms"
 
 
 def _find(name: str) -> Path:
+    """A folder beside the packages in a checkout, inside them in a wheel."""
     installed = _APP / f"_{name}"
     return installed if installed.is_dir() else _APP.parent / name
 
@@ -34,7 +33,4 @@ def samples() -> dict[str, Path]:
     """The sample cases by the name a person reads in the menu; empty where none are installed."""
     from algorithms.files.case_folder import FIRST_MAP_FILE  # it loads what reads maps
 
-    root = sample_maps()
-    if not root.is_dir():
-        return {}
-    return {path.parent.name: path.parent for path in sorted(root.glob(f"*/{FIRST_MAP_FILE}"))}
+    return {path.parent.name: path.parent for path in sorted(sample_maps().glob(f"*/{FIRST_MAP_FILE}"))}

@@ -22,13 +22,12 @@ def watched(submit: Callable[..., Any]) -> Callable[..., Any]:
         def run() -> Any:
             try:
                 return callback(*args)
-            except MapMergeError as error:  # nobody's mistake here: a process that died, say
-                log.warning("what a control does could not be done: %s", type(error).__name__)
-                tell(args[0] if args else None, error)
             except Exception as error:
-                log.exception("what a control does ended in a bug")
+                if isinstance(error, MapMergeError):  # nobody's mistake here: a process that died, say
+                    log.warning("what a control does could not be done: %s", type(error).__name__)
+                else:
+                    log.exception("what a control does ended in a bug")
                 tell(args[0] if args else None, error)
-            return None
 
         return submit(run)
 
@@ -36,10 +35,7 @@ def watched(submit: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def tell(where: Any, error: Exception) -> None:
-    """Say in a tab that something of ours went wrong.
-
-    where : a client, or an event of one
-    """
+    """Say in a tab, given as its client or an event of it, that something of ours went wrong."""
     client = getattr(where, "client", where)
     if isinstance(client, viser.ClientHandle):
         client.add_notification("This did not work", words(error), auto_close_seconds=12.0, color="red")

@@ -22,10 +22,7 @@ class CellQuota:
         self._lock = Lock()
 
     def claim(self, who: object, cells: int) -> None:
-        """Have so many cells from now on, in place of those before.
-
-        raises : TooLargeError where it would be too many; what was held before is then still held
-        """
+        """Have so many cells in place of those before; raises TooLargeError, which changes nothing."""
         with self._lock:
             others = sum(self._held.values()) - self._held.get(who, 0)
             if others and others + cells > self._most:

@@ -98,11 +98,11 @@ class Uploads:
         self._lock = threading.Lock()
         self._endings: set[asyncio.Task[None]] = set()
 
-    def welcome(self, tab: int, recipient: Recipient) -> None:
+    def connect(self, tab: int, recipient: Recipient) -> None:
         """From now on this page is told of its tab's files."""
         self._recipients[tab] = recipient
 
-    def farewell(self, tab: int) -> None:
+    def disconnect(self, tab: int) -> None:
         """The tab has gone: nothing of its files stays."""
         self._recipients.pop(tab, None)
         self._leave(tab, "lost")
@@ -220,8 +220,7 @@ class Uploads:
         self._tell(arrival.tab)
 
     def _tell(self, tab: int) -> None:
-        recipient = self._recipients.get(tab)
-        if recipient is not None:
+        if (recipient := self._recipients.get(tab)) is not None:
             recipient.can_stop(any(arrival.tab == tab and arrival.long for arrival in self._coming))
 
     def _end_soon(self, connection: Any, why: str) -> None:

@@ -14,8 +14,7 @@ from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS, run
 from app.drawing.palette import DARK, LIGHT
 from app.model.merge_inputs import MergeInputs
-from app.report.replay.html_page import replay_html
-from app.report.replay.metadata import ReplayMetadata
+from app.report.replay.html_page import ReplayMetadata, replay_html
 from app.report.replay.recorder import record
 
 pytestmark = pytest.mark.browser

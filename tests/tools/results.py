@@ -11,6 +11,7 @@ from time import perf_counter
 
 import findings
 from findings import Finding, Swept
+from markdown_table import markdown
 from repository import ROOT
 
 from algorithms.files.atomic_write import write_files
@@ -26,7 +27,6 @@ from app.evaluation.method_comparison import ComparedRun, compare_methods, defau
 from app.evaluation.parameter_sweep import SweepPlan, in_order, point_keys, sweep
 from app.evaluation.sweep_figure import sweep_figure
 from app.evaluation.sweep_files import points_csv, runs_csv, times_csv
-from app.evaluation.table_files import markdown
 from app.jobs.executor import Executor
 from app.model.settings import with_value
 from app.system.hardware import machine

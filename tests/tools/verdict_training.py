@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from markdown_table import markdown
 from reliability_figure import reliability_figure
 
 from algorithms.common.errors import MapMergeError
@@ -36,7 +37,7 @@ from app.cli.executor_flags import executor_for
 from app.cli.progress_bar import bar
 from app.evaluation.crossed_pairs import Crossing, Pair, building_of, crossings, read_pair
 from app.evaluation.dataset_evaluation import rough_folders
-from app.evaluation.table_files import aligned, markdown
+from app.evaluation.table_files import aligned
 from app.jobs.executor import Executor, LostTask, Task
 from app.system import data_paths
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from algorithms.files.atomic_write import check_folder, write_files
+from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS
 from app.cli.argument_parser import Parser
 from app.cli.executor_flags import add_workers, executor_for
@@ -14,7 +15,7 @@ from app.cli.map_arguments import case_folder
 from app.cli.progress_bar import bar
 from app.cli.setting_flags import add_seed, method_name
 from app.evaluation.comparison_files import NOTES, case_files, contest_files, remarks, table_rows
-from app.evaluation.method_comparison import UnreadableCase, compare_methods, defaults_of, pairs_in
+from app.evaluation.method_comparison import compare_methods, defaults_of, pairs_in
 from app.evaluation.table_files import aligned
 
 USAGE = "DIR|CASE|SAMPLE [--methods A,B,…] [--rough] [--out DIR] [--jobs N | --scheduler ADDRESS]"
@@ -73,12 +74,11 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     n, pairs = pairs_in(root, args.rough)
     runs = compare_methods(pairs, configs, executor, args.seed)
     scores = list(bar(iterable=runs, total=n * len(configs), unit="merge"))
-    for line in (*aligned(table_rows(scores)), "", *NOTES, *remarks(scores)):
-        print(line)
+    print(*aligned(table_rows(scores)), "", *NOTES, *remarks(scores), sep="\n")
     if args.out is not None:
         files = contest_files(scores, configs, args.seed)
         for name, case in bar(iterable=pairs_in(root, args.rough)[1], total=n, unit="picture"):
-            if not isinstance(case, UnreadableCase):
+            if isinstance(case, Case):
                 files |= case_files(name, case, scores)
         write_files({args.out / name: data for name, data in files.items()})
         print(f"written to {args.out}: {', '.join(files)}")

@@ -51,17 +51,8 @@ of one of another building, all of which are to be refused.
 
 Exit status: 0 all cases ran, 1 some case failed with an error, 2 bad input, 130 interrupted."""
 
-COLUMNS = {
-    "group": "{}",
-    "n": "{}",
-    "right": "{}",
-    "fine": "{}",
-    "right_accepted": "{}",
-    "refused": "{}",
-    "wrong_accepted": "{}",
-    "errors": "{}",
-    "median_seconds": "{:.2f}",
-}
+COUNTS = ("group", "n", "right", "fine", "right_accepted", "refused", "wrong_accepted", "errors")
+COLUMNS = {**dict.fromkeys(COUNTS, "{}"), "median_seconds": "{:.2f}"}
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
@@ -119,17 +110,14 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         if args.both:
             print(f"{chr(10) if number else ''}{file}")
         rows = [{"group": group, **counts} for group, counts in totals[file].items()]
-        for line in (*aligned(text_rows(COLUMNS, rows)), *remarks(found)):
-            print(line)
-    print()
-    for line in calibration_lines(calibration):
-        print(line)
+        print(*aligned(text_rows(COLUMNS, rows)), *remarks(found), sep="\n")
+    print("", *calibration_lines(calibration), sep="\n")
     if wrong:
         accepted = sum(case.wrong_accepted for case in crossed)
         failed = sum(bool(case.error) for case in crossed)
-        print(f"wrong pairs: {len(crossed)}, accepted {accepted}, failed {failed}")
-        for line in remarks(crossed):
-            print(line)
+        print(
+            f"wrong pairs: {len(crossed)}, accepted {accepted}, failed {failed}", *remarks(crossed), sep="\n"
+        )
     return 1 if overall[OVERALL]["errors"] or any(case.error for case in crossed) else 0
 
 

@@ -17,8 +17,7 @@ from app.cli.map_arguments import add_reading, case_folder, read_inputs
 from app.cli.progress_bar import with_bar
 from app.cli.setting_flags import add_method, config_from
 from app.model.merge_inputs import MergeInputs
-from app.report.replay.html_page import replay_html
-from app.report.replay.metadata import ReplayMetadata
+from app.report.replay.html_page import ReplayMetadata, replay_html
 from app.report.replay.recorder import record
 
 USAGE = "{CASE | MAP1 MAP2 --observation FILE} --out FILE.html [options]"
@@ -83,6 +82,5 @@ def _inputs(args: argparse.Namespace, parser: Parser) -> MergeInputs:
         return MergeInputs.pair(ref, mov, observations, f"{args.map1.stem} + {args.map2.stem}")
     folder = case_folder(args.first, parser, "; for two maps give MAP1, MAP2 and --observation FILE")
     inputs = MergeInputs.of(read_case(folder))
-    if args.observation is None:
-        return inputs
-    return replace(inputs, observations=read_observations(args.observation))
+    seen = inputs.observations if args.observation is None else read_observations(args.observation)
+    return replace(inputs, observations=seen)

@@ -120,10 +120,7 @@ def everywhere(host: str) -> bool:
 
 
 def reach(host: str, access: Access, proxies: Sequence[str] = ()) -> str:
-    """Who may open the page, in words.
-
-    proxies : host names of proxies in front of it
-    """
+    """Who may open the page, in words; ``proxies`` are the names of those in front of it."""
     if not access.token:
         return "for this machine alone"
     if not is_local(host):
@@ -151,13 +148,10 @@ def _case(args: argparse.Namespace) -> Case | None:
         ref, mov, observations = read_inputs(args)
         return Case(f"{ref.name} + {mov.name}", ref, mov, observations, args.observation.name, None)
     known = samples()
-    if not known:
-        return None
-    return read_case(known.get(FIRST_SAMPLE) or next(iter(known.values())))
+    return read_case(known.get(FIRST_SAMPLE) or next(iter(known.values()))) if known else None
 
 
 def _has_display() -> bool:
     """Whether a browser window could open: a text browser in this terminal is not meant."""
-    if sys.platform in ("darwin", "win32"):
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    windows = sys.platform in ("darwin", "win32")
+    return windows or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -53,13 +53,8 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("--y", metavar="RANGE", help="a second one: all of its values with all of the first")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where the files go (default: sweep_CASE)")
     parser.add_argument("--rough", action="store_true", help="take the case's observation_rough.yaml")
-    parser.add_argument(
-        "--seeds",
-        type=whole_number(1, 1000),
-        default=SEEDS,
-        metavar="N",
-        help=f"merges per point (default: {SEEDS})",
-    )
+    hint = f"merges per point (default: {SEEDS})"
+    parser.add_argument("--seeds", type=whole_number(1, 1000), default=SEEDS, metavar="N", help=hint)
     add_workers(parser, None)
     add_method(parser, words, SWARM)
 
@@ -81,8 +76,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         total, done = len(plan.places()), done_before(case, plan, journal)
         if done:
             print(f"{name_of(plan)}: {done} of {total} points are known from before")
-        why = outdated(case, plan, journal)
-        if why:
+        if why := outdated(case, plan, journal):
             print(f"{name_of(plan)}: {why}")
         try:
             with bar(total=total, initial=done, unit="point") as shown:
@@ -97,8 +91,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         write_files({out / name: data for name, data in files.items()})
         written += files
         failed += sum(bool(point.failed) for point in points)
-        for line in _summary(plan, points):
-            print(line)
+        print(*_summary(plan, points), sep="\n")
     print(f"written to {out}: {', '.join(written)}")
     return 1 if failed else 0
 

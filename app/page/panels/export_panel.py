@@ -15,7 +15,7 @@ import viser
 from app.drawing.palette import LIGHT, QUIET
 from app.page.cancellable_task import CancellableTask, DownloadTask
 from app.page.panels.html_widgets import box, on_press
-from app.report.result_files import ACTED_UPON, ALONE, ARCHIVE, ResultFiles
+from app.report.result_files import ACTED_UPON, ALONE, ARCHIVE, ResultFiles, zip_bytes
 from app.report.ros_transform import publish_command
 from app.system.cancellation import Check
 
@@ -91,7 +91,7 @@ class ExportPanel:
     def _send(self, harvest: ResultFiles, name: str) -> None:
         def make(check: Check) -> bytes:
             files = harvest.make(check)
-            return harvest.archive() if name == ARCHIVE else files[name]
+            return zip_bytes(files) if name == ARCHIVE else files[name]
 
         self._deliver("Making the files: map, pictures and report.", name, make)
 

@@ -12,7 +12,7 @@ from app.drawing.browser_messages import BrowserMessages
 from app.evaluation import sweep_axes as axes
 from app.evaluation.checkpoint import Checkpoint
 from app.evaluation.parameter_sweep import SweepPlan, SweepPoint, done_before, sweep
-from app.evaluation.sweep_files import sweep_archive
+from app.evaluation.sweep_files import sweep_files
 from app.jobs.background_job import BackgroundJob, beside_the_page
 from app.jobs.executor import Executor
 from app.model.merge_inputs import MergeInputs
@@ -27,6 +27,7 @@ from app.page.research.other_result import sentence
 from app.page.research.sweep_panel import NOTHING, AxisFields, SweepPanel
 from app.page.research.sweep_request import labelled, planned, suggestion
 from app.page.run_controller import RunController
+from app.report.result_files import zip_bytes
 from app.web.browser_events import BrowserEvents
 
 Swept = tuple[MergeInputs, Case | None, SweepPlan | None, dict[int, SweepPoint], Checkpoint]
@@ -193,7 +194,7 @@ class SweepController:
     def _save(self) -> None:
         case, plan, points = self._case, self._plan, list(self._points.values())
         if case is not None and plan is not None and points:
-            self._deliver(MAKING, "sweep.zip", lambda check: sweep_archive(case, plan, points))
+            self._deliver(MAKING, "sweep.zip", lambda check: zip_bytes(sweep_files(case, plan, points)))
 
     # --- what the work tells ----------------------------------------------------------------------
 

@@ -1,6 +1,4 @@
-"""The charts of the stage at hand, as data for the player: what the dock of the page shows, the spectra left
-out.
-"""
+"""The charts of the stage at hand, as data for the player: those of the page, the spectra left out."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""A scene that keeps what the page's pictures are, instead of showing them: see map_layers.
-
-It answers to what a GridImage and the Ground ask of viser's scene, and to nothing else.
-"""
+"""A scene that keeps the pictures of GridImage and Ground instead of showing them: see map_layers."""
 
 from __future__ import annotations
 
@@ -73,12 +70,8 @@ class PictureScene:
         **_: Any,
     ) -> PictureHandle:
         """A picture with its middle at ``position`` of its frame; metres."""
-        picture = {
-            "frame": name.split("/")[2],
-            "data": data_uri(pixels),
-            "size": [round(wide, 4), round(high, 4)],
-            "thin": "free" not in name,
-        }
+        size, frame = [round(wide, 4), round(high, 4)], name.split("/")[2]
+        picture = {"frame": frame, "data": data_uri(pixels), "size": size, "thin": "free" not in name}
         handle = PictureHandle(len(self._handles), picture, FrameHandle(position, wxyz), self)
         self._handles.append(handle)
         self.shown.append(handle)

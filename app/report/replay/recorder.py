@@ -53,10 +53,10 @@ class Recorder(BrowserMessages):
         self.time = 0.0
         self.particles = PARTICLES
 
-    def extra(self, **told: Any) -> None:
+    def extra(self, **shown: Any) -> None:
         """What a replay shows beside the map."""
         with self._lock:
-            self._pending.update(told)
+            self._pending.update(shown)
 
     def send(self, message: dict[str, Any]) -> None:
         """Keep it as a frame of this time."""
@@ -66,15 +66,14 @@ class Recorder(BrowserMessages):
         if self._scene.ghost is not None:
             message["ghost"] = _compact(self._scene.ghost.pose)
         frame = {"t": round(self.time, 3)} | self._news("", message)
-        told = {name: items and [self._thinned(item) for item in items] for name, items in layers.items()}
-        drawn = self._news("layer ", told)
-        if drawn:
+        thinned = {name: items and [self._thinned(item) for item in items] for name, items in layers.items()}
+        if drawn := self._news("layer ", thinned):
             frame["layers"] = drawn
         self.frames.append(frame)
 
-    def _news(self, prefix: str, told: dict[str, Any]) -> dict[str, Any]:
+    def _news(self, prefix: str, values: dict[str, Any]) -> dict[str, Any]:
         news = {}
-        for key, value in told.items():
+        for key, value in values.items():
             value = _compact(value)
             if self._last.get(prefix + key, self) != value:
                 self._last[prefix + key] = news[key] = value
@@ -139,9 +138,8 @@ def record(steps: Iterable[Step], inputs: MergeInputs, config: Any) -> Recording
 def sizes(inputs: MergeInputs) -> list[list[str]]:
     """How large the maps are, a row each."""
     return [
-        [name, f"{grid.width} × {grid.height} cells of {grid.resolution:g} m"]
-        for name, grid in (("map 1", inputs.ref), ("map 2", inputs.mov))
-        if grid is not None
+        [f"map {number}", f"{grid.width} × {grid.height} cells of {grid.resolution:g} m"]
+        for number, grid in enumerate(inputs.grids, 1)
     ]
 
 

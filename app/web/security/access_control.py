@@ -1,7 +1,4 @@
-"""Who gets in: which names the page answers to, which pages may connect, and the token.
-
-Pure rules on what a request says; viser_server applies them.
-"""
+"""Who gets in: pure rules on names, origins and the token of a request; viser_server applies them."""
 
 from __future__ import annotations
 
@@ -74,10 +71,7 @@ class HttpRequest:
 
 @dataclass(frozen=True)
 class HttpReply:
-    """What is answered in place of the page.
-
-    body : HTML where it begins with "<", else a line of text
-    """
+    """What is answered in place of the page; its body is HTML where it begins with "<", else text."""
 
     status: int
     body: str = ""

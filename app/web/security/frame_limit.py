@@ -28,7 +28,7 @@ class FrameLimit:
         self._limit = RateLimit(RATE, BURST, clock)
         self._parts = 0  # of the message that is coming
 
-    def bears(self, frame: Frame) -> bool:
+    def allows(self, frame: Frame) -> bool:
         """Take in one more; whether an honest browser could have sent it."""
         first = frame.opcode is OP_TEXT or frame.opcode is OP_BINARY
         if first:
@@ -48,7 +48,7 @@ def bounded(gate: MessageFilter) -> type[ServerConnection]:
             take, allowance = self.protocol.recv_frame, FrameLimit()
 
             def recv_frame(frame: Frame) -> None:
-                if not allowance.bears(frame):
+                if not allowance.allows(frame):
                     gate.drop("frames")
                     self.protocol.data_to_send()  # a thousand answers to pings, which nobody hears any more
                     self.transport.abort()

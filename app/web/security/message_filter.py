@@ -35,10 +35,7 @@ def listen_unseen(uuid: str, yes: bool = True) -> None:
 
 
 class MessageFilter:
-    """Lets through what a browser of ours could have sent.
-
-    dropped : how often each kind of thing was not
-    """
+    """Lets through what a browser of ours could have sent; ``dropped`` counts what was not, by its kind."""
 
     def __init__(self, clock: Callable[[], float] = monotonic) -> None:
         self.dropped: Counter[str] = Counter()
@@ -101,20 +98,14 @@ class MessageFilter:
 
 
 class RateLimit:
-    """So many of something a second, and more at once after a while of silence.
-
-    rate, burst : a second, and at once
-    """
+    """So many of something a second (rate), and more at once (burst) after a while of silence."""
 
     def __init__(self, rate: float, burst: float, clock: Callable[[], float] = monotonic) -> None:
         self._rate, self._burst, self._clock = rate, burst, clock
         self._left, self._at = burst, clock()
 
     def take(self, weight: float, earned: float = 0.0) -> float:
-        """Take one that counts as so many; seconds that it comes too early.
-
-        earned : how many more than by the time that has passed
-        """
+        """Take one that counts as so many, after ``earned`` further ones; seconds that it is too early."""
         now = self._clock()
         self._left = min(self._burst, self._left + (now - self._at) * self._rate + earned) - weight
         self._at = now

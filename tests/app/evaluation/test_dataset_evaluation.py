@@ -235,7 +235,7 @@ def unanswering(monkeypatch):
         raise NoAnswerError("nothing in these maps is like anything else")
         yield
 
-    monkeypatch.setitem(methods.METHODS, METHOD, replace(methods.METHODS[METHOD], run=run))
+    monkeypatch.setitem(methods.METHODS, METHOD, replace(methods.METHODS[METHOD], search=run))
 
 
 def test_a_case_without_an_answer_is_refused_not_failed(unanswering, case_folder):

@@ -13,7 +13,6 @@ from algorithms.common.pose import Pose2
 from algorithms.methods.registry import METHODS
 from app.evaluation.method_comparison import (
     ComparedRun,
-    UnreadableCase,
     compare_methods,
     defaults_of,
     pairs_in,
@@ -63,7 +62,7 @@ def test_a_method_without_an_answer_is_refused_and_merged_nothing(small_case, st
         raise NoAnswerError("no corner of one map was found in the other")
         yield
 
-    monkeypatch.setitem(METHODS, QUICK, replace(METHODS[QUICK], run=lost))
+    monkeypatch.setitem(METHODS, QUICK, replace(METHODS[QUICK], search=lost))
     trial = run_method(small_case, QUICK, None, 0, true_fusion(small_case))
     assert (trial.T_ref_mov, trial.accepted, trial.right, trial.index) == (None, False, False, 0.0)
     assert "no corner" in trial.reason
@@ -76,7 +75,7 @@ def test_a_method_without_an_answer_is_refused_and_merged_nothing(small_case, st
 def test_what_cannot_be_run_or_read_costs_no_other(small_case):
     seen = replace(small_case.observations[0], bearing_back=None)
     told = outcomes(
-        [("bad", UnreadableCase("map2.pgm: is torn")), ("flat", replace(small_case, observations=(seen,)))],
+        [("bad", "map2.pgm: is torn"), ("flat", replace(small_case, observations=(seen,)))],
         (QUICK, "bilateral"),
     )
     assert told["bad", QUICK].reason == "map2.pgm: is torn"
@@ -104,7 +103,7 @@ def test_a_rival_that_finds_nothing_says_so_and_warns_of_nothing_on_the_terminal
 
 
 def test_a_bug_in_a_method_is_told_as_one(small_case, monkeypatch):
-    monkeypatch.setitem(METHODS, QUICK, replace(METHODS[QUICK], run=lambda *_args: iter([1 / 0])))
+    monkeypatch.setitem(METHODS, QUICK, replace(METHODS[QUICK], search=lambda *_args: iter([1 / 0])))
     assert "bug: ZeroDivisionError" in outcomes([("flat", small_case)])["flat", QUICK].reason
 
 
@@ -129,8 +128,8 @@ def test_pairs_of_a_folder_are_read_when_it_is_their_turn_and_a_broken_one_is_to
     assert n == 2
     found = dict(pairs)
     assert list(found) == ["bad/flat_2", "flat_1"]
-    assert isinstance(found["bad/flat_2"], UnreadableCase)
-    assert "map1.pgm" in found["bad/flat_2"].reason
+    assert isinstance(found["bad/flat_2"], str)
+    assert "map1.pgm" in found["bad/flat_2"]
     (_, rough), *_ = pairs_in(tmp_path / "cases" / "flat_1", rough=True)[1]
     assert rough.observation_file == "observation_rough.yaml"
 

@@ -67,7 +67,7 @@ from app.jobs.runner import RunCallbacks
 from app.jobs.warm_up import small_merge, warm_up
 from app.jobs.worker_pool import COMMON
 
-print(list(COMMON.bench().steps(replace(small_merge(), steps=warm_up), RunCallbacks())))
+print(list(COMMON.runner().steps(replace(small_merge(), steps=warm_up), RunCallbacks())))
 print(os.environ["PYTHONPATH"], "PYTHONSAFEPATH" in os.environ)
 """
 
@@ -89,7 +89,7 @@ def test_what_is_copied_loads_nothing_from_the_current_folder(tmp_path):
 @copied
 def test_where_what_is_copied_was_killed_a_merge_goes_on_and_the_next_process_has_another():
     pool = WorkerPool(most=2)
-    bench = pool.bench()
+    bench = pool.runner()
     steps = bench.steps(small_merge(), RunCallbacks())
     next(steps)
     (pid,) = pool.pids
@@ -98,7 +98,7 @@ def test_where_what_is_copied_was_killed_a_merge_goes_on_and_the_next_process_ha
     os.kill(parent, signal.SIGKILL)
     until(lambda: not Path(f"/proc/{parent}/exe").exists(), "its end")
     assert list(steps)[-1].detail.method
-    beside = pool.bench()
+    beside = pool.runner()
     assert list(beside.steps(small_merge(), RunCallbacks()))[-1].detail.method
     assert list(bench.steps(small_merge(), RunCallbacks()))[-1].detail.method
     for place in (bench, beside):

@@ -43,7 +43,7 @@ def workers() -> Iterator[WorkerPool]:
 
 @pytest.fixture
 def bench(workers):
-    bench = workers.bench()
+    bench = workers.runner()
     yield bench
     bench.close()
 
@@ -181,7 +181,7 @@ def test_a_run_that_is_left_half_way_hinders_no_other(bench, job):
 
 
 def test_two_tabs_at_one_worker_go_on_side_by_side(workers, bench, job):
-    other = workers.bench()
+    other = workers.runner()
     one, two = bench.steps(job, RunCallbacks()), other.steps(job, RunCallbacks())
     both = [step for pair in zip(one, two, strict=True) for step in pair]
     assert end(both[::2]).T_ref_mov == end(both[1::2]).T_ref_mov
@@ -192,7 +192,7 @@ def test_two_tabs_at_one_worker_go_on_side_by_side(workers, bench, job):
 
 
 def test_what_a_tab_had_is_let_go_of_when_it_goes(workers, bench, job):
-    other = workers.bench()
+    other = workers.runner()
     told(other, replace(job, ref=replace(job.ref), mov=replace(job.mov)))
     (held,) = told(bench, replace(job, steps=maps_held))
     other.close()
@@ -211,7 +211,7 @@ def maps_held() -> Iterator[Step]:
 
 def test_a_process_that_is_killed_is_told_of_and_the_next_run_has_another(workers, bench, job, caplog):
     before = end(told(bench, job))
-    neighbour = workers.bench()
+    neighbour = workers.runner()
     steps, beside = bench.steps(job, RunCallbacks()), neighbour.steps(job, RunCallbacks())
     next(steps), next(beside)
     (pid,) = workers.pids
@@ -378,7 +378,7 @@ def test_a_sighting_far_off_its_map_is_refused_as_it_is_here(bench, job):
 
 def test_closed_workers_die_in_silence(job, caplog):
     workers = WorkerPool(most=1)
-    bench = workers.bench()
+    bench = workers.runner()
     steps = bench.steps(job, RunCallbacks())
     next(steps)
     workers.close()

@@ -27,7 +27,7 @@ from algorithms.verdict.wall_evidence import Evidence
 from app.model.merge_inputs import MergeInputs
 from app.page.panels.html_widgets import box
 from app.report.html_report import report_page
-from app.report.result_files import ACTED_UPON, ALONE, ResultFiles, report_of
+from app.report.result_files import ACTED_UPON, ALONE, ResultFiles, report_of, zip_bytes
 from app.report.ros_transform import publish_command
 
 DEFAULTS = METHODS[DEFAULT_METHOD].defaults
@@ -181,7 +181,7 @@ def test_the_page_is_the_same_for_the_same_result(page, result, inputs):
 
 def test_the_archive_reads_back_to_what_was_merged(result, inputs, tmp_path):
     harvest = ResultFiles(result, inputs, DEFAULTS)
-    with zipfile.ZipFile(io.BytesIO(harvest.archive())) as packed:
+    with zipfile.ZipFile(io.BytesIO(zip_bytes(harvest.files))) as packed:
         assert set(packed.namelist()) == set(ALONE)
         assert set(ACTED_UPON) < set(ALONE)
         packed.extractall(tmp_path)

@@ -334,20 +334,20 @@ def test_pieces_as_browsers_send_them_may_be_any_number_at_any_speed():
     for _ in range(200):
         pieces = [Frame(Opcode.BINARY, bytes(4 * EARNS), fin=False)]
         pieces += [Frame(Opcode.CONT, bytes(size), fin=False) for size in (1, 2 * EARNS) * 400]
-        assert all(map(allowance.bears, pieces))
+        assert all(map(allowance.allows, pieces))
 
 
 def test_who_sends_few_empty_ones_may_go_on_and_no_message_has_more_than_enough():
     now = [0.0]
     allowance = FrameLimit(clock=lambda: now[0])
     borne = 0
-    while allowance.bears(Frame(Opcode.CONT, b"", fin=False)):
+    while allowance.allows(Frame(Opcode.CONT, b"", fin=False)):
         now[0] += 1.0
         borne += 1
     assert borne == MOST
     for _ in range(3 * MOST):
         now[0] += 1.0
-        assert not allowance.bears(Frame(Opcode.CONT, b"", fin=False))
+        assert not allowance.allows(Frame(Opcode.CONT, b"", fin=False))
 
 
 # --- what an upload may do --------------------------------------------------------------------------
@@ -414,7 +414,7 @@ def test_all_tabs_together_make_the_server_hold_no_more_than_it_bears(stock, our
     ]
     assert all("most" in file.hear() for file in files)
     last, refused = visitors[-1], []
-    ours.server.uploads.welcome(last.room.client.client_id, Recipient(lambda can: None, refused.append))
+    ours.server.uploads.connect(last.room.client.client_id, Recipient(lambda can: None, refused.append))
     before = ours.server.gate.dropped.copy()
     assert WireFile(last, "upload", "one more.pgm", b"", size=MAX_UPLOAD).over() == "refused"
     assert ours.server.gate.dropped - before == {"uploads of all": 1}

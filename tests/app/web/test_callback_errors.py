@@ -23,7 +23,6 @@ from app.model.run_state import RunState
 from app.page.application import make_server
 from app.page.page_state import PageState
 from app.page.panels.files_panel import read_case as real_read_case
-from app.report.result_files import ResultFiles
 from app.system.logging_setup import JsonFormatter, facts
 from app.web.callback_errors import OUT_OF_MEMORY, words
 
@@ -168,7 +167,7 @@ def test_files_that_cannot_be_made_are_told_of_and_can_be_asked_for_again(tab, m
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patch:
-        patch.setattr(ResultFiles, "archive", full)
+        patch.setattr("app.page.panels.export_panel.zip_bytes", full)
         tab.press("Download everything")
         until(lambda: tab.notices("This did not work"), "a word of it")
     assert not tab.files

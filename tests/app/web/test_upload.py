@@ -142,7 +142,7 @@ def test_stop_leaves_the_run_that_is_told_of_before_the_file_that_comes_meanwhil
 def test_a_file_that_takes_but_a_moment_cannot_be_stopped_and_moves_no_button(server, tab):
     told: list[bool] = []
     (number,) = server.get_clients()
-    server.uploads.welcome(number, Recipient(told.append, lambda error: None))
+    server.uploads.connect(number, Recipient(told.append, lambda error: None))
     file = WireFile(tab, IMAGE, "short.pgm", b"P5")
     file.part(2)
     assert file.over() == "arrived"

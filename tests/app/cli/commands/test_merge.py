@@ -186,7 +186,7 @@ def test_a_merge_without_an_answer_is_a_refusal_that_leaves_its_reason_alone(
     assert main(words) == 0
     capsys.readouterr()
     default = methods.DEFAULT_METHOD
-    monkeypatch.setitem(METHODS, default, replace(METHODS[default], run=without_an_answer))
+    monkeypatch.setitem(METHODS, default, replace(METHODS[default], search=without_an_answer))
     assert main([*words, "--force"]) == 1
     said = capsys.readouterr().out
     assert said.startswith("Refused: no two places of these maps are alike.\n")
@@ -209,14 +209,14 @@ def test_a_report_without_an_answer_has_the_keys_of_one_with(case_folder, tmp_pa
     main(words)
     usual = json.loads((tmp_path / "report.json").read_text())
     default = methods.DEFAULT_METHOD
-    monkeypatch.setitem(METHODS, default, replace(METHODS[default], run=without_an_answer))
+    monkeypatch.setitem(METHODS, default, replace(METHODS[default], search=without_an_answer))
     main(words)
     assert list(json.loads((tmp_path / "report.json").read_text())) == list(usual)
 
 
 def test_a_replay_of_no_answer_is_not_written(case_folder, tmp_path, capsys, monkeypatch):
     default = methods.DEFAULT_METHOD
-    monkeypatch.setitem(METHODS, default, replace(METHODS[default], run=without_an_answer))
+    monkeypatch.setitem(METHODS, default, replace(METHODS[default], search=without_an_answer))
     assert main(["replay", str(case_folder), "--out", str(tmp_path / "a.html")]) == 1
     assert "Refused: no two places" in capsys.readouterr().err
     assert not (tmp_path / "a.html").exists()

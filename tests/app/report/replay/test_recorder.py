@@ -28,8 +28,7 @@ from app.model.merge_inputs import MergeInputs
 from app.model.run_state import RunState
 from app.page.panels.export_panel import file_name
 from app.report.replay.chart_recorder import thinned
-from app.report.replay.html_page import as_script, replay_html
-from app.report.replay.metadata import ReplayMetadata
+from app.report.replay.html_page import ReplayMetadata, as_script, replay_html
 from app.report.replay.recorder import PICTURE, record
 
 

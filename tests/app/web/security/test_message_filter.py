@@ -159,7 +159,7 @@ def test_only_the_value_of_a_control_that_is_there_is_taken_and_the_rest_is_coun
 def test_whatever_is_sent_the_rate_holds_in_the_long_run(sent):
     """Whoever waits as long as is said gets no more through than a burst and the rate."""
     clock, passed = Clock(), 0
-    limit, began = RateLimit(clock), clock.now
+    limit, began = RateLimit(RATE, BURST, clock), clock.now
     for pause, weight in sent:
         clock.now += pause
         clock.now += limit.take(weight)
@@ -169,7 +169,7 @@ def test_whatever_is_sent_the_rate_holds_in_the_long_run(sent):
 
 def test_a_burst_waits_for_nothing_and_what_comes_after_it_for_its_share_of_a_second():
     clock = Clock()
-    limit = RateLimit(clock)
+    limit = RateLimit(RATE, BURST, clock)
     assert limit.take(int(BURST)) == 0
     assert limit.take(10) == pytest.approx(10 / RATE)
     clock.now += 20 / RATE
