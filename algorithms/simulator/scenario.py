@@ -10,7 +10,7 @@ import numpy as np
 
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
-from algorithms.observations.observation import Observation
+from algorithms.observations.observation import SIGMA_BEARING, SIGMA_RANGE, Observation
 from algorithms.simulator.buildings.building_types import build
 from algorithms.simulator.buildings.floor_plan import Building
 from algorithms.simulator.path_planning import PathPlanner
@@ -216,20 +216,14 @@ def pair_up(
 def case_of(pair: Pair, kind: str, source: str, rng: np.random.Generator, both_ways: bool) -> SimulatedCase:
     a, b = pair.observer, pair.observed
     true, believed = (a.true, b.true), (a.believed, b.believed)
-    rough = (ROUGH_RANGE, ROUGH_BEARING)
-    sighted = [
-        (
-            observe(true, believed, meeting, rng, both_ways=both_ways),
-            observe(true, believed, meeting, rng, rough, both_ways),
-        )
-        for meeting in pair.meetings
-    ]
+    good, bad = (SIGMA_RANGE, SIGMA_BEARING), (ROUGH_RANGE, ROUGH_BEARING)
+    seen = [[observe(true, believed, at, rng, s, both_ways) for s in (good, bad)] for at in pair.meetings]
     return SimulatedCase(
         name=f"{kind}_{a.body.name}_{b.body.name}".lower(),
         ref=a.grid,
         mov=b.grid,
-        observations=tuple(well for well, _ in sighted),
-        rough=tuple(badly for _, badly in sighted),
+        observations=tuple(well for well, _ in seen),
+        rough=tuple(badly for _, badly in seen),
         T_ref_mov=pair.T_ref_mov,
         overlap=pair.overlap,
         truth_rms=pair.truth_rms,
