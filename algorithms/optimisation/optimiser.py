@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from math import pi
+
+import numpy as np
 
 from algorithms.common.pose import FloatArray
+from algorithms.optimisation.search_box import SearchBox
 
 Value = Callable[[FloatArray], FloatArray]  # (P, 3) poses -> (P,) values, the higher the better
 
@@ -36,3 +40,11 @@ class SearchState:
 
 
 Optimiser = Callable[..., Iterator[SearchState]]
+
+
+def keep_inside(poses: FloatArray, box: SearchBox) -> FloatArray:
+    """Put poses that left the box back on its border; a box of a whole turn has none in theta."""
+    inside = np.clip(poses, box.low, box.high)
+    if box.high[2] - box.low[2] >= 2 * pi:
+        inside[:, 2] = box.low[2] + np.mod(poses[:, 2] - box.low[2], 2 * pi)
+    return inside

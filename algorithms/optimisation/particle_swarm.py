@@ -11,7 +11,7 @@ import numpy as np
 
 from algorithms.common.pose import FloatArray, wrap_angles
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
-from algorithms.optimisation.optimiser import SearchState, Value
+from algorithms.optimisation.optimiser import SearchState, Value, keep_inside
 from algorithms.optimisation.search_box import SearchBox
 
 SETTLED_CELLS = 0.1  # a swarm that stays within a tenth of a cell cannot tell two answers apart
@@ -76,9 +76,7 @@ def swarm(
         pulls = config.omega * np.stack([velocity, by_best, by_own])
         velocity = config.omega * (velocity + (by_best + by_own))  # eq. (21)
         moved = poses + velocity  # eq. (22)
-        poses = np.clip(moved, box.low, box.high)
+        poses = keep_inside(moved, box)
         at_border = (moved < box.low) | (moved > box.high)
-        if whole_turn:  # which has no border in theta
-            poses[:, 2] = box.low[2] + np.mod(moved[:, 2] - box.low[2], 2 * pi)
-            at_border[:, 2] = False
+        at_border[:, 2] &= not whole_turn
         velocity[at_border] = 0.0  # who runs into the border stands there, and can turn round at once
