@@ -17,55 +17,32 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # type checkers and editors see the names here; at run time each is loaded when it is used
-    from algorithms.common.errors import (
-        InputFileError,
-        MapMergeError,
-        NoAnswerError,
-        OutputError,
-        SettingError,
-        TooLargeError,
-    )
-    from algorithms.common.pose import Pose2
-    from algorithms.files.case_folder import Case, read_case
-    from algorithms.files.map_file import read_map, write_map
-    from algorithms.files.observation_file import read_observations, write_observations
-    from algorithms.maps.grid_map import GridMap
-    from algorithms.maps.map_fusion import Fusion
-    from algorithms.methods.merge_result import MergeResult
-    from algorithms.methods.registry import METHODS, Method, merge, run
-    from algorithms.methods.steps import Step
-    from algorithms.observations.observation import Observation
-    from algorithms.verdict.decision import Outcome, Verdict
+    from algorithms.common.errors import InputFileError as InputFileError
+    from algorithms.common.errors import MapMergeError as MapMergeError
+    from algorithms.common.errors import NoAnswerError as NoAnswerError
+    from algorithms.common.errors import OutputError as OutputError
+    from algorithms.common.errors import SettingError as SettingError
+    from algorithms.common.errors import TooLargeError as TooLargeError
+    from algorithms.common.pose import Pose2 as Pose2
+    from algorithms.files.case_folder import Case as Case
+    from algorithms.files.case_folder import read_case as read_case
+    from algorithms.files.map_file import read_map as read_map
+    from algorithms.files.map_file import write_map as write_map
+    from algorithms.files.observation_file import read_observations as read_observations
+    from algorithms.files.observation_file import write_observations as write_observations
+    from algorithms.maps.grid_map import GridMap as GridMap
+    from algorithms.maps.map_fusion import Fusion as Fusion
+    from algorithms.methods.merge_result import MergeResult as MergeResult
+    from algorithms.methods.registry import METHODS as METHODS
+    from algorithms.methods.registry import Method as Method
+    from algorithms.methods.registry import merge as merge
+    from algorithms.methods.registry import run as run
+    from algorithms.methods.steps import Step as Step
+    from algorithms.observations.observation import Observation as Observation
+    from algorithms.verdict.decision import Outcome as Outcome
+    from algorithms.verdict.decision import Verdict as Verdict
 
     __version__: str
-
-__all__ = [
-    "METHODS",
-    "Case",
-    "Fusion",
-    "GridMap",
-    "InputFileError",
-    "MapMergeError",
-    "MergeResult",
-    "Method",
-    "NoAnswerError",
-    "Observation",
-    "Outcome",
-    "OutputError",
-    "Pose2",
-    "SettingError",
-    "Step",
-    "TooLargeError",
-    "Verdict",
-    "__version__",
-    "merge",
-    "read_case",
-    "read_map",
-    "read_observations",
-    "run",
-    "write_map",
-    "write_observations",
-]
 
 _MODULES = {
     "algorithms.common.errors": (
@@ -89,6 +66,7 @@ _MODULES = {
     "algorithms.verdict.decision": ("Outcome", "Verdict"),
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
+__all__ = ["__version__", *_MODULE_OF]
 
 # ``mapmeld --help`` passes here on its way to mapmeld/__main__.py, and whoever only reads maps needs no
 # compiled kernels: so a name is loaded when it is first used. Hidden from type checkers, which would take

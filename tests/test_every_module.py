@@ -65,7 +65,6 @@ EXERCISED_BY = {
     "algorithms/simulator/test_hardships.py": {
         "algorithms.simulator.changes",
         "algorithms.simulator.odometry_drift",
-        "algorithms.simulator.training_pairs",
         "algorithms.simulator.wear",
     },
     "algorithms/simulator/test_simulator.py": {
@@ -88,9 +87,6 @@ EXERCISED_BY = {
     },
     "algorithms/spectra/test_hough_spectra.py": {
         "algorithms.spectra.candidates",
-    },
-    "algorithms/verdict/test_model_fit.py": {
-        "algorithms.verdict.calibration",
     },
     "algorithms/verdict/test_wall_evidence.py": {
         "algorithms.verdict.slipping_patches",

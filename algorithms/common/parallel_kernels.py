@@ -101,22 +101,19 @@ class _Kernel:
         return (self._loop or self._made())._numba_type_
 
     def _made(self) -> Any:
-        with _making:
-            if self._loop is None:
-                self._loop = self._make()
-            return self._loop
-
-    def _make(self) -> Any:
         from numba import njit
 
-        try:
-            loop: Any = njit(nogil=True, cache=True, fastmath=self._fastmath)(self._function)
-            loop._cache = _Kept(loop._cache)
-        except RuntimeError:  # nowhere to keep the compiled code: a read-only installation without a home
-            if _kept_only:
-                raise NotKeptError from None
-            loop = njit(nogil=True, fastmath=self._fastmath)(self._function)
-        return loop
+        with _making:
+            if self._loop is None:
+                try:
+                    loop: Any = njit(nogil=True, cache=True, fastmath=self._fastmath)(self._function)
+                    loop._cache = _Kept(loop._cache)
+                except RuntimeError:  # nowhere to keep compiled code: a read-only installation without a home
+                    if _kept_only:
+                        raise NotKeptError from None
+                    loop = njit(nogil=True, fastmath=self._fastmath)(self._function)
+                self._loop = loop
+            return self._loop
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:

@@ -70,11 +70,8 @@ def case_folders(root: Path) -> list[Path]:
         Path(folder) for folder, _, files in os.walk(root, onerror=closed) if FIRST_MAP_FILE in files
     )
     if not folders:
-        raise InputFileError(
-            root,
-            f"no folder in it holds a {FIRST_MAP_FILE}",
-            f"a case is a folder of {FIRST_MAP_FILE}, {SECOND_MAP_FILE} and {OBSERVATION_FILE}",
-        )
+        remedy = f"a case is a folder of {FIRST_MAP_FILE}, {SECOND_MAP_FILE} and {OBSERVATION_FILE}"
+        raise InputFileError(root, f"no folder in it holds a {FIRST_MAP_FILE}", remedy)
     return folders
 
 

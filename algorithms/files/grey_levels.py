@@ -48,7 +48,6 @@ def as_meant(shading: Shading, counts: Counts) -> tuple[Shading, str]:
     greys = set(np.flatnonzero(counts).tolist())
     if shading.negate or SAVER_UNKNOWN not in greys or not greys <= set(SAVER) or len(greys) == 1:
         return shading, ""
-    beside = _and(sorted(greys - {SAVER_UNKNOWN}))
     if shading.mode == "raw":
         return Shading(unknown_grey=shading.unknown_grey), (
             "mode raw takes a grey for per cent, and all above 100 for unknown, by which no cell would be a "
@@ -59,8 +58,8 @@ def as_meant(shading: Shading, counts: Counts) -> tuple[Shading, str]:
         return shading, ""
     return replace(shading, free_thresh=SAVER_FREE_THRESH), (
         f"grey 205, {_share(counts, [SAVER_UNKNOWN])} of its cells, would be free floor by free_thresh: "
-        f"{shading.free_thresh:g}, but beside {beside} it is the saver's unknown: read as unknown. "
-        f"Set free_thresh: {SAVER_FREE_THRESH:g} to say so"
+        f"{shading.free_thresh:g}, but beside {_and(sorted(greys - {SAVER_UNKNOWN}))} it is the saver's "
+        f"unknown: read as unknown. Set free_thresh: {SAVER_FREE_THRESH:g} to say so"
     )
 
 
@@ -73,14 +72,17 @@ def remarks(shading: Shading, counts: Counts, cells: CellArray) -> tuple[str, ..
     table, total = shading.table(), max(1, int(counts.sum()))
     wall, free = table >= OCCUPIED_FROM, (table >= FREE) & (table <= FREE_UP_TO)
     walls, floors = int(counts[wall].sum()), int(counts[free].sum())
-    if walls == 0 and floors == 0:
-        return (_neither(shading, counts, cells),)
-    for kind, number in (("a wall", walls), ("free floor", floors)):
-        if number == 0 and shading.mode != "raw" and set(np.flatnonzero(counts).tolist()) <= set(SAVER):
+    greys = set(np.flatnonzero(counts).tolist())
+    if walls == 0 and floors == 0 and len(greys) <= 1:
+        return (
+            f"no cell of it is known: all {cells.size:,} are unknown, so there is nothing to merge yet. Save "
+            "the map once its robot has driven",
+        )
+    if walls == 0 or floors == 0:
+        kind = "free floor" if walls else "a wall" if floors else "a wall or free floor"
+        if (walls or floors) and shading.mode != "raw" and greys <= set(SAVER):
             return (f"no cell of it is {kind} yet. Let its robot drive on, and save the map again",)
-        if number == 0:
-            about = _greys(counts, shading.negate)
-            return (f"no cell of it is {kind}, {about}: {_cure(shading, counts)}",)
+        return (f"no cell of it is {kind}, {_greys(counts, shading.negate)}: {_cure(shading, counts)}",)
     if walls > MOST_WALL * cells.size:
         flag = "take negate: 1 away" if shading.negate else "set negate: 1, if white is wall in it"
         return (f"more than half of it, {walls / cells.size:.0%} of its cells, is wall: {flag}",)
@@ -88,7 +90,9 @@ def remarks(shading: Shading, counts: Counts, cells: CellArray) -> tuple[str, ..
     if said:
         return (said,)
     unknown = cells.size - walls - floors
-    if unknown < NOTHING * cells.size and _edge_free(cells) > OPEN_EDGE:
+    edge = np.concatenate([cells[0], cells[-1], cells[:, 0], cells[:, -1]])
+    edge_free = float(np.mean((edge >= FREE) & (edge <= FREE_UP_TO)))
+    if unknown < NOTHING * cells.size and edge_free > OPEN_EDGE:
         return (
             f"none of its cells is unknown: {floors / total:.0%} are free floor, also where no robot ever "
             "was, so that free floor says nothing. Save it with unknown cells (grey 205 in mode trinary)",
@@ -113,18 +117,6 @@ def _third_grey(shading: Shading, counts: Counts, free: BoolArray) -> str:
     )
 
 
-def _neither(shading: Shading, counts: Counts, cells: CellArray) -> str:
-    """A remark on a map that has no wall and no floor."""
-    greys = np.flatnonzero(counts)
-    if len(greys) <= 1:
-        return (
-            f"no cell of it is known: all {cells.size:,} are unknown, so there is nothing to merge yet. Save "
-            "the map once its robot has driven"
-        )
-    about = _greys(counts, shading.negate)
-    return f"no cell of it is a wall or free floor, {about}: {_cure(shading, counts)}"
-
-
 def _greys(counts: Counts, negate: bool) -> str:
     """Which greys an image has: "its greys being 0, 205 and 254"."""
     greys = np.flatnonzero(counts).tolist()
@@ -132,17 +124,13 @@ def _greys(counts: Counts, negate: bool) -> str:
         return f"its one grey being {greys[0]}"
     if len(greys) <= 6:
         return f"its greys being {_and(greys)}"
-    return f"its greys lying at {' and '.join(_percent(part) for part in _parts(counts, negate))} occupied"
+    parts = (f"{100 * low:.0f}–{100 * high:.0f} %" for low, high in _parts(counts, negate))
+    return f"its greys lying at {' and '.join(parts)} occupied"
 
 
 def _and(greys: list[int]) -> str:
     """ "0, 205 and 254"; of one, that one."""
     return " and ".join(filter(None, (", ".join(map(str, greys[:-1])), str(greys[-1]))))
-
-
-def _percent(part: tuple[float, float]) -> str:
-    low, high = part
-    return f"{100 * low:.0f}–{100 * high:.0f} %"
 
 
 def _parts(counts: Counts, negate: bool) -> list[tuple[float, float]]:
@@ -192,12 +180,6 @@ def _cure(shading: Shading, counts: Counts) -> str:
         f"{between}, free_thresh: {shading.free_thresh:g} and occupied_thresh: {shading.occupied_thresh:g}. "
         f"Set occupied_thresh: {(below + wall_from) / 2:.2f} and free_thresh: {floor_to + 0.01:.2f}{mode}"
     )
-
-
-def _edge_free(cells: CellArray) -> float:
-    """Share of the image's edge that is free floor."""
-    edge = np.concatenate([cells[0], cells[-1], cells[:, 0], cells[:, -1]])
-    return float(np.mean((edge >= FREE) & (edge <= FREE_UP_TO)))
 
 
 def _share(counts: Counts, greys: list[int]) -> str:

@@ -15,6 +15,7 @@ from algorithms.maps.grid_map import MAX_CELLS, check_size
 
 # An uncompressed image with alpha at the largest size, and 1 MB for what stands before the pixels.
 MAX_IMAGE_BYTES = 4 * MAX_CELLS + 1_000_000
+SMALLER = "crop the map, or make it coarser"
 PNG, BMP = b"\x89PNG\r\n\x1a\n", b"BM"
 OS2 = b"\x0c"  # length of the oldest header of a BMP, with sides of two bytes
 # Pillow fills a BMP of run lengths byte by byte: 13 s for 100 million.
@@ -41,11 +42,8 @@ def read_pixels(source: str, stream: BinaryIO) -> tuple[GreyArray, GreyArray | N
         stream.seek(0, 2)
         n_bytes = stream.tell()
         if n_bytes > MAX_IMAGE_BYTES:
-            raise InputFileError(
-                source,
-                f"has {n_bytes / 1e6:,.0f} MB; at most {MAX_IMAGE_BYTES / 1e6:,.0f} are read",
-                "crop the map, or make it coarser",
-            )
+            found = f"has {n_bytes / 1e6:,.0f} MB; at most {MAX_IMAGE_BYTES / 1e6:,.0f} are read"
+            raise InputFileError(source, found, SMALLER)
         stream.seek(0)
         head = stream.read(HEAD)
         if is_netpbm(head):
@@ -58,14 +56,11 @@ def read_pixels(source: str, stream: BinaryIO) -> tuple[GreyArray, GreyArray | N
     except MapMergeError:
         raise
     except MemoryError as error:
-        raise InputFileError(
-            source, "needs more memory than there is", "crop the map, or make it coarser"
-        ) from error
+        raise InputFileError(source, "needs more memory than there is", SMALLER) from error
     except Exception as error:  # decoders raise nearly anything on a damaged file
         cause = (str(error) or type(error).__name__).splitlines()[0]
-        raise InputFileError(
-            source, f"cannot be decoded ({cause})", "the file is damaged; save or copy it anew"
-        ) from error
+        remedy = "the file is damaged; save or copy it anew"
+        raise InputFileError(source, f"cannot be decoded ({cause})", remedy) from error
 
 
 def _decode(source: str, stream: BinaryIO, head: bytes) -> tuple[GreyArray, GreyArray | None]:

@@ -74,8 +74,7 @@ def read_map(path: Path | str, unknown_grey: int | None = None) -> GridMap:
     path = Path(path)
     if path.suffix.lower() in IMAGE_SUFFIXES:
         yaml_path = _yaml_beside(path)
-        meta = _meta_of(yaml_path, unknown_grey)
-        return _read_image(path, meta, yaml_path.stem)
+        return _read_image(path, _meta_of(yaml_path, unknown_grey), yaml_path.stem)
     meta = _meta_of(path, unknown_grey)
     image_path = path.parent / meta.image
     if not image_path.is_file():
@@ -127,8 +126,7 @@ def write_map(yaml_path: Path | str, grid: GridMap) -> None:
     yaml_path = Path(yaml_path)
     if yaml_path.suffix.lower() not in YAML_SUFFIXES:
         raise OutputError(yaml_path, "is no name of a YAML file", "let it end in .yaml")
-    files = map_to_bytes(grid, yaml_path.stem)
-    image, text = files.values()
+    image, text = map_to_bytes(grid, yaml_path.stem).values()
     # The image first: a YAML file that is there names an image that is there.
     write_files({yaml_path.with_suffix(".pgm"): image, yaml_path: text})
 
@@ -169,11 +167,9 @@ def parse_meta(source: str, data: bytes) -> MapMeta:
     f = fields.parse(source, data, "a map's YAML file")
     image = f.text("image", "give the file name of the image")
     resolution = f.number("resolution", "give metres per pixel, e.g. 0.05")
-    if resolution <= 0:
-        raise f.error("resolution", f"is {resolution:g} m", "give a positive number, e.g. 0.05")
     if not FINEST <= resolution <= COARSEST:
-        remedy = f"give metres per pixel, {FINEST:g} to {COARSEST:g}, e.g. 0.05"
-        raise f.error("resolution", f"is {resolution:g} m", remedy)
+        span = f"metres per pixel, {FINEST:g} to {COARSEST:g}" if resolution > 0 else "a positive number"
+        raise f.error("resolution", f"is {resolution:g} m", f"give {span}, e.g. 0.05")
     x, y, yaw = f.pose("origin", (3,), "give [x, y, yaw] of the lower-left pixel; m, m, rad")
     negate = f.flag("negate", "give 0, or 1 where white is occupied")
     occupied = f.number("occupied_thresh", "give a number in [0, 1], e.g. 0.65")
@@ -209,11 +205,8 @@ def _yaml_beside(image_path: Path) -> Path:
             return yaml_path
     with _open(image_path):  # without it no YAML file would help
         pass
-    raise InputFileError(
-        image_path,
-        f"there is no {image_path.stem}.yaml beside it",
-        "give the map's YAML file, or the resolution of the image",
-    )
+    found = f"there is no {image_path.stem}.yaml beside it"
+    raise InputFileError(image_path, found, "give the map's YAML file, or the resolution of the image")
 
 
 def _open(image_path: Path) -> BinaryIO:

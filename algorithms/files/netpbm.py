@@ -53,11 +53,8 @@ def read_header(source: str, head: bytes) -> Header:
     """The header at the start of the first HEAD bytes of a file; raises InputFileError."""
     found = _BITMAP.match(head) or _GREYMAP.match(head)
     if found is None:
-        raise InputFileError(
-            source,
-            "cannot be decoded (its width, height and white do not stand at its start)",
-            f"copy it anew, or {CONVERT}",
-        )
+        fault = "cannot be decoded (its width, height and white do not stand at its start)"
+        raise InputFileError(source, fault, f"copy it anew, or {CONVERT}")
     kind, width, height, maxval = (int(group or b"1") for group in found.groups())
     return Header(kind, width, height, maxval, found.end())
 
@@ -73,9 +70,7 @@ def read_netpbm(source: str, stream: BinaryIO, header: Header) -> GreyArray:
         return black
     colours = 3 if header.kind in (3, 6) else 1
     count = width * height * colours
-    body = (
-        _samples(source, _text(source, stream), maxval, count) if header.kind in TEXTS else stream.read(count)
-    )
+    body = _samples(source, stream, maxval, count) if header.kind in TEXTS else stream.read(count)
     if len(body) < count:
         raise _cut_off(source, header, len(body) // colours)
     if maxval != 255:
@@ -109,28 +104,23 @@ def _text(source: str, stream: BinaryIO) -> bytes:
     """The pixels of an image that is written as text, without the comments."""
     text = stream.read(MAX_TEXT_BYTES + 1)
     if len(text) > MAX_TEXT_BYTES:
-        raise InputFileError(
-            source, f"has more than {MAX_TEXT_BYTES / 1e6:,.0f} MB of pixels written as text", CONVERT
-        )
+        found = f"has more than {MAX_TEXT_BYTES / 1e6:,.0f} MB of pixels written as text"
+        raise InputFileError(source, found, CONVERT)
     return _COMMENTS.sub(b" ", text)
 
 
-def _samples(source: str, text: bytes, maxval: int, count: int) -> bytes:
+def _samples(source: str, stream: BinaryIO, maxval: int, count: int) -> bytes:
     """The first ``count`` samples of a text, or as many as there are."""
-    words = text.split(maxsplit=count)[:count]
+    words = _text(source, stream).split(maxsplit=count)[:count]
     if any(len(word) > 3 or not word.isdigit() for word in set(words)):
         raise InputFileError(source, "holds something else than numbers among its pixels", CONVERT)
     samples = np.array(words, dtype="S3").astype(np.int16)
     if samples.size and samples.max() > maxval:
-        raise InputFileError(
-            source, f"has a pixel of {samples.max()}, and says that its white is {maxval}", CONVERT
-        )
+        found = f"has a pixel of {samples.max()}, and says that its white is {maxval}"
+        raise InputFileError(source, found, CONVERT)
     return samples.astype(np.uint8).tobytes()
 
 
 def _cut_off(source: str, header: Header, pixels: int) -> InputFileError:
-    return InputFileError(
-        source,
-        f"is cut off: {header.width} x {header.height} pixels are announced, {pixels} are there",
-        "copy it anew",
-    )
+    found = f"is cut off: {header.width} x {header.height} pixels are announced, {pixels} are there"
+    return InputFileError(source, found, "copy it anew")

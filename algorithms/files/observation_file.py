@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import pi
 from pathlib import Path
+from textwrap import indent
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
@@ -25,9 +26,6 @@ OBSERVATION_FILE = "observation.yaml"
 ROUGH_OBSERVATION_FILE = "observation_rough.yaml"
 
 MOST_OBSERVATIONS = 64  # of one pair; their YAML stays far below what the parser takes
-
-OBSERVER_POSE = "give [x, y, yaw] of robot 1 in map 1; m, m, rad"
-OBSERVED_POSE = "give [x, y] or [x, y, yaw] of robot 2 in map 2; m, m, rad"
 
 
 def read_observations(path: Path | str) -> tuple[Observation, ...]:
@@ -56,14 +54,18 @@ def _observation(f: Fields) -> Observation:
     observed.refuse_unknown("pose")
     m = f.section("measurement", "add measurement: {range: m, bearing: rad}")
     m.refuse_unknown("range", "bearing", "sigma_range", "sigma_bearing", "bearing_back")
-    where = observed.pose("pose", (2, 3), OBSERVED_POSE)
+    seen_from = observer.pose("pose", (3,), "give [x, y, yaw] of robot 1 in map 1; m, m, rad")
+    where = observed.pose("pose", (2, 3), "give [x, y] or [x, y, yaw] of robot 2 in map 2; m, m, rad")
+    back = (
+        _bearing(m, "bearing_back", "give radians, or leave it out") if "bearing_back" in m.values else None
+    )
     distance = m.number("range", "give the distance of robot 2 from robot 1 in metres")
     if distance < 0:
         raise m.error("range", f"is {distance:g} m", "a distance cannot be negative")
     if distance > MOST_RANGE:
         raise m.error("range", f"is {distance:g} m", f"give metres; {MOST_RANGE:,.0f} m is the most")
     return Observation(
-        observer=Pose2(*observer.pose("pose", (3,), OBSERVER_POSE)),
+        observer=Pose2(*seen_from),
         observed_x=where[0],
         observed_y=where[1],
         observed_heading=where[2] if len(where) == 3 else None,
@@ -71,11 +73,7 @@ def _observation(f: Fields) -> Observation:
         bearing=_bearing(m, "bearing", "give the direction of robot 2 from robot 1's heading in radians"),
         sigma_range=positive_number(m, "sigma_range", "m", SIGMA_RANGE, SIGMA_RANGES),
         sigma_bearing=positive_number(m, "sigma_bearing", "rad", SIGMA_BEARING, SIGMA_BEARINGS),
-        bearing_back=(
-            _bearing(m, "bearing_back", "give radians, or leave it out")
-            if "bearing_back" in m.values
-            else None
-        ),
+        bearing_back=back,
     )
 
 
@@ -93,12 +91,10 @@ def observations_to_bytes(observations: Sequence[Observation]) -> bytes:
     """
     if not 1 <= len(observations) <= MOST_OBSERVATIONS:
         raise SettingError(f"a file holds 1 to {MOST_OBSERVATIONS} observations, not {len(observations)}")
-    lines: list[str] = []
-    for o in observations:
-        first, *rest = _lines(o)
-        several = len(observations) > 1
-        lines += [f"- {first}", *(f"  {line}" for line in rest)] if several else [first, *rest]
-    return ("\n".join(lines) + "\n").encode()
+    entries = ["\n".join(_lines(o)) for o in observations]
+    if len(entries) > 1:
+        entries = [f"- {indent(entry, '  ').lstrip()}" for entry in entries]
+    return ("\n".join(entries) + "\n").encode()
 
 
 def _lines(o: Observation) -> list[str]:

@@ -54,28 +54,24 @@ class Shading:
         """(256,) int8: the cell value of each grey. In float32, as Nav2 computes it: the last bit
         decides where a grey meets a threshold.
         """
-        cells = self._by_thresholds()
-        if self.unknown_grey is not None:
-            cells[self.unknown_grey] = UNKNOWN
-        return cells
-
-    def _by_thresholds(self) -> CellArray:
-        if self.mode == "raw":
-            grey = np.arange(256)
-            return np.where(grey <= OCCUPIED, grey, UNKNOWN).astype(np.int8)
         occ = np.arange(256, dtype=np.float32) / np.float32(255)
         if not self.negate:
             occ = np.float32(1) - occ
         occupied, free = np.float32(self.occupied_thresh), np.float32(self.free_thresh)
         cells = np.full(256, UNKNOWN, dtype=np.int8)
-        cells[occ >= occupied] = OCCUPIED
-        cells[occ <= free] = FREE
+        if self.mode == "raw":
+            cells[: OCCUPIED + 1] = np.arange(OCCUPIED + 1)
+        else:
+            cells[occ >= occupied] = OCCUPIED
+            cells[occ <= free] = FREE
         if self.mode == "scale":
             between = (occ > free) & (occ < occupied)
             spread = np.float32(self.occupied_thresh - self.free_thresh)
             percent = (occ[between] - free) / spread * np.float32(100)
             # Halves go up; in float64 the sum is exact.
             cells[between] = np.floor(percent.astype(np.float64) + 0.5).astype(np.int8)
+        if self.unknown_grey is not None:
+            cells[self.unknown_grey] = UNKNOWN
         return cells
 
 

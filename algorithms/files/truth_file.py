@@ -69,11 +69,8 @@ def read_truth(path: Path) -> Truth:
     if expected == "merge" or "T_ref_mov" in f.values:
         t = f.section("T_ref_mov", "add T_ref_mov: {x: m, y: m, theta: rad}, or expected: refuse")
         t.refuse_unknown("x", "y", "theta")
-        T_ref_mov = Pose2(
-            t.number("x", "give metres"),
-            t.number("y", "give metres"),
-            t.number("theta", "give radians"),
-        )
+        units = {"x": "metres", "y": "metres", "theta": "radians"}
+        T_ref_mov = Pose2(*(t.number(key, f"give {unit}") for key, unit in units.items()))
     usual = Truth(None, expected="refuse")
     tolerance = Fields(f.source, {}, "tolerance.")
     if "tolerance" in f.values:
@@ -93,19 +90,14 @@ def read_truth(path: Path) -> Truth:
 
 def truth_to_bytes(truth: Truth) -> bytes:
     """The content of a truth file; it reads back to an equal Truth."""
-    n = number_text
-    lines = []
-    if truth.T_ref_mov is not None:
-        T = truth.T_ref_mov
-        lines.append(f"T_ref_mov: {{x: {n(T.x)}, y: {n(T.y)}, theta: {n(T.theta)}}}")
-    lines.append(f"tolerance: {{distance: {n(truth.tolerance_m)}, angle: {n(truth.tolerance_rad)}}}")
-    if truth.overlap is not None:
-        lines.append(f"overlap: {n(truth.overlap)}")
-    if truth.truth_rms is not None:
-        lines.append(f"truth_rms: {n(truth.truth_rms)}")
-    lines.append(f"expected: {truth.expected}")
-    if truth.source:
-        lines.append(f"source: {quoted(truth.source)}")
-    if truth.licence:
-        lines.append(f"licence: {quoted(truth.licence)}")
-    return ("\n".join(lines) + "\n").encode()
+    n, T = number_text, truth.T_ref_mov
+    values = {
+        "T_ref_mov": T and f"{{x: {n(T.x)}, y: {n(T.y)}, theta: {n(T.theta)}}}",
+        "tolerance": f"{{distance: {n(truth.tolerance_m)}, angle: {n(truth.tolerance_rad)}}}",
+        "overlap": None if truth.overlap is None else n(truth.overlap),
+        "truth_rms": None if truth.truth_rms is None else n(truth.truth_rms),
+        "expected": truth.expected,
+        "source": truth.source and quoted(truth.source),
+        "licence": truth.licence and quoted(truth.licence),
+    }
+    return "".join(f"{key}: {value}\n" for key, value in values.items() if value).encode()

@@ -54,9 +54,8 @@ class _TextLoader(yaml.BaseLoader):
         node: yaml.ScalarNode = super().compose_scalar_node(anchor)
         half = HALVES.search(node.value)  # only an escape can write one
         if half:
-            raise yaml.composer.ComposerError(
-                None, None, f"a text holds half a character, U+{ord(half[0]):04X}", node.start_mark
-            )
+            problem = f"a text holds half a character, U+{ord(half[0]):04X}"
+            raise yaml.composer.ComposerError(None, None, problem, node.start_mark)
         return node
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
@@ -64,9 +63,8 @@ class _TextLoader(yaml.BaseLoader):
         for key_node, _ in node.value:
             key = str(key_node.value)
             if key in seen:
-                raise yaml.constructor.ConstructorError(
-                    None, None, f"the key {key} stands there twice", key_node.start_mark
-                )
+                problem = f"the key {key} stands there twice"
+                raise yaml.constructor.ConstructorError(None, None, problem, key_node.start_mark)
             seen.add(key)
         return super().construct_mapping(node, deep=deep)
 
@@ -183,27 +181,20 @@ def parse_entries(source: str, data: bytes, what: str, entry: str, most: int) ->
         raise InputFileError(source, found, f"give 1 to {most} {entry}s")
     for number, value in enumerate(values, 1):
         if not isinstance(value, dict):
-            raise InputFileError(
-                source,
-                f"{entry} {number} is {shown(value)}, not a mapping",
-                "give lines of the form key: value",
-            )
+            found = f"{entry} {number} is {shown(value)}, not a mapping"
+            raise InputFileError(source, found, "give lines of the form key: value")
     return [Fields(source, value, f"{entry} {number}: ") for number, value in enumerate(values, 1)]
 
 
 def _load(source: str, data: bytes, what: str) -> Any:
     if len(data) > MAX_YAML_BYTES:
-        raise InputFileError(
-            source,
-            f"has {len(data):,} bytes, which is too long for {what}",
-            "give the small YAML file, not the image",
-        )
+        found = f"has {len(data):,} bytes, which is too long for {what}"
+        raise InputFileError(source, found, "give the small YAML file, not the image")
     try:
         return yaml.load(data, Loader=_TextLoader)
     except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise InputFileError(
-            source, f"is not YAML ({_cause(error)})", f"give {what}, or mend the line"
-        ) from error
+        found = f"is not YAML ({_cause(error)})"
+        raise InputFileError(source, found, f"give {what}, or mend the line") from error
 
 
 def _mapping(source: str, values: Any, what: str) -> Fields:

@@ -30,7 +30,7 @@ from algorithms.verdict.wall_map import pooled
 
 SCALES = (0.5, 2.0, 0.8, 1.25, 0.4, 2.5)  # between cells of 0.02, 0.025, 0.04, 0.05 and 0.1 m
 PATIENCE = 2  # of the proof, in 10⁵ nodes: how long each change is tried
-MOST_CELLS = 2_000_000
+MOST_CELLS = 2_000_000  # of a map; a larger one is tried in coarser cells
 NO_SWARM = SwarmConfig(particles=10, iterations=1)  # what it finds has no influence on a proven answer
 
 Change = Callable[[GridMap, Observation], tuple[GridMap, Observation]]
@@ -91,8 +91,9 @@ def _causes(mov: GridMap) -> list[list[Cause]]:
         clause = f"with cells of {cell} m in place of {mov.resolution:.3g} m, map 2 agrees"
         cure = f"set resolution: {cell} in its YAML file"
         more = f"{cure}, and multiply its origin and where robot 2 stood by {factor:g}"
-        alone, all_of_it = _scaled(factor, frame=False), _scaled(factor, frame=True)
-        causes.append([Cause(clause, cure, alone), Cause(clause, more, all_of_it)])
+        causes.append(
+            [Cause(clause, cure, _scaled(factor, False)), Cause(clause, more, _scaled(factor, True))]
+        )
     return causes
 
 
@@ -103,7 +104,8 @@ def find_cause(problem: PairProblem, config: PipelineConfig) -> Iterator[TriedDe
     """
     remarks = " ".join(remarks_on((problem.ref, problem.mov)))
     causes = _causes(problem.mov)
-    coarse = replace(problem, ref=_coarse(problem.ref), mov=_coarse(problem.mov))
+    ref, mov = (pooled(grid, ceil(sqrt(grid.cells.size / MOST_CELLS))) for grid in (problem.ref, problem.mov))
+    coarse = replace(problem, ref=ref, mov=mov)
     total, number = sum(map(len, causes)), 0
     for alike in causes:
         agreeing: list[tuple[Verdict, Cause]] = []
@@ -120,12 +122,6 @@ def find_cause(problem: PairProblem, config: PipelineConfig) -> Iterator[TriedDe
             yield CauseDetail(f"{clause} on {share:.0%} of {wall:.0f} m of wall: {cause.cure}.")
             return
     yield CauseDetail(f"How the maps were read may be the cause. {remarks}" if remarks else "")
-
-
-def _coarse(grid: GridMap) -> GridMap:
-    """The map in no more cells than a few tries in a row can bear."""
-    factor = ceil(sqrt(grid.cells.size / MOST_CELLS))
-    return grid if factor < 2 else pooled(grid, factor)
 
 
 def _try(problem: PairProblem, cause: Cause, config: PipelineConfig) -> MergeResult | None:

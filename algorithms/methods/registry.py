@@ -17,6 +17,7 @@ from algorithms.methods.baselines import (
     mse_registration,
     phase_correlation,
 )
+from algorithms.methods.baselines.base import BaselineConfig
 from algorithms.methods.baselines.distance_image import PictureConfig
 from algorithms.methods.baselines.feature_detectors import (
     DetectorConfig,
@@ -98,9 +99,7 @@ METHODS: dict[str, Method] = {
         ),
         "paper",
     ),
-    "bilateral": Method(
-        bilateral.search, "Bilateral, eqs. (2), (3) alone", bilateral.BilateralConfig(), "paper"
-    ),
+    "bilateral": Method(bilateral.search, "Bilateral, eqs. (2), (3) alone", BaselineConfig(), "paper"),
     "smm-window": Method(
         spectra_method.search,
         "Spectra and window, no swarm",

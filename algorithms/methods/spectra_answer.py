@@ -49,10 +49,8 @@ def weigh_answers(
 
 def whole_maps_of(problem: PairProblem, config: PipelineConfig) -> WholeMaps:
     """Both maps as a whole, as these settings weigh them."""
-    window, robots = (
-        coupled_window(problem.encounters, config.window),
-        problem.robots(config.verdict.robot_size),
-    )
+    window = coupled_window(problem.encounters, config.window)
+    robots = problem.robots(config.verdict.robot_size)
     return make_whole_maps(problem.ref, problem.mov, robots, window, config.agreement.evidence)
 
 

@@ -40,7 +40,7 @@ from algorithms.optimisation.particle_swarm import settled_within, swarm
 from algorithms.optimisation.search_box import SearchBox, box_around
 from algorithms.optimisation.subcell_peak import climb_to_peak
 from algorithms.spectra.augmented_map import AugmentConfig, augment
-from algorithms.spectra.candidates import shift_candidates
+from algorithms.spectra.candidates import Candidate, shift_candidates
 
 GIVE_UP_AFTER = 15  # iterations
 GIVE_UP_BELOW = 0.5  # of the best value so far
@@ -119,15 +119,14 @@ def _known(value: float | None) -> float:
     return -np.inf if value is None else value
 
 
+def _answers(candidates: Sequence[Candidate], stopped: str) -> tuple[Answer, ...]:
+    return tuple(Answer(each.T_ref_mov, _known(each.value), stopped) for each in candidates)
+
+
 def refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Iterator[Detail]:
     """The optimiser on each of the best candidates in turn."""
     if config.refine.optimiser == "none":
-        yield AnswersDetail(
-            tuple(
-                Answer(candidate.T_ref_mov, _known(candidate.value), "not refined")
-                for candidate in found.candidates
-            )
-        )
+        yield AnswersDetail(_answers(found.candidates, "not refined"))
         return
     optimise = OPTIMISERS[config.refine.optimiser]
     settled = settled_within(found.objective.cell)
@@ -147,10 +146,7 @@ def refine(found: CandidatesDetail, config: PipelineConfig, seed: int) -> Iterat
             if state.stopped:
                 break
         answers.append(Answer(box.transform(state.best), state.best_value, state.stopped or ""))
-    answers += [
-        Answer(candidate.T_ref_mov, _known(candidate.value), "only looked at")
-        for candidate in found.candidates[config.refine.candidates :]
-    ]
+    answers += _answers(found.candidates[config.refine.candidates :], "only looked at")
     answers.sort(key=lambda answer: -answer.value)
     yield AnswersDetail(tuple(answers))
 

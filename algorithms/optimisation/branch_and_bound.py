@@ -165,14 +165,11 @@ def prove(
         search.single.keep(elsewhere(search.single.nodes, 0))
         search.open_again()
         proven, leading = True, search.single.best(least)
-    if not answers and search.empty:
+    if answers:
+        end = f"proven: {search.nodes:,} blocks bounded" if proven else "proven, but nothing speaks for it"
+        proven, leading = True, (-np.inf, None)
+        yield state(end)
+    elif search.empty:
         yield state("the window holds no transform of the lattice")
-    elif not answers:
-        yield state(f"no transform has a value above {worth:g}")
-    elif not proven:
-        proven = True
-        leading = (-np.inf, None)
-        yield state("proven, but nothing speaks for it")
     else:
-        leading = (-np.inf, None)
-        yield state(f"proven: {search.nodes:,} blocks bounded")
+        yield state(f"no transform has a value above {worth:g}")

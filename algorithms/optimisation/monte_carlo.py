@@ -28,15 +28,6 @@ def monte_carlo(
         if values[top] > best_value:
             best, best_value = poses[top], float(values[top])
         last = iteration == config.iterations - 1
-        samples = config.particles * config.iterations
-        stopped = f"all {samples} samples drawn" if last else None
-        yield SearchState(
-            iteration,
-            poses,
-            values,
-            poses.copy(),
-            values.copy(),
-            best.copy(),
-            best_value,
-            stopped,
-        )
+        stopped = f"all {config.particles * config.iterations} samples drawn" if last else None
+        own = poses.copy(), values.copy()
+        yield SearchState(iteration, poses, values, *own, best.copy(), best_value, stopped)

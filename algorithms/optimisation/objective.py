@@ -157,14 +157,10 @@ def make_objective(ref: AugmentedMap, mov: AugmentedMap, lookup: Lookup = Lookup
     corner = np.zeros(2)
     table = np.zeros((2 * PAD + 1, 2 * PAD + 1), dtype=np.float32)
     if len(ref.levels):
-        low_row, low_col = int(ref.rows.min()), int(ref.cols.min())
-        shape = (
-            int(ref.rows.max()) - low_row + 1 + 2 * PAD,
-            int(ref.cols.max()) - low_col + 1 + 2 * PAD,
-        )
-        corner = np.array([low_col, low_row], dtype=float)
-        table = np.zeros(shape, dtype=np.float32)
-        table[ref.rows - low_row + PAD, ref.cols - low_col + PAD] = ref.levels
+        row, col = ref.rows - ref.rows.min() + PAD, ref.cols - ref.cols.min() + PAD
+        corner = np.array([ref.cols.min(), ref.rows.min()], dtype=float)
+        table = np.zeros((int(row.max()) + 1 + PAD, int(col.max()) + 1 + PAD), dtype=np.float32)
+        table[row, col] = ref.levels
     side = Side(ref.grid, table, corner, mov.x_hat, mov.points - mov.x_hat, mov.levels)
     return Objective((side,), lookup)
 

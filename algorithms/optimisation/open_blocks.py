@@ -38,10 +38,9 @@ class OpenBlocks:
 
     def take(self, most: int) -> tuple[FloatArray, IntArray]:
         """The blocks with the highest bounds, taken out."""
-        if len(self.bounds) > most:
+        order = np.arange(len(self.bounds))
+        if len(order) > most:
             order = np.argpartition(-self.bounds, most - 1)
-        else:
-            order = np.arange(len(self.bounds))
         taken, left = order[:most], order[most:]
         out = self.bounds[taken], self.nodes[taken]
         self.bounds, self.nodes = self.bounds[left], self.nodes[left]
@@ -91,8 +90,7 @@ class BlockSearch:
     @property
     def empty(self) -> bool:
         """Whether nothing has been found in the window, and nothing is left to look at."""
-        blocks = (*self.open, *self.shut, self.single)
-        return not any(len(front.bounds) for front in blocks)
+        return not any(len(front.bounds) for front in (*self.open, *self.shut, self.single))
 
     def sector(self, nodes: IntArray, level: int) -> IntArray:
         """(P,) which sector of the circle blocks lie in."""

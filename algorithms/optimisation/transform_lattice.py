@@ -29,7 +29,6 @@ class TransformLattice:
 
     def __init__(self, objective: Objective, window: CoupledWindow) -> None:
         self.window = window
-        pivot_ref = window.x_ref[0]
         self.cell = max(side.grid.resolution for side in objective.sides)
         reaches = [
             float(np.linalg.norm(from_pivot(side, side.points, window), axis=1).max(initial=0.0))
@@ -37,16 +36,15 @@ class TransformLattice:
         ]
         self.reach = max(self.cell, *reaches)
         self.disc = window.k * sqrt(float(np.linalg.eigvalsh(window.covariances[0])[-1]))
-        finest = [side.grid.resolution for side in objective.sides]
+        finest = min(side.grid.resolution for side in objective.sides)
         block = 2**LEVELS
         self.turns = block * ceil(2 * pi * self.reach / self.cell / block)
         self.levels = LEVELS
-        while self.levels and self.spread(self.levels) > (RADII[-1] - 1) * min(finest):
+        while self.levels and self.spread(self.levels) > (RADII[-1] - 1) * finest:
             self.levels -= 1
         # whole blocks, and a transform right on the sighting: there is one in every window
         blocks = 2 * ceil(self.disc / (2**self.levels * self.cell) - 0.5) + 1
         self.side = max(1, blocks) * 2**self.levels
-        self._pivot_ref = pivot_ref
         # shifts along the ref grid's own axes: there a block of them is a square of its cells
         self.yaw = objective.sides[0].grid.origin.theta
 
@@ -81,7 +79,7 @@ class TransformLattice:
 
     def poses(self, coordinates: FloatArray) -> FloatArray:
         """(P, 3) x, y, theta of T_ref_mov from ``coordinates``; the angle wrapped."""
-        goes_to = coordinates[:, :2] @ rotation(self.yaw).T + self._pivot_ref
+        goes_to = coordinates[:, :2] @ rotation(self.yaw).T + self.window.x_ref[0]
         out = transforms_about(self.window.pivot, np.column_stack([goes_to, coordinates[:, 2]]))
         out[:, 2] = wrap_angles(out[:, 2])
         return out

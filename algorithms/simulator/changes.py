@@ -1,6 +1,4 @@
-"""What a floor plan leaves out: pillars before the walls; and another day, with doors shut and furniture
-moved.
-"""
+"""Another day in a building: doors are shut, furniture is moved."""
 
 from __future__ import annotations
 
@@ -17,9 +15,7 @@ from algorithms.simulator.portable_random import TURN, chance, uniform, whole
 LOOSE = 1.5  # metres; what is smaller than this each way and touches nothing is furniture
 TAKEN_AWAY = 0.35  # how likely a piece of furniture is gone
 SHUT = 0.3  # how likely a door is shut that nobody went through
-FROM_DOORS = 1.2  # metres from a jamb within which there is no pillar
 AROUND = 0.55  # metres around a robot's way in which nothing new may stand
-WALL_PER_PILLAR = 1.0  # m² of wall, as seen from above: one in 8 m of a wall 0.12 m thick
 FLOOR_PER_PIECE = 18.0  # m² of floor for each new piece that is tried
 
 
@@ -45,23 +41,6 @@ def rearranged(building: Building, way: FloatArray, rng: np.random.Generator) ->
         reach = (long + deep) / 2
         if clear(x, y, reach) and plan.is_empty(x - reach, y - reach, x + reach, y + reach):
             plan.turned_box(x, y, long, deep, TURN // 4 * whole(rng, 0, 1) + whole(rng, -300, 300))
-    return replace(building, surface=plan.cells)
-
-
-def with_pillars(building: Building, rng: np.random.Generator) -> Building:
-    """The building with pillars, radiators and cabinets before its walls, so that no two of its corridors are
-    quite alike.
-    """
-    plan = FloorPlan.of(building)
-    walls = np.argwhere(plan.cells == WALL)
-    jambs = building.doors.reshape(-1, 2)
-    for _ in range(int(len(walls) * building.resolution**2 / WALL_PER_PILLAR)):
-        row, col = walls[whole(rng, 0, len(walls) - 1)].tolist()
-        x, y = (col + 0.5) * building.resolution, (row + 0.5) * building.resolution
-        half, deep = uniform(rng, 0.1, 0.35), uniform(rng, 0.15, 0.3)
-        long, wide = (half, deep) if chance(rng, 0.5) else (deep, half)
-        if np.hypot(*(jambs - (x, y)).T).min(initial=np.inf) > FROM_DOORS:
-            plan.box(x - long, y - wide, x + long, y + wide)
     return replace(building, surface=plan.cells)
 
 

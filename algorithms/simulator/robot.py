@@ -23,14 +23,16 @@ from algorithms.simulator.wear import Wear, worn
 class Conditions:
     """What makes a robot's map differ from the floor plan, beside the noise of its scanner.
 
-    drift   : how far it goes astray
-    changed : doors are shut and furniture is moved since the floor plan was drawn
-    wear    : what happens to the finished map
+    drift      : how far it goes astray
+    changed    : doors are shut and furniture is moved since the floor plan was drawn
+    wear       : what happens to the finished map
+    resolution : of the map, metres per cell; None draws 0.05, seldom 0.04 or 0.06
     """
 
     drift: OdometryDrift = field(default_factory=OdometryDrift)
     changed: bool = False
     wear: Wear = field(default_factory=Wear)
+    resolution: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +42,6 @@ class RobotModel:
     purpose     : words that name its stream of random numbers
     turn, shift : its frame, T_robot_world without drift; ticks and (2,) metres
     resolution  : of its map; metres per cell
-    conditions  : under which it drives
     """
 
     name: str
@@ -50,7 +51,7 @@ class RobotModel:
     turn: int
     shift: FloatArray
     resolution: float
-    conditions: Conditions = field(default_factory=Conditions)
+    conditions: Conditions
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,30 +72,16 @@ class Robot:
     grid: GridMap
 
 
-def make_body(
-    name: str,
-    seed: int,
-    kind: str,
-    reach: float,
-    resolution: float | None,
-    conditions: Conditions | None = None,
-) -> RobotModel:
-    """A robot with a scanner and a frame of its own.
-
-    reach      : of the scanner; metres
-    resolution : of its map, metres per cell; None draws 0.05, seldom 0.04 or 0.06
-    conditions : under which it drives; None: the usual ones
-    """
+def make_body(name: str, seed: int, kind: str, reach: float, conditions: Conditions) -> RobotModel:
+    """A robot with a scanner, of ``reach`` metres, and a frame of its own."""
     rng = stream(seed, kind, name, "body")
     beams, field = pick(rng, ((540, 270.0), (540, 270.0), (720, 360.0), (360, 360.0)))
     lidar = Lidar(beams=beams, field=field, reach=reach, noise=uniform(rng, 0.012, 0.03))
     drawn = pick(rng, (0.05,) * 8 + (0.04, 0.06))
     turn = whole(rng, 0, TURN - 1)
     shift = snap(np.array([uniform(rng, -40.0, 40.0), uniform(rng, -40.0, 40.0)]))
-    purpose = (kind, name, "drive")
-    return RobotModel(
-        name, seed, purpose, lidar, turn, shift, resolution or drawn, conditions or Conditions()
-    )
+    resolution = conditions.resolution or drawn
+    return RobotModel(name, seed, (kind, name, "drive"), lidar, turn, shift, resolution, conditions)
 
 
 def drive(

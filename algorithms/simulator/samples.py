@@ -44,17 +44,17 @@ class Sample:
 
     def cases(self) -> tuple[SimulatedCase, ...]:
         """Let the three robots drive; the cases that ship."""
-        bent = Conditions(OdometryDrift(bend=self.bend))
-        scenario = simulate(
-            self.kind,
-            self.seed,
-            self.overlaps,
-            resolutions=self.resolutions,
-            both_ways=self.both_ways,
-            reach=self.reach,
-            conditions=(bent, Conditions(), Conditions()) if self.bend else None,
+        first, second, third = self.resolutions
+        conditions = (
+            Conditions(OdometryDrift(bend=self.bend), resolution=first),
+            Conditions(resolution=second),
+            Conditions(resolution=third),
         )
-        named = zip(self.names, scenario.cases, strict=False)
+        both_ways, reach = self.both_ways, self.reach
+        made = simulate(
+            self.kind, self.seed, self.overlaps, both_ways=both_ways, reach=reach, conditions=conditions
+        )
+        named = zip(self.names, made.cases, strict=False)
         return tuple(replace(case, name=name) for name, case in named)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
-from algorithms.observations.observation import Observation
+from algorithms.observations.observation import SIGMA_BEARING, SIGMA_RANGE, Observation
 from algorithms.simulator.buildings.building_types import build
 from algorithms.simulator.buildings.floor_plan import Building
 from algorithms.simulator.path_planning import PathPlanner
@@ -32,6 +32,7 @@ LEAST, MOST = 0.05, 0.6  # overlaps that are drawn where none is asked for
 TOLERANCE = 0.02  # an overlap this near to the one asked for is good enough
 LOOSE = 0.08  # the same where nobody asked: it saves most of the rounds
 ROUNDS = 6  # of choosing tours anew where the measured overlap is off
+USUAL = Conditions()
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,12 +93,11 @@ def simulate(
     seed: int,
     overlap: float | tuple[float, float] | None = None,
     *,
-    resolutions: tuple[float, float, float] | None = None,
     both_ways: bool | None = None,
     reach: float | None = None,
     sightings: int = 1,
     building: Building | None = None,
-    conditions: tuple[Conditions, Conditions, Conditions] | None = None,
+    conditions: tuple[Conditions, Conditions, Conditions] = (USUAL, USUAL, USUAL),
 ) -> Scenario:
     """Simulate three robots in a building: R2 sees R1, R3 sees R2.
 
@@ -109,15 +109,13 @@ def simulate(
     overlap : share of the smaller map's occupied cells that the other map has within 0.1 m, 0 … 1,
         of R2 → R1 and R3 → R2. Aimed at, not promised: ``SimulatedCase.overlap`` holds what was measured.
         Without it, drawn from 0.05 … 0.6.
-    resolutions : metres per cell of the maps of R1, R2, R3. Without it mostly 0.05, sometimes 0.04
-        or 0.06.
     both_ways : whether the observed robots measured a bearing back (``Observation.bearing_back``).
         Without it one scenario in four has it.
     reach : range of the lidars in metres. Without it drawn from 6 … 9.
     sightings : how often an observer sees the other robot, at places well apart; less often where the
         two meet less often. All else is the same for any number, the first sightings included.
     building : in which they drive. Without it that of the kind and the seed.
-    conditions : under which R1, R2 and R3 drive: drift, wear, furniture moved. Without it the usual ones.
+    conditions : under which R1, R2 and R3 drive: drift, wear, furniture moved, cells of the map.
 
     Returns
     -------
@@ -137,11 +135,7 @@ def simulate(
     asked = overlap if isinstance(overlap, tuple) else (overlap, overlap)
     near_1, near_2 = (LOOSE if a is None else TOLERANCE for a in asked)
     aim_1, aim_2 = (d if a is None else a for a, d in zip(asked, drawn, strict=True))
-    none = (None, None, None)
-    b1, b2, b3 = (
-        make_body(f"R{number}", seed, kind, reach, resolution, under)
-        for number, resolution, under in zip((1, 2, 3), resolutions or none, conditions or none, strict=True)
-    )
+    b1, b2, b3 = (make_body(f"R{n}", seed, kind, reach, under) for n, under in enumerate(conditions, 1))
     building = building or build(kind, seed)
     planner = PathPlanner(building)
     tour_planner = TourPlanner(building, planner, reach)
@@ -222,20 +216,14 @@ def pair_up(
 def case_of(pair: Pair, kind: str, source: str, rng: np.random.Generator, both_ways: bool) -> SimulatedCase:
     a, b = pair.observer, pair.observed
     true, believed = (a.true, b.true), (a.believed, b.believed)
-    rough = (ROUGH_RANGE, ROUGH_BEARING)
-    sighted = [
-        (
-            observe(true, believed, meeting, rng, both_ways=both_ways),
-            observe(true, believed, meeting, rng, rough, both_ways),
-        )
-        for meeting in pair.meetings
-    ]
+    good, bad = (SIGMA_RANGE, SIGMA_BEARING), (ROUGH_RANGE, ROUGH_BEARING)
+    seen = [[observe(true, believed, at, rng, s, both_ways) for s in (good, bad)] for at in pair.meetings]
     return SimulatedCase(
         name=f"{kind}_{a.body.name}_{b.body.name}".lower(),
         ref=a.grid,
         mov=b.grid,
-        observations=tuple(well for well, _ in sighted),
-        rough=tuple(badly for _, badly in sighted),
+        observations=tuple(well for well, _ in seen),
+        rough=tuple(badly for _, badly in seen),
         T_ref_mov=pair.T_ref_mov,
         overlap=pair.overlap,
         truth_rms=pair.truth_rms,

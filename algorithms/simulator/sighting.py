@@ -10,7 +10,7 @@ import scipy  # its parts are loaded where they are first used
 
 from algorithms.common.pose import FloatArray, Pose2, wrap_angle
 from algorithms.maps.grid_map import GridMap
-from algorithms.observations.observation import SIGMA_BEARING, SIGMA_RANGE, Observation
+from algorithms.observations.observation import Observation
 from algorithms.simulator.buildings.floor_plan import Building
 from algorithms.simulator.lidar import sees
 from algorithms.simulator.path_planning import Track
@@ -83,8 +83,8 @@ def observe(
     believed: tuple[Track, Track],
     at: RobotSighting,
     rng: np.random.Generator,
-    sigma: tuple[float, float] = (SIGMA_RANGE, SIGMA_BEARING),
-    both_ways: bool = False,
+    sigma: tuple[float, float],
+    both_ways: bool,
 ) -> Observation:
     """What is written down of an encounter.
 

@@ -65,22 +65,15 @@ def match_turns(
     first = hough_spectrum(ref, spectra.directions, step)
     second = hough_spectrum(mov, spectra.directions, step)
     correlation = correlate_turns(first, second)
-    turns: list[float] = []
-    strengths: list[float] = []
-    twins: list[bool] = []
+    size, ranked = len(correlation), []
     for peak in circular_peaks(correlation)[: candidates.peaks]:
-        offset = parabolic_offset(
-            float(correlation[peak - 1]),
-            float(correlation[peak]),
-            float(correlation[(peak + 1) % len(correlation)]),
-        )
-        turn = (peak + offset) * pi / len(correlation)
+        left, strength, right = correlation[[peak - 1, peak, (peak + 1) % size]].tolist()
+        turn = (peak + parabolic_offset(left, strength, right)) * pi / size
         for twin in (0.0, pi) if candidates.twins else (0.0,):
-            turns.append(wrap_angle(turn + twin))
-            strengths.append(float(correlation[peak]))
-            twins.append(twin > 0)
-    angles = np.arange(len(correlation), dtype=np.float64) * (pi / len(correlation))
-    return HoughMatch(angles, first, second, correlation, tuple(turns), tuple(strengths), tuple(twins))
+            ranked.append((wrap_angle(turn + twin), strength, twin > 0))
+    angles = np.arange(size, dtype=np.float64) * (pi / size)
+    turns, strengths, twins = zip(*ranked, strict=True)
+    return HoughMatch(angles, first, second, correlation, turns, strengths, twins)
 
 
 def circular_peaks(signal: FloatArray) -> list[int]:

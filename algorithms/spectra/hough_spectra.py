@@ -88,15 +88,8 @@ def hough_transform(augmented: AugmentedMap, directions: int, rho_step: float) -
     cosines, sines = np.cos(theta), np.sin(theta)
 
     def work(start: int, stop: int) -> None:
-        _vote(
-            x,
-            y,
-            augmented.levels,
-            cosines[start:stop],
-            sines[start:stop],
-            middle,
-            votes[start:stop],
-        )
+        rows = slice(start, stop)
+        _vote(x, y, augmented.levels, cosines[rows], sines[rows], middle, votes[rows])
 
     run_in_threads(work, directions, at_least=1 + 200_000 // (1 + len(x)))
     return votes
@@ -208,12 +201,11 @@ def match_shift(
 
 def fast_length(least: int) -> int:
     """The next length of which a Fourier transform is quick: without a prime factor above 11."""
-    size = least
     while True:
-        rest = size
+        rest = least
         for prime in (2, 3, 5, 7, 11):
             while rest % prime == 0:
                 rest //= prime
         if rest == 1:
-            return size
-        size += 1
+            return least
+        least += 1

@@ -60,7 +60,5 @@ def calibration_error(
 
 
 def brier_score(probabilities: FloatArray, right: BoolArray) -> float:
-    """Mean squared distance of the probabilities from 1 for what is right and 0 for what is not; NaN without
-    any.
-    """
+    """Mean squared distance of the probabilities from 1 for what is right, 0 for what is not; NaN of none."""
     return float(np.mean((probabilities - right) ** 2)) if len(probabilities) else np.nan

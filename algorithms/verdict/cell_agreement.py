@@ -30,8 +30,7 @@ class WallLookup:
     @cached_property
     def cells(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """(N,) rows and (N,) columns of the walls."""
-        rows, cols = where(self.grid.occupied)
-        return rows, cols
+        return where(self.grid.occupied)
 
     @cached_property
     def _table(self) -> CellAgreement:

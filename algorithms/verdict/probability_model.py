@@ -7,7 +7,7 @@ Every answer gets a score s = b + Σ w_k q_k. Of the answers that the search kno
 Without others this is plain logistic regression. Beyond a score of ``ENOUGH`` an answer fits as well as any,
 and is not held to be likelier than another one of which that is true as well: a twin with less wall in common
 halves the probability. The weights are those of ``probability_model.json``, which says what made them:
-``make verdict`` fits them to simulated pairs (``algorithms.verdict.model_fit``).
+``make verdict`` fits them to simulated pairs (``tests/tools/model_fit.py``).
 """
 
 from __future__ import annotations

@@ -95,13 +95,10 @@ def slip_patches(
 
 def _slip_all(at: FloatArray, sides: ByteArray, starts: IntArray, target: WallMap, out: FloatArray) -> None:
     level, facing, free = target.level, target.sides, target.grid.free
-    at, sides = np.ascontiguousarray(at), np.ascontiguousarray(sides)
+    at, sides, cell = np.ascontiguousarray(at), np.ascontiguousarray(sides), target.grid.resolution
 
     def work(start: int, stop: int) -> None:
-        _slip(
-            at, sides, starts[start : stop + 1], level, facing, free, target.grid.resolution,
-            out[start:stop],
-        )  # fmt: skip
+        _slip(at, sides, starts[start : stop + 1], level, facing, free, cell, out[start:stop])
 
     run_in_threads(work, len(out), at_least=4)
 
@@ -121,11 +118,11 @@ def _patches(place: FloatArray) -> tuple[IntArray, IntArray]:
 
 def _apart(found: FloatArray, middles: FloatArray) -> list[Apart]:
     """Patches that lie beside the other map: those which gain much agreeing wall by a long slip."""
-    out = []
-    for (wall, _, right, up, _, gained), (x, y) in zip(found.tolist(), middles.tolist(), strict=True):
-        if hypot(right, up) >= LEAST_APART and gained >= LEAST_WALL:
-            out.append(Apart(x, y, hypot(right, up), wall))
-    return out
+    return [
+        Apart(x, y, hypot(right, up), wall)
+        for (wall, _, right, up, _, gained), (x, y) in zip(found.tolist(), middles.tolist(), strict=True)
+        if hypot(right, up) >= LEAST_APART and gained >= LEAST_WALL
+    ]
 
 
 @kernel

@@ -119,10 +119,8 @@ class _Side:
         sides = sectors(facing, self._T.theta)
         seen, agreeing = np.zeros(len(at), dtype=np.bool_), np.zeros(len(at))
         contradicting = _look_up(at, sides, target.level, target.sides, target.grid.free, seen, agreeing)
-        self.agreeing, self.contradicting = (
-            float(agreeing.sum()) * source.metres,
-            contradicting * source.metres,
-        )
+        self.agreeing = float(agreeing.sum()) * source.metres
+        self.contradicting = contradicting * source.metres
         self._points, self._at, self._sides = points[seen], at[seen], sides[seen]
         self._facing, self._agreeing = facing[seen], agreeing[seen]
 

@@ -87,8 +87,7 @@ class WallMap:
 
 def make_wall_map(grid: GridMap) -> WallMap:
     """Make a map ready; some 5 ms for 500 × 500 cells."""
-    factor = int(COARSE / grid.resolution + 1e-9)
-    grid = pooled(grid, factor) if factor > 1 else grid
+    grid = pooled(grid, int(COARSE / grid.resolution + 1e-9))
     cell = grid.resolution
     rows, cols = where(grid.occupied)
     reach = max(1, round(AROUND / cell))
@@ -108,7 +107,12 @@ def make_wall_map(grid: GridMap) -> WallMap:
 
 
 def pooled(grid: GridMap, factor: int) -> GridMap:
-    """The map in cells ``factor`` times as wide; a cell is a wall where a part is, else free where one is."""
+    """The map in cells ``factor`` times as wide; a cell is a wall where a part is, else free where one is.
+
+    With a factor of 1 it is the map itself.
+    """
+    if factor <= 1:
+        return grid
     height, width = ceil(grid.height / factor), ceil(grid.width / factor)
     cells = np.full((height, width), UNKNOWN, dtype=np.int8)
     _pool(grid.cells, factor, cells)

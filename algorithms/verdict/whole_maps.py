@@ -8,7 +8,7 @@ and then on crisp ones again, by which bent maps come to lie in the middle of th
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil
@@ -28,6 +28,7 @@ from algorithms.optimisation.subcell_peak import STENCIL, paraboloid
 from algorithms.verdict.wall_evidence import Evidence, evidence
 from algorithms.verdict.wall_map import WallMap, make_wall_map, pooled
 
+Given = TypeVar("Given")
 Made = TypeVar("Made")
 
 CRISP, BLURRED = 0.1, 0.4  # metres; standard deviation of the distance between two drawings of one wall
@@ -126,12 +127,15 @@ class WholeMaps:
         return Pose2.from_array(transforms_about(pivot, at[None])[0])
 
     def _objective(self, blur: float, least_cell: float) -> Objective:
+        """Of walls in cells of at least that many metres, and in ``MOST_CELLS`` at most."""
         pairs = (self.ref, self.mov, False), (self.mov, self.ref, True)
-        first, second = _each(2, lambda n: self._side(*pairs[n], blur, least_cell))
-        return Objective((first, second), window=self.window, trust=self.trust)
+        sides = _each_on_a_core(lambda pair: self._side(*pair, blur, least_cell), pairs)
+        return Objective(tuple(sides), window=self.window, trust=self.trust)
 
     def _side(self, target: WallMap, source: WallMap, backward: bool, blur: float, least_cell: float) -> Side:
-        grid = _at_least(target.grid, least_cell)
+        grid = target.grid
+        coarser = int(least_cell / grid.resolution + 1e-9), ceil((grid.cells.size / MOST_CELLS) ** 0.5)
+        grid = pooled(grid, max(coarser))
         anchor = self.window.x_ref[0] if backward else self.window.x_mov[0]
         stride = max(1, ceil(len(source.points) / MOST_POINTS))
         points = source.grid.origin.apply(source.points[::stride])
@@ -153,23 +157,15 @@ def make_whole_maps(
     ref: GridMap, mov: GridMap, robots: Robots, window: CoupledWindow, trust: float
 ) -> WholeMaps:
     """Make both maps ready, each on a core; the rest as in WholeMaps."""
-    first, second = _each(2, lambda n: make_wall_map((ref, mov)[n]))
+    first, second = _each_on_a_core(make_wall_map, (ref, mov))
     return WholeMaps(first, second, robots, window, trust)
 
 
-def _each(count: int, make: Callable[[int], Made]) -> list[Made]:
-    """``make`` of 0, 1, …, each on a core."""
+def _each_on_a_core(make: Callable[[Given], Made], items: Sequence[Given]) -> list[Made]:
     made: dict[int, Made] = {}
 
     def work(start: int, stop: int) -> None:
-        for n in range(start, stop):
-            made[n] = make(n)
+        made.update((n, make(items[n])) for n in range(start, stop))
 
-    run_in_threads(work, count)
-    return [made[n] for n in range(count)]
-
-
-def _at_least(grid: GridMap, cell: float) -> GridMap:
-    """The map in cells of that size or more, and of ``MOST_CELLS`` at most."""
-    factor = max(1, int(cell / grid.resolution + 1e-9), ceil((grid.cells.size / MOST_CELLS) ** 0.5))
-    return grid if factor == 1 else pooled(grid, factor)
+    run_in_threads(work, len(items))
+    return [made[n] for n in range(len(items))]

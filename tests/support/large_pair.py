@@ -10,7 +10,7 @@ from algorithms.common.pose import FloatArray
 from algorithms.simulator.buildings.office import floor
 from algorithms.simulator.path_planning import PathPlanner
 from algorithms.simulator.portable_random import stream, ticks_of_degrees, whole
-from algorithms.simulator.robot import drive, make_body
+from algorithms.simulator.robot import Conditions, drive, make_body
 from algorithms.simulator.room_tours import TourPlanner
 from algorithms.simulator.scenario import SimulatedCase, case_of, pair_up
 
@@ -37,7 +37,7 @@ def simulate_large(cells: int = 4000, seed: int = 0) -> SimulatedCase:
     n = len(planner.stops)
     robots = []
     for name in ("R2", "R1"):
-        body = make_body(name, seed, "campus", reach, RESOLUTION)
+        body = make_body(name, seed, "campus", reach, Conditions(resolution=RESOLUTION))
         quarter = ticks_of_degrees(90) * whole(rng, 0, 3) + whole(rng, -270, 270)
         visits = sorted({whole(rng, 0, n - 1) for _ in range(VISITS)})
         tour = tour_planner.tour(visits, visits[0])

@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from math import hypot
 
 from matplotlib.figure import Figure
+from model_fit import Forecast
 
 from algorithms.verdict.calibration import Bin, calibration_error, reliability
-from algorithms.verdict.model_fit import Forecast
 from app.drawing.palette import LIGHT, css
 from app.evaluation.figure_style import COLOURS, MARKERS, figure_files
 

@@ -17,11 +17,11 @@ from chromium import find_chromium
 from driver import ARGUMENTS, Tab, settle
 from PIL import Image
 from playwright.sync_api import Browser, sync_playwright
+from training_pairs import training_pairs
 
 from algorithms.files.case_folder import Case, read_case
 from algorithms.files.map_file import map_to_bytes
 from algorithms.observations.observation import Observation
-from algorithms.simulator.training_pairs import training_pairs
 from app.page.application import make_server
 from app.system.data_paths import samples
 

@@ -19,7 +19,9 @@ from typing import Any
 
 import numpy as np
 from markdown_table import markdown
+from model_fit import Example, Forecast, cross_validated, fit, most_likely_wrong, predict
 from reliability_figure import reliability_figure
+from training_pairs import training_pairs
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2, pose_error
@@ -29,9 +31,7 @@ from algorithms.files.truth_file import Truth
 from algorithms.methods import registry as methods
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.refusal_causes import NO_SWARM
-from algorithms.simulator.training_pairs import training_pairs
 from algorithms.verdict.calibration import brier_score, calibration_error
-from algorithms.verdict.model_fit import Example, Forecast, cross_validated, fit, most_likely_wrong, predict
 from algorithms.verdict.probability_model import MODEL_FILE, VerdictModel
 from app.cli.executor_flags import executor_for
 from app.cli.progress_bar import bar

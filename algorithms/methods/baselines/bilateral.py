@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from dataclasses import dataclass
 
 from algorithms.methods.baselines.base import BaselineConfig, weigh_best
 from algorithms.methods.merge_result import Answer
@@ -14,13 +13,8 @@ from algorithms.observations.observation import bilateral_covariance, bilateral_
 from algorithms.observations.pair_problem import PairProblem
 
 
-@dataclass(frozen=True, kw_only=True)
-class BilateralConfig(BaselineConfig):
-    """Settings of the bilateral method: it has none but what follows the transform."""
-
-
 def search(
-    problem: PairProblem, config: BilateralConfig, seed: int, runner: StageRunner
+    problem: PairProblem, config: BaselineConfig, seed: int, runner: StageRunner
 ) -> Generator[Step, None, Found]:
     """Yield the steps of the bilateral merge of the first sighting.
 

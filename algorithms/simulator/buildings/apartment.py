@@ -80,11 +80,9 @@ def _rooms(rng: np.random.Generator, width: float, height: float, resolution: fl
         t = INNER / 2
         inside = (x0 + t, y0 + t, x1 - t, y1 - t)
         area = (x1 - x0) * (y1 - y0)
-        uses = (
-            ("living", "living", "meeting", "sleeping")
-            if area > 12
-            else ("sleeping", "study", "kitchen", "store")
-        )
+        uses = ("sleeping", "study", "kitchen", "store")
+        if area > 12:
+            uses = ("living", "living", "meeting", "sleeping")
         furnish(plan, rng, inside, "empty" if area < 5 else pick(rng, uses))
         if chance(rng, 0.15):
             boxes(plan, rng, inside)

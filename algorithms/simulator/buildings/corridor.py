@@ -16,12 +16,8 @@ def _side_room(plan: FloorPlan, rng: np.random.Generator, x: float, wall: float,
     low, high = sorted((wall, wall + up * deep))
     plan.outline(x, low, x + wide, high, INNER)
     passable = door(plan, rng, x + uniform(rng, 0.4, wide - 1.5), wall, (1, 0), (0, up), shut=0.1)
-    furnish(
-        plan,
-        rng,
-        (x + 0.1, low + 0.1, x + wide - 0.1, high - 0.1),
-        pick(rng, ("study", "store", "work")),
-    )
+    inside = (x + 0.1, low + 0.1, x + wide - 0.1, high - 0.1)
+    furnish(plan, rng, inside, pick(rng, ("study", "store", "work")))
     if passable:
         plan.stops.append((x + wide / 2, (low + high) / 2))
 
@@ -46,12 +42,8 @@ def corridor(shell: np.random.Generator, rng: np.random.Generator, resolution: f
         plan.box(x - 0.3 if x > left else x + 1, low, x + lobby + 0.3 if x == left else x + 1, high, AIR)
         plan.ring(x + lobby / 2, middle + 1.6, 0.0, 0.3)  # one pillar each, not turned with the rest
         plan.stops.append((x + lobby / 2, middle - 1.0))
-        furnish(
-            plan,
-            rng,
-            (x + 0.25, middle - lobby / 2 - 0.5, x + lobby - 0.25, middle + lobby / 2 + 0.5),
-            "living",
-        )
+        inside = (x + 0.25, middle - lobby / 2 - 0.5, x + lobby - 0.25, middle + lobby / 2 + 0.5)
+        furnish(plan, rng, inside, "living")
     pitch = uniform(rng, 3.4, 4.2)
     first, last = left + lobby + 0.8, right - lobby - 0.8 - DOOR
     for x in evenly(first, last, pitch):

@@ -32,18 +32,12 @@ def door(
     """
     far_x, far_y = x + DOOR * along[0], y + DOOR * along[1]
     deep_x, deep_y = 0.22 * abs(into[0]), 0.22 * abs(into[1])
-    cut = (
-        min(x, far_x) - deep_x,
-        min(y, far_y) - deep_y,
-        max(x, far_x) + deep_x,
-        max(y, far_y) + deep_y,
-    )
-    plan.box(*cut, what=0)
+    x0, y0 = min(x, far_x) - deep_x, min(y, far_y) - deep_y
+    x1, y1 = max(x, far_x) + deep_x, max(y, far_y) + deep_y
+    plan.box(x0, y0, x1, y1, what=0)
     plan.doors.append((x, y, far_x, far_y))
-    plan.keep_clear(
-        cut[0] - 0.7 * abs(into[0]), cut[1] - 0.7 * abs(into[1]),
-        cut[2] + 0.7 * abs(into[0]), cut[3] + 0.7 * abs(into[1]),
-    )  # fmt: skip
+    way_x, way_y = 0.7 * abs(into[0]), 0.7 * abs(into[1])
+    plan.keep_clear(x0 - way_x, y0 - way_y, x1 + way_x, y1 + way_y)
     if chance(rng, leafless):
         return True
     closed = chance(rng, shut)
@@ -68,9 +62,10 @@ def _along_a_wall(
             continue
         x = uniform(rng, x0 + gap, x1 - gap - wide)
         y = uniform(rng, y0 + gap, y1 - gap - deep)
-        x, y = (
-            (x, (y0 + gap, y1 - gap - deep)[side]) if side < 2 else ((x0 + gap, x1 - gap - wide)[side - 2], y)
-        )
+        if side < 2:
+            y = (y0 + gap, y1 - gap - deep)[side]
+        else:
+            x = (x0 + gap, x1 - gap - wide)[side - 2]
         if plan.is_clear(x + 0.02, y + 0.02, x + wide - 0.02, y + deep - 0.02):
             return x, y, x + wide, y + deep
     return None
@@ -84,10 +79,7 @@ def _in_the_room(
     if x1 - x0 < wide + 2 * aisle or y1 - y0 < deep + 2 * aisle:
         return None
     for _ in range(6):
-        x, y = (
-            uniform(rng, x0 + aisle, x1 - aisle - wide),
-            uniform(rng, y0 + aisle, y1 - aisle - deep),
-        )
+        x, y = uniform(rng, x0 + aisle, x1 - aisle - wide), uniform(rng, y0 + aisle, y1 - aisle - deep)
         if plan.is_clear(x - aisle / 2, y - aisle / 2, x + wide + aisle / 2, y + deep + aisle / 2):
             return x, y, x + wide, y + deep
     return None

@@ -58,29 +58,19 @@ def _room(plan: FloorPlan, rng: np.random.Generator, room: Rectangle, corridor_a
     if chance(rng, 0.07) and min(x1 - x0, y1 - y0) > 3.6:
         radius = min(x1 - x0, y1 - y0) / 2 - INNER
         plan.ring(*centre, radius, radius + 0.15)
-        plan.box(
-            centre[0] - DOOR / 2,
-            min(wall_y, centre[1]),
-            centre[0] + DOOR / 2,
-            max(wall_y, centre[1]),
-            AIR,
-        )
-        door(plan, rng, centre[0] - DOOR / 2, wall_y, (1, 0), (0, into), leafless=1.0)
+        x, (low, high) = centre[0] - DOOR / 2, sorted((wall_y, centre[1]))
+        plan.box(x, low, centre[0] + DOOR / 2, high, AIR)
+        door(plan, rng, x, wall_y, (1, 0), (0, into), leafless=1.0)
         plan.stops.append(centre)
         return
     at = uniform(rng, x0 + 0.25, max(x0 + 0.26, x1 - 0.25 - DOOR))
-    if chance(rng, 0.5):
-        passable = door(plan, rng, at, wall_y, (1, 0), (0, into))
-    else:
-        passable = door(plan, rng, at + DOOR, wall_y, (-1, 0), (0, into))
+    jamb, ahead = (at, 1) if chance(rng, 0.5) else (at + DOOR, -1)
+    passable = door(plan, rng, jamb, wall_y, (ahead, 0), (0, into))
     if chance(rng, 0.12):  # a glass front beside the door
         plan.box(x0 + 0.1, wall_y - 0.06, max(x0 + 0.1, at - 0.2), wall_y + 0.06, DARK)
     area = (x1 - x0) * (y1 - y0)
-    use = pick(
-        rng,
-        ("work", "work", "meeting", "study") if area > 16 else ("study", "work", "store", "empty"),
-    )
-    furnish(plan, rng, inside, use)
+    uses = ("work", "work", "meeting", "study") if area > 16 else ("study", "work", "store", "empty")
+    furnish(plan, rng, inside, pick(rng, uses))
     if passable:
         plan.stops.append(centre)
 

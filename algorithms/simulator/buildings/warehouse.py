@@ -21,16 +21,9 @@ def _rack(plan: FloorPlan, rng: np.random.Generator, x: float, y: float, bays: i
     for bay in range(bays):
         for slot in (0.2, 1.45):
             if chance(rng, 0.84):
-                in_x, in_y = (
-                    uniform(rng, -0.06, 0.1),
-                    y + bay * BAY + slot + uniform(rng, -0.06, 0.06),
-                )
-                plan.box(
-                    x + in_x,
-                    in_y,
-                    x + in_x + uniform(rng, 0.8, 1.0),
-                    in_y + uniform(rng, 0.8, 1.15),
-                )
+                left = x + uniform(rng, -0.06, 0.1)
+                low = y + bay * BAY + slot + uniform(rng, -0.06, 0.06)
+                plan.box(left, low, left + uniform(rng, 0.8, 1.0), low + uniform(rng, 0.8, 1.15))
 
 
 def warehouse(shell: np.random.Generator, rng: np.random.Generator, resolution: float = 0.025) -> Building:
@@ -48,21 +41,9 @@ def warehouse(shell: np.random.Generator, rng: np.random.Generator, resolution: 
     deep = min(dock - 2.2, uniform(rng, 2.6, 3.4))
     x_office = left if chance(rng, 0.5) else right - corner
     plan.outline(x_office, bottom, x_office + corner, bottom + deep, INNER)
-    door(
-        plan,
-        rng,
-        x_office + uniform(rng, 0.5, corner - 1.6),
-        bottom + deep,
-        (1, 0),
-        (0, -1),
-        shut=0.0,
-    )
-    furnish(
-        plan,
-        rng,
-        (x_office + 0.1, bottom + 0.2, x_office + corner - 0.1, bottom + deep - 0.1),
-        "work",
-    )
+    door(plan, rng, x_office + uniform(rng, 0.5, corner - 1.6), bottom + deep, (1, 0), (0, -1), shut=0.0)
+    office = (x_office + 0.1, bottom + 0.2, x_office + corner - 0.1, bottom + deep - 0.1)
+    furnish(plan, rng, office, "work")
     plan.stops.append((x_office + corner / 2, bottom + deep / 2))
     y_racks = bottom + dock
     for rack in range(racks):

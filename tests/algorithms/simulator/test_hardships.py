@@ -10,20 +10,20 @@ import pytest
 from drawn import drawn_map
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from training_pairs import FROM, TO, training_pairs, with_pillars, wrongly_seen
 
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN
 from algorithms.observations.observation import encounter
 from algorithms.simulator.buildings.building_types import BUILDINGS, build
 from algorithms.simulator.buildings.floor_plan import WALL
-from algorithms.simulator.changes import AROUND, rearranged, with_pillars
+from algorithms.simulator.changes import AROUND, rearranged
 from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.portable_random import stream
 from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import simulate
-from algorithms.simulator.training_pairs import training_pairs
 from algorithms.simulator.wear import Wear, worn
-from algorithms.simulator.wrong_pairs import FROM, TO, crossed, mirrored, wrongly_seen
+from algorithms.simulator.wrong_pairs import crossed, mirrored
 
 FLAT = drawn_map(Pose2())
 wears = st.builds(
@@ -33,7 +33,7 @@ wears = st.builds(
 
 @pytest.fixture(scope="module")
 def flat():
-    return simulate("apartment", 5, 0.4, resolutions=(0.05, 0.05, 0.05), both_ways=True)
+    return simulate("apartment", 5, 0.4, both_ways=True, conditions=(Conditions(resolution=0.05),) * 3)
 
 
 # ---- wear
@@ -125,8 +125,8 @@ def test_no_transform_lays_a_bent_map_on_a_straight_one_as_well_as_another_strai
 
 
 def test_the_usual_conditions_are_those_without_any(flat):
-    usual = (Conditions(), Conditions(), Conditions())
-    again = simulate("apartment", 5, 0.4, resolutions=(0.05, 0.05, 0.05), both_ways=True, conditions=usual)
+    usual = (Conditions(OdometryDrift(), wear=Wear(), resolution=0.05),) * 3
+    again = simulate("apartment", 5, 0.4, both_ways=True, conditions=usual)
     assert np.array_equal(flat.cases[0].ref.cells, again.cases[0].ref.cells)
     assert flat.cases[0].observations == again.cases[0].observations
 

@@ -20,7 +20,7 @@ from algorithms.simulator.buildings.floor_plan import AIR, DARK, WALL, Building,
 from algorithms.simulator.lidar import Lidar, first_hit, scan, sees, true_ranges
 from algorithms.simulator.path_planning import STEP, PathPlanner
 from algorithms.simulator.portable_random import COSINES, SINES, TRIG_GRID, TURN, normals, radians, stream
-from algorithms.simulator.robot import drive, make_body
+from algorithms.simulator.robot import Conditions, drive, make_body
 from algorithms.simulator.room_tours import TourPlanner
 from algorithms.simulator.samples import SAMPLES, case_files, generate_cases, write_case
 from algorithms.simulator.scenario import Scenario, simulate
@@ -37,7 +37,7 @@ NAMES = [name for sample in SAMPLES for name in sample.names]
 
 @pytest.fixture(scope="module")
 def flat() -> Scenario:
-    return simulate("apartment", 5, 0.4, resolutions=(0.05, 0.05, 0.05), both_ways=True)
+    return simulate("apartment", 5, 0.4, both_ways=True, conditions=(Conditions(resolution=0.05),) * 3)
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +71,7 @@ def test_every_shipped_sample_is_there():
 
 
 def test_same_seed_gives_the_same_files(flat):
-    again = simulate("apartment", 5, 0.4, resolutions=(0.05, 0.05, 0.05), both_ways=True)
+    again = simulate("apartment", 5, 0.4, both_ways=True, conditions=(Conditions(resolution=0.05),) * 3)
     assert [case_files(case) for case in again.cases] == [case_files(case) for case in flat.cases]
 
 
@@ -199,7 +199,7 @@ def test_a_map_shows_the_building_and_nothing_else(flat):
 
 def test_what_no_beam_touched_stays_unknown(two_rooms):
     planner = PathPlanner(two_rooms)
-    body = make_body("R1", 0, "test", reach=9.0, resolution=0.05)
+    body = make_body("R1", 0, "test", 9.0, Conditions(resolution=0.05))
     tour = TourPlanner(two_rooms, planner, 9.0).tour([0, 1, 2, 3], 0)
     robot = drive(two_rooms, planner, tour, body)
     T_robot_world = Pose2(*body.shift.tolist(), radians(body.turn))

@@ -20,6 +20,7 @@ from algorithms.maps.grid_map import UNKNOWN
 from algorithms.methods.refusal_causes import NO_SWARM
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
 from algorithms.observations.observation import Observation, encounter
+from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import SimulatedCase, simulate
 from algorithms.simulator.wrong_pairs import mismatch
 from algorithms.verdict.wall_map import SAME_WALL
@@ -39,7 +40,7 @@ LITTLE = 0.01
 
 @cache
 def cases_of(kind: str, seed: int, overlap: float) -> tuple[SimulatedCase, ...]:
-    return simulate(kind, seed, overlap, resolutions=(0.05, 0.05, 0.05), sightings=2).cases
+    return simulate(kind, seed, overlap, conditions=(Conditions(resolution=0.05),) * 3, sightings=2).cases
 
 
 def likely(ref, mov, observations) -> float:

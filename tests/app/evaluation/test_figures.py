@@ -9,11 +9,11 @@ from dataclasses import replace
 import cv2
 import numpy as np
 import pytest
+from model_fit import Forecast
 from reliability_figure import reliability_figure
 from repository import ROOT
 
 from algorithms.methods.registry import METHODS
-from algorithms.verdict.model_fit import Forecast
 from app.evaluation.comparison_figure import NOTHING, RIGHT, WRONG, bars_figure, maps_figure
 from app.evaluation.figure_style import COLOURS
 from app.evaluation.method_comparison import ComparedRun

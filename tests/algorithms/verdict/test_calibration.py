@@ -1,4 +1,4 @@
-"""Fitting the verdict's model: weights that made the answers are found again, no sign is turned round."""
+"""Probabilities are what they say; fitting finds the weights that made the answers, with no sign turned."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from model_fit import Example, Forecast, cross_validated, fit, most_likely_wrong, predict
 
 from algorithms.verdict.calibration import brier_score, calibration_error, reliability
-from algorithms.verdict.model_fit import Example, Forecast, cross_validated, fit, most_likely_wrong, predict
 from algorithms.verdict.probability_model import QUANTITIES
 
 NAMES = list(QUANTITIES)

@@ -8,21 +8,24 @@ metres only: all of that is drawn here, robot by robot.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
+from math import atan2, cos, hypot, sin
 from typing import Literal
 
 import numpy as np
 
+from algorithms.common.pose import wrap_angle
+from algorithms.maps.grid_map import GridMap
 from algorithms.observations.observation import Observation
 from algorithms.simulator.buildings.building_types import BUILDINGS, build
-from algorithms.simulator.changes import with_pillars
+from algorithms.simulator.buildings.floor_plan import WALL, Building, FloorPlan
 from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.portable_random import chance, pick, stream, uniform, whole
 from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import SimulatedCase, simulate
 from algorithms.simulator.wear import Wear
-from algorithms.simulator.wrong_pairs import mirrored, mismatch, wrongly_seen
+from algorithms.simulator.wrong_pairs import mirrored, mismatch
 
 Kind = Literal["right", "wrong sighting", "mirrored", "same plan", "other building"]
 
@@ -30,6 +33,9 @@ MIRRORED = 5  # every so manieth building is mirrored, too: it happens seldom
 OTHERS = 4  # other buildings that a building is crossed with
 LEAST, MOST = 0.05, 0.8  # overlap
 SURVEYS = 0.3  # share of the buildings that are surveyed by hand
+FROM, TO = 3.0, 8.0  # metres by which a wrong sighting is wrong: out of reach of a badly measured one
+FROM_DOORS = 1.2  # metres from a jamb within which there is no pillar
+WALL_PER_PILLAR = 1.0  # m² of wall, as seen from above: one in 8 m of a wall 0.12 m thick
 HARDSHIPS = (0.0, 0.2, 0.2, 0.5, 0.8)  # how likely each hardship is, building by building
 ONE_FLOOR = ("warehouse",)  # another floor of it would be the same one, furnished anew
 ONE_PLAN = ("corridor",)  # all of them are drawn to one plan, as the floors of a building are
@@ -128,3 +134,52 @@ def _survey(rng: np.random.Generator, hard: float) -> Conditions:
 
 def _drift(wander: float, bend: float) -> OdometryDrift:
     return OdometryDrift(metres=0.025 * wander, degrees=0.22 * wander, bend=bend)
+
+
+def with_pillars(building: Building, rng: np.random.Generator) -> Building:
+    """The building with pillars, radiators and cabinets before its walls, so that no two of its corridors are
+    quite alike.
+    """
+    plan = FloorPlan.of(building)
+    walls = np.argwhere(plan.cells == WALL)
+    jambs = building.doors.reshape(-1, 2)
+    for _ in range(int(len(walls) * building.resolution**2 / WALL_PER_PILLAR)):
+        row, col = walls[whole(rng, 0, len(walls) - 1)].tolist()
+        x, y = (col + 0.5) * building.resolution, (row + 0.5) * building.resolution
+        half, deep = uniform(rng, 0.1, 0.35), uniform(rng, 0.15, 0.3)
+        long, wide = (half, deep) if chance(rng, 0.5) else (deep, half)
+        if np.hypot(*(jambs - (x, y)).T).min(initial=np.inf) > FROM_DOORS:
+            plan.box(x - long, y - wide, x + long, y + wide)
+    return replace(building, surface=plan.cells)
+
+
+def wrongly_seen(case: SimulatedCase, rng: np.random.Generator) -> SimulatedCase:
+    """The same case with sightings that put robot 2 metres away from where it was, along a wall.
+
+    In a corridor that is a door or two further on.
+    """
+    assert case.T_ref_mov is not None
+    sign = 1.0 if chance(rng, 0.5) else -1.0
+    along, far = _longest_wall(case.ref), sign * uniform(rng, FROM, TO)
+    dx, dy = far * cos(along), far * sin(along)
+
+    def put_off(o: Observation) -> Observation:
+        direction = o.observer.theta + o.bearing
+        x, y = o.range * cos(direction) + dx, o.range * sin(direction) + dy
+        bearing = wrap_angle(atan2(y, x) - o.observer.theta)
+        return replace(o, range=round(hypot(x, y), 6), bearing=round(bearing, 6))
+
+    return replace(
+        case,
+        name=f"misseen_{case.name}",
+        observations=tuple(map(put_off, case.observations)),
+        rough=tuple(map(put_off, case.rough)),
+        T_ref_mov=None,
+    )
+
+
+def _longest_wall(grid: GridMap) -> float:
+    """Direction in which most wall of a map runs; radians, the map's frame."""
+    points = grid.points - grid.points.mean(axis=0)
+    spread = np.linalg.eigh(points.T @ points)[1][:, -1]
+    return float(atan2(spread[1], spread[0]))
