@@ -1,7 +1,7 @@
 """Why a merge was refused, where the cause is simple: a map read wrongly, mirrored, or of another scale.
 
-Each simple change is made to map 2, and the default method asked whether the maps agree then. It is told only
-where the verdict on the changed maps accepts them.
+Each simple change is made to map 2, and the default method asked whether the maps agree then. It is named
+only where the verdict accepts the changed maps.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ Change = Callable[[GridMap, Observation], tuple[GridMap, Observation]]
 class Cause:
     """One thing that may have been wrong with map 2.
 
-    clause : how it is told, as in "mirrored, map 2 agrees"
+    clause : how it is named, as in "mirrored, map 2 agrees"
     cure   : what to do
     change : makes right of the map and of what robot 2 knows of itself
     """

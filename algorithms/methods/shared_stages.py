@@ -56,7 +56,7 @@ def run_search(
     seed   : the same seed gives the same answer. Every stage draws from a stream of its own, so that
              a change of one stage's settings doesn't change the random numbers of another
     memo   : keep it between runs: stages before the first changed setting are then not run again but
-             told again (``Step.reused``)
+             given again (``Step.reused``)
     """
     runner = StageRunner({} if memo is None else memo)
     seen = (problem.observations, problem.ref.resolution, problem.mov.resolution)

@@ -8,7 +8,7 @@ from typing import Any
 
 from algorithms.methods.steps import Detail, RefineDetail, Step
 
-# Snapshots of a search that are remembered for telling it again; a longer search is told again with
+# Snapshots of a search that are remembered for showing it again; a longer search is shown again with
 # gaps. 2,000 particles through 300 iterations of 24 candidates would fill a gigabyte.
 MOST_BYTES = 64_000_000
 
@@ -32,7 +32,7 @@ class StageRunner:
     ) -> Generator[Step, None, Any]:
         """Yield a Step per detail that ``make`` gives, and return the last detail.
 
-        With inputs equal to those of the last complete run of this stage, its steps are told again
+        With inputs equal to those of the last complete run of this stage, its steps are given again
         and ``make`` is not called. A stage that the caller leaves half-way is not remembered.
         """
         known = self._memo.get(name)

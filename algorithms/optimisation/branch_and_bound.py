@@ -103,7 +103,7 @@ def prove(
 
     floor : share of the best value below which a rival is of no interest
     worth : value up to which the best is of no interest either; where none is above it, that is proven
-            and no ``best`` is told
+            and no ``best`` is given
     """
     search = BlockSearch(objective, window)
     lattice = search.lattice

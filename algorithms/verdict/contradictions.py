@@ -1,7 +1,7 @@
 """Where two merged maps contradict each other: the walls that the other map denies, gathered into places.
 
 A wall speaks against a merge where the other robot saw free floor and no wall of its own near enough to be
-another drawing of it. That is how the evidence counts, with the maps as they are; here it is told by place,
+another drawing of it. That is how the evidence counts, with the maps as they are; here it is listed by place,
 so that a person can go and look.
 """
 

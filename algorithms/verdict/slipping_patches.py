@@ -28,7 +28,7 @@ CLOSER = 2  # times that steps are halved around the best place
 INERTIA = 0.05  # share of a patch's walls that the farthest slip must win to be worth it
 MOST_SLIPPING = 1_500  # points that are slipped; of more every second, third … stands for all
 LEAST_APART = 0.2  # metres; of a patch that slips by less nobody would say that its walls are double
-LEAST_WALL = 1.5  # metres of agreeing wall that a patch must bring to be told of
+LEAST_WALL = 1.5  # metres of agreeing wall that a patch must bring to be counted
 
 
 @dataclass(frozen=True)

@@ -78,7 +78,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except Exception as error:
         if isinstance(error, OSError) and error.errno in SYSTEM_ERRORS:
             return _print_error(_system_error(error), EXIT_BAD_INPUT)
-        traceback.print_exc()  # of ours: told whole, and with a status that nobody takes for a refusal
+        traceback.print_exc()  # of ours: shown whole, and with a status that nobody takes for a refusal
         return _print_error("this is a bug of mapmeld; please report the lines above", EXIT_BUG)
 
 

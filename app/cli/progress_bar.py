@@ -23,11 +23,11 @@ def result_of(steps: Iterator[Step]) -> MergeResult:
 
 def with_bar(steps: Iterator[Step]) -> Iterator[Step]:
     """The same steps, with that bar while they are taken."""
-    story, stage = RunState(), ""
+    run, stage = RunState(), ""
     with bar(total=1.0, bar_format=STEPS_FORMAT) as shown:
         for step in steps:
-            story.tell(step)
-            shown.update(max(0.0, words.progress(story) - shown.n))
+            run.add(step)
+            shown.update(max(0.0, words.progress(run) - shown.n))
             if step.stage != stage:  # a new stage is named at once, however short it is
                 stage = step.stage
                 shown.set_description_str(stage)

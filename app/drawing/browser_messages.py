@@ -82,10 +82,10 @@ class BrowserMessages(ABC):
         with self._lock:
             self._pending.update(dark=palette.dark, background=css(palette.unknown))
 
-    def compare(self, **told: Any) -> None:
+    def compare(self, **changes: Any) -> None:
         """How the two maps are compared where they lie: modes, mode, places, colours (map_comparison.js)."""
         with self._lock:
-            self._pending.setdefault("compare", {}).update(told)
+            self._pending.setdefault("compare", {}).update(changes)
 
     def closer(self, name: str, excerpt: dict[str, Any] | None) -> None:
         """Lay a sharp excerpt over a picture of the scene; None: lay it bare. See zoom_detail.js."""

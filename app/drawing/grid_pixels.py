@@ -103,19 +103,19 @@ def sheet(cells: CellArray, colour: Rgb, palette: Palette, most: int = MOST_PIXE
 
 def touches(
     walls: WallLookup,
-    told: CellAgreement,
+    agreement: CellAgreement,
     palette: Palette,
     most: int = MOST_PIXELS,
     part: CellRegion = WHOLE,
 ) -> GridPixels:
-    """The walls that the other map agrees with or denies; ``told`` (N,) by ``WallLookup.agreement_with``."""
+    """The walls that the other map agrees with or contradicts; ``agreement`` (N,) of a ``WallLookup``."""
     shape = walls.grid.cells[part].shape
     factor = pooling(shape, most)
     within, rows, cols = _within(part, walls.grid.cells.shape, *walls.cells)
-    told = told[within]
+    agreement = agreement[within]
     pixels = np.zeros((*(-(-side // factor) for side in shape), 4), dtype=np.uint8)
     for kind, colour in ((AGREES, palette.agreed), (CONTRADICTS, palette.conflict)):
-        at = told == kind
+        at = agreement == kind
         pixels[rows[at] // factor, cols[at] // factor] = (*colour, 255)
     return GridPixels(pixels, factor)
 

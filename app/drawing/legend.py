@@ -36,15 +36,15 @@ def in_hand(palette: Palette) -> list[Entry]:
 
 
 def legend(
-    palette: Palette, view: str, story: RunState, preview: bool = False, mode: str = "overlay"
+    palette: Palette, view: str, run: RunState, preview: bool = False, mode: str = "overlay"
 ) -> list[Entry]:
     """Entries for the view and for what the run has come to.
 
     preview : the map shows levels, not candidates
     mode    : how two maps that lie over each other are compared
     """
-    detail = story.last.detail if story.last else None
-    augmented = story.get(AugmentDetail)
+    detail = run.last.detail if run.last else None
+    augmented = run.get(AugmentDetail)
     scale = [level_scale(augmented)] if augmented else []
     maps = _maps(palette)
     margin, best, particle = palette.margin, palette.best, palette.particle
@@ -53,7 +53,7 @@ def legend(
     if view == "Heights":
         return scale
     if view == "Swarm space":
-        return [*swarm, star] if story.reached(ProvenDetail) else swarm
+        return [*swarm, star] if run.reached(ProvenDetail) else swarm
     if preview and scale:
         return [*scale, _chip("line", margin, "Σ_aug, windows, box")]
     if mode in ("blink", "curtain"):
@@ -61,8 +61,8 @@ def legend(
     if mode == "difference":
         alone = [entry | {"t": f"{entry['t']} alone"} for entry in maps]
         return [*alone, _chip("square", _FAINT, "other walls")]
-    if story.reached(Fusion):
-        result = story.get(MergeResult)
+    if run.reached(Fusion):
+        result = run.get(MergeResult)
         in_doubt = result is not None and result.verdict.rival is not None
         return [*in_hand(palette), _chip("star", palette.answer, "robot 2"), *([rival] if in_doubt else [])]
     if isinstance(detail, (steps.ProofDetail, ProvenDetail)):

@@ -30,10 +30,10 @@ def beside_the_page(jobs: int) -> Executor:
 class JobListener(Protocol):
     """Who is told of the work; one call at a time, with nobody else drawing."""
 
-    def told(self, part: Any) -> None:
+    def part_done(self, part: Any) -> None:
         """The next of what the work yields."""
 
-    def over(self, why: str) -> None:
+    def ended(self, why: str) -> None:
         """It has come to its end; ``why`` it could not, as a sentence, empty where it could."""
 
 
@@ -86,7 +86,7 @@ class BackgroundJob:
                 self._tell(stop, self._begin)
                 with closing(work(stop)) as parts:  # type: ignore[type-var]
                     for part in parts:
-                        if not self._tell(stop, lambda part=part: self._listener.told(part)):
+                        if not self._tell(stop, lambda part=part: self._listener.part_done(part)):
                             return
             except MapMergeError as error:
                 why = str(error)
@@ -103,7 +103,7 @@ class BackgroundJob:
 
     def _over(self, why: str) -> None:
         self._stop = None
-        self._listener.over(why)
+        self._listener.ended(why)
 
     def _tell(self, stop: Event, tell: Callable[[], None]) -> bool:
         with self._drawing:

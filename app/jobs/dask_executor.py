@@ -106,16 +106,16 @@ class DaskExecutor(Executor):
                 f"start some: dask worker {self._address}"
             ) from None
         here = made_with()
-        for worker, told in client.run(made_with, on_error="return").items():
-            if isinstance(told, Exception):
+        for worker, found in client.run(made_with, on_error="return").items():
+            if isinstance(found, Exception):
                 raise SettingError(
-                    f"the Dask worker at {worker} can't load mapmeld ({type(told).__name__}: {told}); "
+                    f"the Dask worker at {worker} can't load mapmeld ({type(found).__name__}: {found}); "
                     "install it there, the same version as here"
                 )
             for name, version in here.items():
-                if told.get(name) != version:
+                if found.get(name) != version:
                     raise SettingError(
-                        f"the Dask worker at {worker} has {name} {told.get(name)}, here it is {version}: "
+                        f"the Dask worker at {worker} has {name} {found.get(name)}, here it is {version}: "
                         "results could differ from machine to machine; install the same on both"
                     )
         return self._threads(client)
@@ -142,6 +142,6 @@ async def _knock(address: str, patience_s: float) -> None:
 
 def made_with() -> dict[str, str]:
     """What may change a number."""
-    told = {**versions(), "mapmeld's code": code()}
-    told["python"] = told["python"].rpartition(".")[0]
-    return told
+    found = {**versions(), "mapmeld's code": code()}
+    found["python"] = found["python"].rpartition(".")[0]
+    return found

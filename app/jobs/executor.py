@@ -55,7 +55,7 @@ class Executor(ABC):
     """Does tasks.
 
     jobs : how many at a time
-    far  : whether its workers may be on other machines: they can't be told to read files of this one
+    far  : whether its workers may be on other machines: they can't read files of this one
     """
 
     jobs: int

@@ -11,7 +11,7 @@ from contextlib import AbstractContextManager, contextmanager
 from threading import Condition
 from time import monotonic
 
-PATIENCE = 1.0  # seconds of waiting that need no words, unless told otherwise
+PATIENCE = 1.0  # seconds of waiting that need no words, unless another limit is given
 LOOK_S = 0.25  # how often one that waits looks whether it is still wanted
 
 

@@ -61,11 +61,11 @@ def without_interrupt() -> Iterator[None]:
 
 
 @contextmanager
-def _environment(**told: str) -> Iterator[None]:
-    """What is started meanwhile is told so."""
+def _environment(**variables: str) -> Iterator[None]:
+    """What is started meanwhile is variables so."""
     with _environ:
-        before = {name: os.environ.get(name) for name in told}
-        os.environ.update(told)
+        before = {name: os.environ.get(name) for name in variables}
+        os.environ.update(variables)
         try:
             yield
         finally:

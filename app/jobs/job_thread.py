@@ -29,22 +29,22 @@ class Listener(Protocol):
     def begun(self, job: MergeJob) -> None:
         """A run starts; what is on the screen is out of date from the first changed stage on."""
 
-    def show(self, job: MergeJob, story: RunState) -> None:
+    def show(self, job: MergeJob, run: RunState) -> None:
         """Draw the newest state."""
 
-    def ending(self, job: MergeJob, story: RunState) -> None:
+    def ending(self, job: MergeJob, run: RunState) -> None:
         """The run is at its goal: work out what takes long to tell of it. It can still be stopped."""
 
     def waits(self, job: MergeJob, before: int) -> None:
         """Other tabs' runs have the processors; so many of them are before this one."""
 
-    def ended(self, job: MergeJob, story: RunState) -> None:
+    def ended(self, job: MergeJob, run: RunState) -> None:
         """The run came to its goal."""
 
-    def stopped(self, job: MergeJob, story: RunState) -> None:
+    def stopped(self, job: MergeJob, run: RunState) -> None:
         """Someone pressed Stop."""
 
-    def failed(self, job: MergeJob, story: RunState, error: Exception) -> None:
+    def failed(self, job: MergeJob, run: RunState, error: Exception) -> None:
         """The run could not go on: with a NoAnswerError, another MapMergeError, or a bug."""
 
 
@@ -99,10 +99,10 @@ class JobThread:
         self._waiting.cut()
         with self.drawing:
             if job is not None and job is not self._ended:  # it may have come to its end just now
-                of, story = self._told
-                self._listener.stopped(job, story if of is job else RunState(job.config))
+                of, run = self._told
+                self._listener.stopped(job, run if of is job else RunState(job.config))
 
-    def told_again(self, job: MergeJob, wanted: Callable[[], bool]) -> Iterator[Step]:
+    def steps_again(self, job: MergeJob, wanted: Callable[[], bool]) -> Iterator[Step]:
         """The steps of a run once more, for a recording: those that are known are not computed again."""
         return self.runner.steps(job, RunCallbacks(wanted), aside=True)
 
@@ -111,18 +111,18 @@ class JobThread:
         self._waiting.cut()
 
     def _work(self, job: MergeJob) -> None:
-        began, story = self._clock(), RunState(job.config)
-        self._told, self._pace = (job, story), job.pace
+        began, run = self._clock(), RunState(job.config)
+        self._told, self._pace = (job, run), job.pace
 
         try:
-            self._tell(job, story)
+            self._tell(job, run)
         except Exception as error:
             if not isinstance(error, MapMergeError):
                 log.exception("a run of %s ended in a bug", job.method)
-            self._deliver(job, partial(self._listener.failed, job, story, error))
+            self._deliver(job, partial(self._listener.failed, job, run, error))
         log.info("run over", extra=facts(method=job.method, seconds=round(self._clock() - began, 3)))
 
-    def _tell(self, job: MergeJob, story: RunState) -> None:
+    def _tell(self, job: MergeJob, run: RunState) -> None:
         """Iterate the method; draw at most every FRAME, except where a step is meant to be seen."""
 
         def waits(before: int) -> None:
@@ -130,7 +130,7 @@ class JobThread:
 
         def end() -> None:
             self._ended = job
-            self._listener.ended(job, story)
+            self._listener.ended(job, run)
 
         callbacks = RunCallbacks(partial(self._requests.wants, job), waits)
         if not self._deliver(job, partial(self._listener.begun, job)):
@@ -138,14 +138,14 @@ class JobThread:
         drawn_at = -FRAME
         with closing(self.runner.steps(job, callbacks)) as steps:
             for step in steps:
-                story.tell(step)
+                run.add(step)
                 mark = self._waiting.mark
                 stay = dwell(step, self._pace, job.again)
                 if not self._requests.wants(job):
                     return
                 if stay >= FRAME or self._clock() - drawn_at >= FRAME:
                     drawn_at = self._clock()
-                    if not self._deliver(job, partial(self._listener.show, job, story)):
+                    if not self._deliver(job, partial(self._listener.show, job, run)):
                         return
                     stay -= self._clock() - drawn_at
                 self._waiting.wait(stay, mark)
@@ -155,7 +155,7 @@ class JobThread:
                     break
                 if isinstance(step.detail, MergeResult):
                     break
-        self._listener.ending(job, story)
+        self._listener.ending(job, run)
         self._deliver(job, end)
 
     def _deliver(self, job: MergeJob, tell: Callable[[], None]) -> bool:

@@ -61,7 +61,7 @@ class ProcessExecutor(Executor):
         self, work: Work, left: Iterator[Numbered], jobs: int, folder: Path, stop: Event | None
     ) -> Generator[tuple[int, Any], None, Unfinished | None]:
         """Yield answers until no task is left; return what a process that died has left behind."""
-        # a process ends when nobody holds the other end any more: it is told to, or this one is dead
+        # a process ends when nobody holds the other end any more: it was closed, or this one is dead
         listening, line = SPAWN.Pipe(duplex=False)
         running: dict[Future[Any], Numbered] = {}
         pool = ProcessPoolExecutor(

@@ -16,7 +16,7 @@ class RunCallbacks:
     """Who wants a run.
 
     wanted : whether they still do; asked now and then
-    waits  : is told how many are before it, where it takes a while
+    waits  : is called with how many are before it, where it takes a while
     """
 
     wanted: Callable[[], bool] = lambda: True

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from algorithms.verdict.contradictions import Contradiction, Contradictions
 
-MOST_PLACES = 12  # that are listed, and ringed on the map; the smaller ones are told in sum
+MOST_PLACES = 12  # that are listed, and ringed on the map; of the smaller ones the sum is given
 
 
 def summary(found: Contradictions) -> str:

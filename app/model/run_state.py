@@ -45,7 +45,7 @@ class RunState:
     ceiling: float = float("-inf")
     _newest: dict[type, Detail] = field(default_factory=dict)
 
-    def tell(self, step: Step) -> None:
+    def add(self, step: Step) -> None:
         """Take in the next step."""
         self.last = step
         detail = step.detail

@@ -39,11 +39,11 @@ def typeset(text: str) -> str:
     return re.sub(r"(?<![\w.)\]-])-(?=\.?\d)", "−", text)
 
 
-def sentence(story: RunState) -> str:
+def sentence(run: RunState) -> str:
     """What a run is doing right now."""
-    detail = story.last.detail if story.last else None
+    detail = run.last.detail if run.last else None
     says = _SAYS.get(type(detail))
-    return says(detail, story) if says else "Starting."
+    return says(detail, run) if says else "Starting."
 
 
 def _observing(detail: steps.ObservationDetail, _: RunState) -> str:
@@ -53,8 +53,8 @@ def _observing(detail: steps.ObservationDetail, _: RunState) -> str:
     return "Robot 1 saw robot 2: this place is in both maps."
 
 
-def _searching(detail: steps.RefineDetail, story: RunState) -> str:
-    state, measure = detail.state, story.measure
+def _searching(detail: steps.RefineDetail, run: RunState) -> str:
+    state, measure = detail.state, run.measure
     where = f"candidate {detail.index + 1} of {detail.total}, iteration {state.iteration + 1}"
     value = f"{measure.name} {measure.text(state.best_value)}"
     return f"Searching: {where}, {value if isfinite(state.best_value) else 'outside the window'}."
@@ -92,8 +92,8 @@ def _weighing(detail: steps.WeighedDetail, _: RunState) -> str:
     return f"{named}, {off} from where the search had ended."
 
 
-def _proving(detail: steps.ProofDetail, story: RunState) -> str:
-    state, measure = detail.state, story.measure
+def _proving(detail: steps.ProofDetail, run: RunState) -> str:
+    state, measure = detail.state, run.measure
     blocks = f"{state.nodes:,} blocks bounded"
     if state.empty:
         return f"Proving: {blocks}, none of them agrees with every sighting."
@@ -121,23 +121,23 @@ def proof_says(state: ProofState, measure: ObjectiveLabel) -> str:
     return f"{best}, and no other place has {state.floor / state.best_value:.0%} of it."
 
 
-def found_it(story: RunState) -> str:
+def found_it(run: RunState) -> str:
     """Whether the optimiser had come to the proven optimum; empty for a method without a proof."""
-    proven, answers = story.get(ProvenDetail), story.get(AnswersDetail)
+    proven, answers = run.get(ProvenDetail), run.get(AnswersDetail)
     if proven is None or answers is None:
         return ""
     state = proven.state
     if state.empty:
         return "No transform at all agrees with every sighting."
     if fits_nowhere(state):
-        return f"Proven: nothing anywhere is above {story.measure.text(0.0)}."
+        return f"Proven: nothing anywhere is above {run.measure.text(0.0)}."
     if not state.proven:
-        left = story.measure.text(state.ceiling)
+        left = run.measure.text(state.ceiling)
         return f"Not proven after {state.nodes:,} blocks: somewhere there may be up to {left}."
     if proven.search_found_it:
-        return f"{story.searcher} found the proven optimum."
-    seen = story.get(ObservationDetail)
-    stuck = f"{story.searcher} got stuck"
+        return f"{run.searcher} found the proven optimum."
+    seen = run.get(ObservationDetail)
+    stuck = f"{run.searcher} got stuck"
     if seen is None:
         return f"{stuck} below the proven optimum."
     away = apart(answers.answers[0].T_ref_mov, proven.peak.T_ref_mov, seen)
@@ -162,15 +162,15 @@ _SAYS: dict[type, Callable[[Any, RunState], str]] = {
     ),
     steps.WindowDetail: lambda _, __: "Shifting: the observation leaves this window.",
     steps.ShiftDetail: _shifting,
-    steps.CandidatesDetail: lambda detail, story: (
-        f"{len(detail.candidates)} candidates, ranked by {story.measure.name}."
+    steps.CandidatesDetail: lambda detail, run: (
+        f"{len(detail.candidates)} candidates, ranked by {run.measure.name}."
     ),
     steps.RefineDetail: _searching,
     steps.MatchesDetail: _matching,
     steps.TurnsDetail: _turning,
     steps.AnswersDetail: lambda detail, _: f"The search is done: {detail.answers[0].stopped}.",
     steps.ProofDetail: _proving,
-    steps.ProvenDetail: lambda _, story: found_it(story),
+    steps.ProvenDetail: lambda _, run: found_it(run),
     steps.WeighedDetail: _weighing,
     Fusion: lambda _, __: "Merging the cells: what agrees, what contradicts.",
     steps.TriedDetail: lambda detail, _: (
@@ -180,9 +180,9 @@ _SAYS: dict[type, Callable[[Any, RunState], str]] = {
 }
 
 
-def progress(story: RunState) -> float:
+def progress(run: RunState) -> float:
     """Share of the run that is done, 0 … 1."""
-    detail = story.last.detail if story.last else None
+    detail = run.last.detail if run.last else None
     share = row_of(detail).share
     if isinstance(detail, steps.ShiftDetail):
         share += 0.2 * (detail.index + 1) / max(1, detail.total)

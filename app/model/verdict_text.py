@@ -102,8 +102,8 @@ def remedy(result: MergeResult) -> str:
             return "Made by hand: refine from there, or snap to the proven optimum."
         return "This method has missed a better place: take the default one, which proves that it finds it."
     first = next(iter(verdict.against), "")
-    told = result.weighed[0].evidence
-    if first in ("contradiction", "unbent") and told.rigid_contradicting < NEXT_TO_NO_WALL:
+    evidence = result.weighed[0].evidence
+    if first in ("contradiction", "unbent") and evidence.rigid_contradicting < NEXT_TO_NO_WALL:
         first = "across"  # hardly anything contradicts: too little is shared
     return REMEDIES.get(first, REMEDIES[""])
 

@@ -127,7 +127,7 @@ def _run_through(steps: Iterator[Step]) -> None:
             pass
     except MapMergeError:
         log.debug("warming up ended early", exc_info=True)
-    except Exception:  # nobody asked for it: who merges then is told
+    except Exception:  # nobody asked for it: who merges then sees it
         log.warning("warming up failed", exc_info=True)
 
 

@@ -34,9 +34,9 @@ class _Doing:
 class CancellableTask:
     """Of one tab: says what is done, and puts the words back where nothing is to be said of it."""
 
-    def __init__(self, stage: BrowserMessages, drawing: RLock, stoppable: Callable[[bool], None]) -> None:
-        """stoppable : is told whether there is anything to stop"""
-        self._stage, self._drawing, self._stoppable = stage, drawing, stoppable
+    def __init__(self, messages: BrowserMessages, drawing: RLock, stoppable: Callable[[bool], None]) -> None:
+        """stoppable : is said_at whether there is anything to stop"""
+        self._messages, self._drawing, self._stoppable = messages, drawing, stoppable
         self._lock = Lock()
         self._under_way: list[_Doing] = []
 
@@ -44,14 +44,14 @@ class CancellableTask:
     def __call__(self, doing: str, aside: bool = False) -> Iterator[Check]:
         """Gives what the work calls; it raises Cancelled after Stop. ``aside``: the old words come back."""
         said: dict[str, Any] = {"state": doing, "mood": "running", "progress": 0.05 if aside else 0.3}
-        me, told = self._begin(said), perf_counter()
+        me, said_at = self._begin(said), perf_counter()
 
         def check(done: float | None = None, /) -> None:
-            nonlocal told
+            nonlocal said_at
             if me.left:
                 raise Cancelled
-            if done is not None and perf_counter() - told >= OFTEN and self._shows(me):
-                told = perf_counter()
+            if done is not None and perf_counter() - said_at >= OFTEN and self._shows(me):
+                said_at = perf_counter()
                 me.said["progress"] = done
                 self._say(me.said)
 
@@ -68,7 +68,7 @@ class CancellableTask:
             self._end(me, back)
 
     def stop(self) -> bool:
-        """Have it leave what it is at; whether it is at anything that was not told so before."""
+        """Have it leave what it is at; whether it is at anything that was not said_at so before."""
         with self._lock:
             leaving = [one for one in self._under_way if not one.left]
             for one in leaving:
@@ -79,7 +79,7 @@ class CancellableTask:
 
     def _begin(self, said: dict[str, Any]) -> _Doing:
         with self._drawing:
-            shown = self._stage.said(*said)
+            shown = self._messages.said(*said)
             other = next((one for one in self._under_way if one.said == shown), None)
             me = _Doing(said, other.before if other else shown)
             with self._lock:
@@ -105,12 +105,12 @@ class CancellableTask:
 
     def _shows(self, me: _Doing) -> bool:
         """Whether nobody else has had their say since."""
-        return self._stage.said(*me.said) == me.said
+        return self._messages.said(*me.said) == me.said
 
     def _say(self, words: dict[str, Any]) -> None:
         with self._drawing:
-            self._stage.hud(**words)
-            self._stage.flush()
+            self._messages.hud(**words)
+            self._messages.flush()
 
 
 class DownloadTask:

@@ -114,7 +114,7 @@ class RunController:
         self._state.update(method=settings.method, config=settings.config, seed=seed)
 
     def _set_speed(self) -> None:
-        # a run that is told at a pace comes to its end so
+        # a run that is shown at a pace comes to its end so
         self.thread.set_pace(self._panels.run.pace or 0.01)
         self._display.show_buttons()
 
@@ -133,7 +133,7 @@ class RunController:
         if self._modes.close() is not None:  # another's result is not left there while something else is said
             self._comparison.clear()
             self._display.views.map.apart()
-        if job.pace > 0:  # told step by step; a run at once leaves what is seen until it has ended
+        if job.pace > 0:  # shown step by step; a run at once leaves what is seen until it has ended
             self._comparison.clear()
         self._display.clear_read_out()
         self._messages.hud(state="Starting.", mood="running", progress=0.0)
@@ -234,7 +234,7 @@ class RunController:
             replay.visible(False)
         else:
             job = replace(job, config=config, method=result.method, seed=result.seed)
-            replay.offer(state.inputs.name, partial(replay_of, job, self.thread.told_again, state.inputs))
+            replay.offer(state.inputs.name, partial(replay_of, job, self.thread.steps_again, state.inputs))
 
     def _weigh(self, result: MergeResult, config: Any) -> tuple[Contradictions, str]:
         """Where the maps contradict each other, and the page of the result; worked out once."""
@@ -265,7 +265,7 @@ class RunController:
         with self._display.together():
             self._display.show_result_text(result)
             if cause.hint:
-                state.run.tell(Step("explain", result, 0.0))
+                state.run.add(Step("explain", result, 0.0))
                 state.update(result=result)
                 self._panels.export.offer(ResultFiles(result, state.inputs, state.result_config))
                 self._history.amend(state.run)

@@ -172,8 +172,8 @@ def _seen(inputs: MergeInputs) -> list[str]:
 def _settings(result: MergeResult, config: Any, report: Mapping[str, Any]) -> list[str]:
     method = METHODS.get(result.method)
     title = method.title if method else result.method
-    told = [("method", title), ("seed", str(result.seed)), *report["inputs"].items()]
-    parts = [_table(told, "words")]
+    rows = [("method", title), ("seed", str(result.seed)), *report["inputs"].items()]
+    parts = [_table(rows, "words")]
     if config is not None:
         standard = method.defaults if method and type(method.defaults) is type(config) else config
         rows = [_setting(setting, standard) for setting in settings_of(config)]

@@ -48,7 +48,7 @@ class JsonFormatter(logging.Formatter):
 class RepeatFilter(logging.Filter):
     """Lets through the same words some times a minute: what a stranger can cause must not fill a disk.
 
-    Warnings and worse; what ``--verbose`` tells of is told in full.
+    Warnings and worse; what ``--verbose`` adds is logged in full.
     """
 
     def __init__(self, clock: Callable[[], float] = monotonic) -> None:
@@ -83,7 +83,7 @@ class Handshakes(logging.Filter):
         if record.levelno < logging.ERROR or record.msg == "connection handler failed":
             return True
         kind = record.exc_info and record.exc_info[0]
-        log.debug("%s: %s", record.msg, kind.__name__ if kind else "for no reason that is told")
+        log.debug("%s: %s", record.msg, kind.__name__ if kind else "for no reason that is given")
         return False
 
 

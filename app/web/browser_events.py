@@ -74,8 +74,8 @@ def checked(value: Any, kind: Kind) -> Any:
 class BrowserEvents:
     """Calls back in the order of the messages, one at a time, in a thread of its own."""
 
-    def __init__(self, gui: viser.GuiApi, stage: BrowserMessages) -> None:
-        self._stage = stage
+    def __init__(self, gui: viser.GuiApi, messages: BrowserMessages) -> None:
+        self._messages = messages
         self._events: dict[str, _Event] = {}
         self._last = 0  # number of the newest message
         self._waiting: deque[tuple[_Event, dict[str, Any]]] = deque()
@@ -89,7 +89,7 @@ class BrowserEvents:
             self.take(self._text.value)
 
         listen_unseen(self._text._impl.uuid)
-        stage.listen(self._text._impl.uuid)
+        messages.listen(self._text._impl.uuid)
         Thread(target=self._work, name="mapmeld-channel", daemon=True).start()
 
     def on(
@@ -97,7 +97,7 @@ class BrowserEvents:
     ) -> None:
         """Call back with the fields of every such event, by their names.
 
-        latest : of several that wait in a row only the newest is told: a place on a path, not a deed
+        latest : of several that wait in a row only the newest counts: a place on a path, not an action
         """
         self._events[event] = _Event(callback, latest, fields)
 
@@ -147,10 +147,10 @@ class BrowserEvents:
                 event, fields = self._waiting.popleft()
             try:
                 event.callback(**fields)
-            except Exception as error:  # as of viser's own callbacks: told, logged, and the tab lives on
-                log.exception("what the page told ended in a bug")
-                self._stage.hud(state=words(error), mood="failed", progress=None)
-                self._stage.flush()
+            except Exception as error:  # as in viser's own callbacks: said, logged, and the tab lives on
+                log.exception("an event of the page ended in a bug")
+                self._messages.hud(state=words(error), mood="failed", progress=None)
+                self._messages.flush()
 
 
 def _parsed(text: str) -> tuple[int, str, dict[str, Any]]:

@@ -151,7 +151,7 @@ class Uploads:
     def _begun(self, arrival: Arrival, announced: Announced) -> Arrival | None:
         if not self._has_room(arrival):
             recipient = self._recipients.get(arrival.tab)
-            if recipient is not None:  # told in a thread: it may have to wait for a picture that is drawn
+            if recipient is not None:  # called in a thread: it may have to wait for a picture that is drawn
                 arrival.gui._thread_executor.submit(recipient.refuse, refusal(announced.name, announced.size))
             return None
         arrival.gui._current_file_upload_states[arrival.id] = {

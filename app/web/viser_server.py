@@ -79,7 +79,7 @@ def guarded_server(host: str, port: int, access: Access, most: int) -> viser.Vis
             is_upload = connection.request.path == PATH
             group = files if is_upload else live
             if not is_upload:
-                if connection.subprotocol != SPEAKS:  # a tab from before an upgrade; it is told to reload
+                if connection.subprotocol != SPEAKS:  # a tab from before an upgrade; it is asked to reload
                     gate.drop("version")
                     await connection.close(1002, "another version is served here: reload the page")
                     return

@@ -98,7 +98,7 @@ def _agree(matches: MatchesDetail, config: MatchConfig, seed: int) -> Iterator[D
     T, ref, mov = None, matches.ref, matches.mov
     if len(ref) >= max(LEAST, config.least):
         with catch_warnings():
-            filterwarnings("ignore", "No inliers found")  # an answer, too, and told below
+            filterwarnings("ignore", "No inliers found")  # an answer, too, and reported below
             model, _ = ransac(
                 (mov, ref),
                 EuclideanTransform,

@@ -62,10 +62,10 @@ class GridImage:
         name: str,
         height: float,
         size: Size,
-        stage: BrowserMessages | None = None,
+        messages: BrowserMessages | None = None,
     ) -> None:
         """stage : where an excerpt of it would be seen"""
-        self._scene, self.name, self._height, self._size, self._stage = scene, name, height, size, stage
+        self._scene, self.name, self._height, self._size, self._messages = scene, name, height, size, messages
         self._handle: viser.ImageHandle | None = None
         self._middle = np.zeros(2)  # of the picture, in the grid's frame
         self._draw: Draw | None = None
@@ -162,7 +162,7 @@ class GridImage:
     def lay(self, closer: Closer, picture: GridPixels | None) -> None:
         """Put an excerpt over it, drawn without the lock: only if it is still one of what is shown."""
         excerpt = closer.excerpt
-        if closer.draw is not self._draw or self._stage is None:
+        if closer.draw is not self._draw or self._messages is None:
             return
         if excerpt is None or picture is None:
             self._bare()
@@ -172,9 +172,9 @@ class GridImage:
         high, wide = (n * picture.pooled for n in picture.pixels.shape[:2])
         low = excerpt.left / cols, excerpt.top / rows
         hole = [*low, low[0] + wide / cols, low[1] + high / rows]
-        self._stage.closer(self.name, {"hole": hole, "png": png_base64(picture.pixels)})
+        self._messages.closer(self.name, {"hole": hole, "png": png_base64(picture.pixels)})
 
     def _bare(self) -> None:
-        if self._laid is not None and self._stage is not None:
-            self._stage.closer(self.name, None)
+        if self._laid is not None and self._messages is not None:
+            self._messages.closer(self.name, None)
         self._laid = None

@@ -37,8 +37,8 @@ def linear(colours: NDArray[np.uint8]) -> NDArray[np.uint8]:
 class HeightsView:
     """Both maps, one behind the other, each around its meeting place; y is up here."""
 
-    def __init__(self, client: viser.ClientHandle, stage: BrowserMessages) -> None:
-        self._scene, self._stage = client.scene, stage
+    def __init__(self, client: viser.ClientHandle, messages: BrowserMessages) -> None:
+        self._scene, self._messages = client.scene, messages
         self._handles: list[viser.SceneNodeHandle] = []
         self._drawn: AugmentDetail | None = None
 
@@ -54,16 +54,16 @@ class HeightsView:
             self._drawn = detail
             for name, augmented, side in (("1", detail.ref, -1.0), ("2", detail.mov, 1.0)):
                 self._bars(name, augmented, side * APART * radius, radius)
-        self._stage.layer("floor", _floor(-1, radius, palette, 1) + _floor(1, radius, palette, 2))
+        self._messages.layer("floor", _floor(-1, radius, palette, 1) + _floor(1, radius, palette, 2))
         if look:
-            self._stage.look_at("heights", np.array([0.0, 0.12 * radius, 0.0]), 1.62 * radius, 0.92, 0.0)
+            self._messages.look_at("heights", np.array([0.0, 0.12 * radius, 0.0]), 1.62 * radius, 0.92, 0.0)
 
     def hide(self) -> None:
         for handle in self._handles:
             handle.remove()
         self._handles.clear()
         self._drawn = None
-        self._stage.layer("floor", None)
+        self._messages.layer("floor", None)
 
     def _bars(self, name: str, augmented: AugmentedMap, away: float, radius: float) -> None:
         """Unlit stems: a lit colour would no longer be the one of the scale."""

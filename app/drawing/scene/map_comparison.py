@@ -26,8 +26,8 @@ def rings(places: tuple[Contradiction, ...], anchor: FloatArray) -> list[dict[st
 class MapComparison:
     """The mode a person has chosen, and what there is to compare."""
 
-    def __init__(self, stage: BrowserMessages, maps: MapView) -> None:
-        self._stage, self._maps = stage, maps
+    def __init__(self, messages: BrowserMessages, maps: MapView) -> None:
+        self._messages, self._maps = messages, maps
         self._conflicts: Contradictions | None = None
         self._modes: tuple[Mode, ...] = ()
         self.mode: Mode = "overlay"
@@ -40,22 +40,22 @@ class MapComparison:
             self.mode = "overlay"
         found = rings(conflicts.places, self._maps.layout.anchor_ref) if conflicts is not None else []
         self._maps.compare(self.mode, conflicts)
-        self._stage.compare(modes=list(self._modes), mode=self.mode, places=found)
+        self._messages.compare(modes=list(self._modes), mode=self.mode, places=found)
         self.recolour(palette)
 
     def recolour(self, palette: Palette) -> None:
         colours = {f"map{number}": css(colour) for number, colour in enumerate(palette.maps, 1)}
-        self._stage.compare(colours={**colours, "conflict": css(palette.conflict)})
+        self._messages.compare(colours={**colours, "conflict": css(palette.conflict)})
 
     def outdate(self) -> None:
         """What was found where is out of date; the maps still lie there."""
-        self._stage.compare(places=[])
+        self._messages.compare(places=[])
 
     def clear(self) -> None:
         """There is nothing to compare."""
         self._conflicts, self._modes, self.mode = None, (), "overlay"
         self._maps.compare("overlay", None)
-        self._stage.compare(modes=[], mode="overlay", places=[])
+        self._messages.compare(modes=[], mode="overlay", places=[])
 
     def choose(self, mode: Mode) -> bool:
         """Compare in this way from now on; whether there is anything to compare in it."""
@@ -63,5 +63,5 @@ class MapComparison:
             return False
         self.mode = mode
         self._maps.compare(mode, self._conflicts)
-        self._stage.compare(mode=mode)
+        self._messages.compare(mode=mode)
         return True

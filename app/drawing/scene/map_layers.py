@@ -37,13 +37,13 @@ class MapLayers:
     """Map 1 lies still; map 2 hangs on the frame /world/map2, which the page turns and slides."""
 
     def __init__(
-        self, scene: viser.SceneApi, size: Size = LAID_OVER, stage: BrowserMessages | None = None
+        self, scene: viser.SceneApi, size: Size = LAID_OVER, messages: BrowserMessages | None = None
     ) -> None:
         """stage : where excerpts of the pictures are seen."""
-        self.changed: Callable[[], Any] = lambda: None  # is told of every change of what is shown
+        self.changed: Callable[[], Any] = lambda: None  # is called after every change of what is shown
 
         def image(name: str, height: float) -> GridImage:
-            return GridImage(scene, f"/world/{name}", height, size, stage)
+            return GridImage(scene, f"/world/{name}", height, size, messages)
 
         def images(name: str, *heights: float) -> tuple[GridImage, ...]:
             """One of every map."""
@@ -134,11 +134,15 @@ class MapLayers:
             self._denied.show(draw, fusion.merged, self._layout.anchor_ref)
         return True
 
-    def touch(self, walls: tuple[WallLookup, WallLookup], told: tuple[CellAgreement, CellAgreement]) -> None:
+    def touch(
+        self, walls: tuple[WallLookup, WallLookup], agreement: tuple[CellAgreement, CellAgreement]
+    ) -> None:
         """Show which walls of both maps coincide, and which the other one denies."""
         if self._layout is None or self._palette is None:
             return
-        for image, one, touch, anchor in zip(self._touches, walls, told, self._layout.anchors, strict=True):
+        for image, one, touch, anchor in zip(
+            self._touches, walls, agreement, self._layout.anchors, strict=True
+        ):
             image.repaint(partial(render.touches, one, touch, self._palette), one.grid, anchor)
         if self.which != "touching":
             self.show("touching")

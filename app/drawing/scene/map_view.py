@@ -26,9 +26,9 @@ OF_A_RUN = ("aug", "window", "box", "swarm", "rival", "best", "matches")
 class MapView:
     """Both maps and the robots, beside each other, over each other, or in a person's hand."""
 
-    def __init__(self, client: viser.ClientHandle, stage: BrowserMessages, size: Size = LAID_OVER) -> None:
-        self._stage = stage
-        self.ground = MapLayers(client.scene, size, stage)
+    def __init__(self, client: viser.ClientHandle, messages: BrowserMessages, size: Size = LAID_OVER) -> None:
+        self._messages = messages
+        self.ground = MapLayers(client.scene, size, messages)
         self.inputs = MergeInputs()
         self.palette = LIGHT
         self.mov_at = Pose2()  # where map 2's anchor lies, and its turn; scene
@@ -50,17 +50,17 @@ class MapView:
         self.place(self.layout.apart, 0)
         self.clear(*OF_A_RUN)
         self.draw_robots(together=False)
-        self._stage.look_down(self.layout.view(), follow=True)
+        self._messages.look_down(self.layout.view(), follow=True)
 
     def turned(self, turn: float) -> None:
         """Turn map 2 where it lies beside map 1."""
         self.place(Pose2(self.layout.apart.x, self.layout.apart.y, turn), SLIDE_MS)
 
-    def recolour(self, palette: Palette, story: RunState) -> None:
+    def recolour(self, palette: Palette, run: RunState) -> None:
         """Draw everything again in other colours."""
         which, self.palette = self.ground.which, palette
         self.ground.load(self.inputs.ref, self.inputs.mov, self.layout, palette)
-        self.ground.lift(story.get(AugmentDetail))
+        self.ground.lift(run.get(AugmentDetail))
         self.ground.show(which)
 
     def visible(self, yes: bool) -> None:
@@ -84,12 +84,12 @@ class MapView:
         self.place(at, 0)
         self.draw_robots(together=True)
         hull = known_hull(mov) - self.layout.anchor_mov
-        self._stage.layer("grip", signs.grip(hull, self.palette))
-        self._stage.hand({"mov": {"hull": hull, "arm": signs.TURN_ARM, "cell": mov.resolution}})
+        self._messages.layer("grip", signs.grip(hull, self.palette))
+        self._messages.hand({"mov": {"hull": hull, "arm": signs.TURN_ARM, "cell": mov.resolution}})
 
     def let_go(self) -> None:
         """Nothing is in a person's hand."""
-        self._stage.hand(None)
+        self._messages.hand(None)
         self.clear("grip")
         if self.ground.which == "touching":
             self.ground.show("sources")
@@ -110,7 +110,7 @@ class MapView:
 
     # --- parts ------------------------------------------------------------------------------------
 
-    def read_out(self, place: FloatArray, story: RunState) -> str:
+    def read_out(self, place: FloatArray, run: RunState) -> str:
         """What both maps know of a place in the scene: coordinates, occupancy, level."""
         point = place + self.layout.anchor_ref
         there = self.mov_at.inverse().apply(place) + self.layout.anchor_mov
@@ -119,7 +119,7 @@ class MapView:
         if mov is not None and mov.contains(there) and not (ref is not None and ref.contains(point)):
             frame, at = 2, there
         parts = [f"x {at[0]:.2f} m, y {at[1]:.2f} m in map {frame}"]
-        augmented = story.get(AugmentDetail)
+        augmented = run.get(AugmentDetail)
         for number, grid, at in ((1, ref, point), (2, mov, there)):
             if grid is None:
                 continue
@@ -143,22 +143,22 @@ class MapView:
         if at is None or self.inputs.ref is None:
             self.clear("robots", "sight")
             return
-        o, *_ = told = self.inputs.observations
+        o, *_ = observations = self.inputs.observations
         here, colours = self.layout, self.palette
-        self._stage.layer("robots", signs.robots(o, here, colours, mov, together, seen))
-        further = signs.further(told, self.inputs.encounters, here, colours, mov, together)
+        self._messages.layer("robots", signs.robots(o, here, colours, mov, together, seen))
+        further = signs.further(observations, self.inputs.encounters, here, colours, mov, together)
         sight = signs.sight(o, at, here, colours, apart=mov and not together, close=not seen)
-        self._stage.layer("sight", further + sight)
+        self._messages.layer("sight", further + sight)
 
     def place(self, at: Pose2, milliseconds: float) -> None:
         """Put map 2 at a place of the scene, gliding for so long."""
         if at != self.mov_at or milliseconds == 0:
             self.mov_at = at
-            self._stage.place_map(2, at, milliseconds)
+            self._messages.place_map(2, at, milliseconds)
 
     def clear(self, *names: str) -> None:
         for name in names:
-            self._stage.layer(name, None)
+            self._messages.layer(name, None)
         if "rival" in names:
             self.ground.ghost(None)
         if "box" in names:

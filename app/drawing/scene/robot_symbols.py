@@ -18,7 +18,7 @@ from app.model.observation_draft import ObservationDraft
 ZERO = np.zeros(2)  # the meeting place of the first sighting, in both frames
 TURN_ARM = 90  # px from robot 2 to the knob that turns map 2; map_editing.js knows it as the knob's arm
 KNOB_ARM = 34  # px from a robot to the knob that turns it; map_editing.js knows it as ARM
-QUIET = 0.55  # opacity of what is told beside the first sighting
+QUIET = 0.55  # opacity of what is drawn beside the first sighting
 
 
 def robot(

@@ -38,7 +38,7 @@ def windows(
 
     turn : of map 2 at hand, radians: as printed the window bounds where map 2's origin goes, and robot 2
            stands off that by the turned x̂2
-    view : what the camera shows; a window beyond it is told by its size
+    view : what the camera shows; a window beyond it is given by its size
     """
     coupled = isinstance(detail.window, CoupledWindow)
     printed = detail.paper if coupled else detail.window

@@ -60,34 +60,34 @@ def proven_optimum(proven: ProvenDetail, detail: RefineDetail, palette: Palette)
 class SwarmView:
     """Particles, a few trails, the swarm's best, the proven optimum, and shadows on floor and walls."""
 
-    def __init__(self, stage: BrowserMessages) -> None:
-        self._stage = stage
+    def __init__(self, messages: BrowserMessages) -> None:
+        self._messages = messages
         self._trail: list[FloatArray] = []
         self._of: tuple[SearchBox | None, Palette | None] = None, None  # whose frame is drawn
 
     def hide(self) -> None:
         for name in ("axes", "swarm", "trail", "best", "rival", "floor"):
-            self._stage.layer(name, None)
+            self._messages.layer(name, None)
         self._trail.clear()
         self._of = None, None
 
-    def show(self, story: RunState, palette: Palette, look: bool) -> None:
+    def show(self, run: RunState, palette: Palette, look: bool) -> None:
         """Draw the newest snapshot; ``look`` puts the camera before the box."""
-        detail = story.swarm
+        detail = run.swarm
         if look:
-            self._stage.look_at("swarm", np.array([0.0, 0.0, 0.0]), 1.95, 1.15, -0.55)
+            self._messages.look_at("swarm", np.array([0.0, 0.0, 0.0]), 1.95, 1.15, -0.55)
         if detail is None:
             how = {"t": "Press Merge: the swarm appears here.", "align": "center", "size": 14}
-            self._stage.layer("axes", [mark("dot", np.zeros(3), palette.margin, r=0.1, **how)])
+            self._messages.layer("axes", [mark("dot", np.zeros(3), palette.margin, r=0.1, **how)])
             return
-        proven = story.get(ProvenDetail)
+        proven = run.get(ProvenDetail)
         known = proven is not None and proven.state.best is not None
-        self._stage.layer("rival", proven_optimum(proven, detail, palette) if known else None)
+        self._messages.layer("rival", proven_optimum(proven, detail, palette) if known else None)
         low, high = detail.box.low, detail.box.high
         if self._of[0] is not detail.box or self._of[1] is not palette:
             self._of = detail.box, palette
             self._trail.clear()
-            self._stage.layer("axes", self._frame(detail, palette))
+            self._messages.layer("axes", self._frame(detail, palette))
         step = -(-len(detail.state.poses) // POINTS)
         cube = to_cube(detail.state.poses[::step], low, high)
         best = to_cube(detail.state.best[None], low, high)[0]
@@ -96,16 +96,16 @@ class SwarmView:
         shadows = cube.copy(), cube.copy(), cube.copy()  # on the floor, behind, at the side
         shadows[0][:, 1], shadows[1][:, 2], shadows[2][:, 0] = -1, -1, 1
         flat = [cloud(shadow, palette.margin, r=1.4, alpha=0.28, **glide) for shadow in shadows]
-        self._stage.layer("floor", flat)
+        self._messages.layer("floor", flat)
         if len(self._trail) > 1:
             trails = np.stack(self._trail, axis=1)  # (particles, times, 3)
-            self._stage.layer("trail", [path(line, palette.particle, alpha=0.35, w=1) for line in trails])
-        self._stage.layer("swarm", [cloud(cube, palette.particle, r=3, alpha=0.9, **glide)])
+            self._messages.layer("trail", [path(line, palette.particle, alpha=0.35, w=1) for line in trails])
+        self._messages.layer("swarm", [cloud(cube, palette.particle, r=3, alpha=0.9, **glide)])
         x, y, z = best.tolist()
         feet = [x, -1, z], [x, y, -1], [1, y, z]
         legs = [path(np.array([best, foot]), palette.best, w=1, d=[2, 3]) for foot in feet]
         diamond = mark("diamond", best, palette.best, r=7, rim="#ffffff", t="swarm best")
-        self._stage.layer("best", [*legs, diamond])
+        self._messages.layer("best", [*legs, diamond])
 
     @staticmethod
     def _frame(detail: RefineDetail, palette: Palette) -> list[Item]:

@@ -44,12 +44,12 @@ def bars(verdict: Verdict, palette: Palette) -> str:
     middle = WIDE / 2
     sheet.text(middle - 6, 33, "◀ speaks against", 10.5, "end", alpha=0.8)
     sheet.text(middle + 6, 33, "speaks for ▶", 10.5, alpha=0.8)
-    told = values(verdict)
+    shown = values(verdict)
     for row, name in enumerate(named):
         y, moved = TOP + ROW * row, verdict.contributions.get(name, 0.0)
         colour = LIGHT.mov if moved >= 0 else LIGHT.conflict
         sheet.text(0, y + 11, named[name], 11)
-        sheet.text(WIDE, y + 11, told[name], 12, "end", bold=True)
+        sheet.text(WIDE, y + 11, shown[name], 12, "end", bold=True)
         sheet.rect(0, y + 17, WIDE, 10, palette.margin, alpha=0.15)
         long = middle * min(1.0, abs(moved) / FULL)
         sheet.rect(middle if moved >= 0 else middle - long, y + 17, long, 10, css(colour))

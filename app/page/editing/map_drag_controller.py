@@ -246,9 +246,9 @@ class MapDragController:
                 return
             self._modes.close()
             run = RunState(state.config)
-            run.tell(Step("observe", ObservationDetail(result.encounters), 0.0))
-            run.tell(Step("fuse", result.fusion, 0.0))
-            run.tell(Step("verdict", result, 0.0))
+            run.add(Step("observe", ObservationDetail(result.encounters), 0.0))
+            run.add(Step("fuse", result.fusion, 0.0))
+            run.add(Step("verdict", result, 0.0))
             with self._locks.drawing:
                 snapshot = replace(state.snapshot(), hand=result.T_ref_mov)
                 self._undo.history.note(snapshot, "take it by hand")

@@ -190,7 +190,7 @@ class LessonController:
     def begun(self, job: MergeJob) -> None:
         """The run starts."""
 
-    def show(self, job: MergeJob, story: RunState) -> None:
+    def show(self, job: MergeJob, run: RunState) -> None:
         """The run goes on: what a picture waits for may be there."""
         text, had = self._text, self._study
         if text is None or text.picture not in PICTURES or had.reached(*PICTURES[text.picture].needs):
@@ -200,22 +200,22 @@ class LessonController:
             self._study = early
             self._show(fresh=True)
 
-    def ending(self, job: MergeJob, story: RunState) -> None:
+    def ending(self, job: MergeJob, run: RunState) -> None:
         """There is nothing to work out."""
 
     def waits(self, job: MergeJob, before: int) -> None:
         """Other tabs' runs are at work; the picture says that it is being worked out."""
 
-    def ended(self, job: MergeJob, story: RunState) -> None:
+    def ended(self, job: MergeJob, run: RunState) -> None:
         had = bool(self._study.steps)
         self._study = LessonRun(self._study.inputs, job.config, job.seed, tuple(self._steps))
         self._done = True
         self._show(fresh=not had)
 
-    def stopped(self, job: MergeJob, story: RunState) -> None:
+    def stopped(self, job: MergeJob, run: RunState) -> None:
         """The run is no longer wanted."""
 
-    def failed(self, job: MergeJob, story: RunState, error: Exception) -> None:
+    def failed(self, job: MergeJob, run: RunState, error: Exception) -> None:
         self._done = True
         self._panel.picture(f"These maps cannot be merged: {error}")
 

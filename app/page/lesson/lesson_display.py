@@ -41,8 +41,8 @@ class LessonDisplay:
         """Show what a step says; ``answered``: numbers of the things to try whose answers are shown."""
         numbers = numbers_of(study) if study.possible else {}
         self._panel.text(index, text.title, filled(text.body, numbers), text.equations, OWN)
-        told = enumerate(filled(trial.answer, numbers) for trial in text.trials)
-        self._panel.trials(text.trials, [answer if k in answered else "" for k, answer in told])
+        answers = enumerate(filled(trial.answer, numbers) for trial in text.trials)
+        self._panel.trials(text.trials, [answer if k in answered else "" for k, answer in answers])
 
     def picture(self, text: StepText, study: LessonRun, says: str, fresh: bool, done: bool) -> None:
         """Draw a step's picture, and what belongs to it on the map; or say why there is none yet.
@@ -65,7 +65,7 @@ class LessonDisplay:
         self._panel.picture(picture.draw(study, places, state.palette))
         ink = picture.ink(study, places, self._display.views.map.layout, state.palette)
         turn = picture.turn(study, places) if picture.turn else None
-        self.run(picture.story(study, places), says, fresh, ink, turn)
+        self.run(picture.run(study, places), says, fresh, ink, turn)
 
     def run(
         self,

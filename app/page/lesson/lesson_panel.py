@@ -130,14 +130,14 @@ class LessonPanel:
             for dial, slider in zip(self._dials, self._sliders, strict=False)
         )
 
-    def trials(self, trials: Sequence[Exercise], told: Sequence[str]) -> None:
-        """Show what there is to try; ``told``: the answer to each, "" where it is not shown yet."""
+    def trials(self, trials: Sequence[Exercise], answers: Sequence[str]) -> None:
+        """Show what there is to try; ``answers``: the answer to each, "" where it is not shown yet."""
         for k, (ask, button) in enumerate(zip(self._asks, self._buttons, strict=True)):
             there = k < len(trials)
             if there:
-                answer = f'<div class="mm-answer">{escape(told[k])}</div>' if told[k] else ""
+                answer = f'<div class="mm-answer">{escape(answers[k])}</div>' if answers[k] else ""
                 put(ask, content=f'<div class="mm-try"><b>Try</b> {escape(trials[k].ask)}{answer}</div>')
                 on, off = (trials[k].button, PUT_BACK) if trials[k].button else (ANSWER, HIDE)
-                put(button, label=off if told[k] else on)
+                put(button, label=off if answers[k] else on)
             put(ask, visible=there)
             put(button, visible=there)

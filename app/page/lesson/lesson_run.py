@@ -59,13 +59,13 @@ class LessonRun:
         """Whether the run has come to all of these."""
         return {type(step.detail) for step in self.steps}.issuperset(kinds)
 
-    def story(self, kind: type, index: int = -1) -> RunState:
+    def run_until(self, kind: type, index: int = -1) -> RunState:
         """The run up to a step of a kind, as the page draws it; empty where it has not come to it."""
         found = [k for k, step in enumerate(self.steps) if isinstance(step.detail, kind)]
-        story = RunState(self.config)
+        run = RunState(self.config)
         for step in self.steps[: found[index] + 1] if found else ():
-            story.tell(step)
-        return story
+            run.add(step)
+        return run
 
     # --- worked out once --------------------------------------------------------------------------
 

@@ -72,8 +72,8 @@ def _disc(window: CoupledWindow) -> float:
 
 
 def _ratio(study: LessonRun) -> str:
-    told = study.get(WindowDetail)
-    return f"{float(np.prod(told.paper.high - told.paper.low)) / _disc(told.coupled):,.0f}"
+    windows = study.get(WindowDetail)
+    return f"{float(np.prod(windows.paper.high - windows.paper.low)) / _disc(windows.coupled):,.0f}"
 
 
 def _transforms(study: LessonRun) -> str:

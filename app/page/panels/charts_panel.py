@@ -122,11 +122,11 @@ class ChartsPanel:
             chart.data = nothing(len(chart.data) - 1)
         self._show_page()
 
-    def show(self, story: RunState, follow: bool) -> None:
+    def show(self, run: RunState, follow: bool) -> None:
         """Draw what has changed since the last call; ``follow`` turns to the page of the stage at hand."""
-        detail = story.last.detail if story.last else None
-        hough, found, proof = story.get(HoughDetail), story.get(CandidatesDetail), story.get(ProofDetail)
-        refine, measure, chosen = story.get(RefineDetail), story.measure, story.at_hand
+        detail = run.last.detail if run.last else None
+        hough, found, proof = run.get(HoughDetail), run.get(CandidatesDetail), run.get(ProofDetail)
+        refine, measure, chosen = run.get(RefineDetail), run.measure, run.at_hand
         if isinstance(detail, TurnsDetail):
             self._forget("hough", "turns")  # of an earlier run, with spectra
             self._draw("circle", detail, lambda: charts.circle(detail, measure.name))
@@ -143,17 +143,17 @@ class ChartsPanel:
             self._draw("x", chosen, lambda: charts.shift_correlation(x, charts.SHIFT_X))
             self._draw("y", chosen, lambda: charts.shift_correlation(y, charts.SHIFT_Y))
         if refine is not None:
-            self._draw("climb", refine, lambda: charts.climb(story.courses, measure))
+            self._draw("climb", refine, lambda: charts.climb(run.courses, measure))
         if found is not None and self._new("candidates", (found, refine)):
-            rows = charts.candidate_rows(found.candidates, story.courses, measure)
+            rows = charts.candidate_rows(found.candidates, run.courses, measure)
             self._candidates.content = table(rows, ("rank", "Δθ", "Δx (m)", "Δy (m)", "look", "swarm"))
         if proof is not None:
-            if self._draw("proof", proof, lambda: charts.proof(proof.state, story.ceiling, measure)):
+            if self._draw("proof", proof, lambda: charts.proof(proof.state, run.ceiling, measure)):
                 self._proof_says.content = box(words.proof_says(proof.state, measure), "plain")
                 head = ("on the raster", "Δθ", measure.unit or measure.name, "of the best")
                 rows = charts.proof_rows(proof.state, measure)
                 self._rivals.content = table(rows, head) if rows else ""
-        elif story.reached(Fusion):  # of an earlier run; this method proves nothing
+        elif run.reached(Fusion):  # of an earlier run; this method proves nothing
             self._forget("proof")
         if follow and not self._chosen:
             self.page = row_of(detail).page or self.page

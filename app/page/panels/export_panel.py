@@ -131,7 +131,7 @@ class ReplayButton:
     def _save(self) -> None:
         name, make = self._name, self._make
         if make is not None:
-            self._deliver("Recording the run: it is told once more, for the file.", file_name(name), make)
+            self._deliver("Recording the run: it is played once more, for the file.", file_name(name), make)
 
 
 def file_name(name: str) -> str:

@@ -155,14 +155,14 @@ class ComparisonController:
 
     # --- what the work tells ----------------------------------------------------------------------
 
-    def told(self, part: tuple[OtherResult, str]) -> None:
+    def part_done(self, part: tuple[OtherResult, str]) -> None:
         other, picture = part
         self._found[other.method], self._pictures[other.method] = other, picture
         self._waiting.remove(other.method)
         self._panel.say(self._count(), 1 - len(self._waiting) / len(self._asked))
         self._draw()
 
-    def over(self, why: str) -> None:
+    def ended(self, why: str) -> None:
         self._waiting.clear()
         self._panel.say(why or f"{self._count()} It took {self._work.seconds:.1f} s.")
         self._draw()

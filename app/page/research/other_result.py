@@ -92,11 +92,11 @@ class OtherResult:
         run = RunState(self.config)
         augmented = own.get(AugmentDetail)
         if augmented is not None:
-            run.tell(Step("augment", augmented, 0.0))
+            run.add(Step("augment", augmented, 0.0))
         answers = AnswersDetail((Answer(self.pose, 0.0, "of another method"),))
-        run.tell(Step("observe", ObservationDetail(encounters_of(seen, ref, mov)), 0.0))
-        run.tell(Step("search", answers, 0.0))
-        run.tell(Step("fuse", fuse((ref, mov), (Pose2(), self.pose)), 0.0))
+        run.add(Step("observe", ObservationDetail(encounters_of(seen, ref, mov)), 0.0))
+        run.add(Step("search", answers, 0.0))
+        run.add(Step("fuse", fuse((ref, mov), (Pose2(), self.pose)), 0.0))
         return run
 
     def sentence(self) -> str:

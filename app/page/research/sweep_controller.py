@@ -198,7 +198,7 @@ class SweepController:
 
     # --- what the work tells ----------------------------------------------------------------------
 
-    def told(self, part: SweepPoint) -> None:
+    def part_done(self, part: SweepPoint) -> None:
         self._points[self._numbers[part.x, part.y]] = part
         done, total = len(self._points), len(self._numbers)
         fresh, left = done - self._known, ""
@@ -207,7 +207,7 @@ class SweepController:
         self._panel.say(f"{self._count()}{left}", done / total)
         self._draw()
 
-    def over(self, why: str) -> None:
+    def ended(self, why: str) -> None:
         lost = next((point.failed for point in self._points.values() if point.failed), "")
         said = f"{self._count()} It took {self._work.seconds:.1f} s."
         self._panel.say(why or (f"{said} Could not be run: {sentence(lost)}" if lost else said))

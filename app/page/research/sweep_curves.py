@@ -69,8 +69,8 @@ def text_of(value: float, measure: str) -> str:
 def row(plan: SweepPlan, point: SweepPoint, listed: Sequence[str]) -> list[str]:
     """A point in a table: the value of the first setting, and these measures."""
     values = [(measure, reading(point, measure)) for measure in listed]
-    told = ("–" if found is None else text_of(found.middle, measure) for measure, found in values)
-    return [word_of(plan, plan.x, point.x), *told]
+    words = ("–" if found is None else text_of(found.middle, measure) for measure, found in values)
+    return [word_of(plan, plan.x, point.x), *words]
 
 
 # ---- where points stand

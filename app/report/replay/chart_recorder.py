@@ -31,32 +31,32 @@ FINEST = 360  # points of a curve, at most; of a finer one the highest of each g
 Recorded = dict[str, Any]
 
 
-def curves(story: RunState) -> list[Recorded]:
+def curves(run: RunState) -> list[Recorded]:
     """The charts for what the run has come to, and a line of words below them; [] where there is none."""
-    detail = story.last.detail if story.last else None
+    detail = run.last.detail if run.last else None
     if isinstance(detail, (ObservationDetail, AugmentDetail, MergeResult)):
         return []  # numbers are shown
     if isinstance(detail, HoughDetail):
-        return _turning(story)
+        return _turning(run)
     searching = isinstance(detail, (RefineDetail, AnswersDetail))
-    if isinstance(detail, ProvenDetail) or (story.reached(ProofDetail) and not searching):
-        return [_proof(story)]
-    if story.courses or searching:
-        return [_climb(story)]
-    return _shifting(story) or _turning(story)
+    if isinstance(detail, ProvenDetail) or (run.reached(ProofDetail) and not searching):
+        return [_proof(run)]
+    if run.courses or searching:
+        return [_climb(run)]
+    return _shifting(run) or _turning(run)
 
 
-def _turning(story: RunState) -> list[Recorded]:
-    hough = story.get(HoughDetail)
+def _turning(run: RunState) -> list[Recorded]:
+    hough = run.get(HoughDetail)
     if hough is None:
         return []
     return [recorded(charts.hough_spectra(hough.match)), recorded(charts.turn_correlation(hough.match, None))]
 
 
-def _shifting(story: RunState) -> list[Recorded]:
+def _shifting(run: RunState) -> list[Recorded]:
     """The turn at hand among all turns, and how far map 2 is off along x and y."""
-    hough, chosen = story.get(HoughDetail), story.at_hand
-    if chosen is None or hough is None or not story.reached(WindowDetail):
+    hough, chosen = run.get(HoughDetail), run.at_hand
+    if chosen is None or hough is None or not run.reached(WindowDetail):
         return []
     return [
         recorded(charts.turn_correlation(hough.match, chosen.T_ref_mov.theta)),
@@ -65,22 +65,22 @@ def _shifting(story: RunState) -> list[Recorded]:
     ]
 
 
-def _climb(story: RunState) -> Recorded:
-    chart = charts.climb(story.courses, story.measure)
+def _climb(run: RunState) -> Recorded:
+    chart = charts.climb(run.courses, run.measure)
     x, *values = chart.columns
     top = max(float(course.max()) for course in values)
-    lengths = [*map(len, story.courses), *[0] * len(values)]
+    lengths = [*map(len, run.courses), *[0] * len(values)]
     values = [np.where(x <= length, course, np.nan) for course, length in zip(values, lengths, strict=False)]
     across, up = (0.0, max(LEAST, float(x[-1]))), (0.0, 1.1 * top if top > 0 else 1.0)
     named = tuple(replace(curve, name=f"candidate {curve.name}") for curve in chart.curves)
     return recorded(replace(chart, curves=named, across=across, up=up, columns=(x, *values)))
 
 
-def _proof(story: RunState) -> Recorded:
-    proof = story.get(ProofDetail)
+def _proof(run: RunState) -> Recorded:
+    proof = run.get(ProofDetail)
     assert proof is not None
-    chart = charts.proof(proof.state, story.ceiling, story.measure)
-    return recorded(chart) | {"says": words.proof_says(proof.state, story.measure)}
+    chart = charts.proof(proof.state, run.ceiling, run.measure)
+    return recorded(chart) | {"says": words.proof_says(proof.state, run.measure)}
 
 
 def recorded(chart: Chart) -> Recorded:

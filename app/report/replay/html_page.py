@@ -87,10 +87,10 @@ def replay_of(
     """
 
     def watched() -> Iterator[Step]:
-        story = RunState(job.config)
+        run = RunState(job.config)
         for step in steps(job, partial(wanted, check)):
-            story.tell(step)
-            check(words.progress(story))
+            run.add(step)
+            check(words.progress(run))
             yield step
         check()  # they end early where they are not wanted
 

@@ -95,42 +95,42 @@ def record(steps: Iterable[Step], inputs: MergeInputs, config: Any) -> Recording
     returns: what player.js plays, as JSON can hold it; lengths in metres, times in seconds
     """
     scene = PictureScene()
-    stage = Recorder(scene)
-    maps = MapView(SimpleNamespace(scene=scene), stage, Size(PICTURE, PICTURE))  # type: ignore[arg-type]
+    recording = Recorder(scene)
+    maps = MapView(SimpleNamespace(scene=scene), recording, Size(PICTURE, PICTURE))  # type: ignore[arg-type]
     maps.load(inputs, lay_out(inputs.ref, inputs.mov, inputs.at, ASPECT), LIGHT)
-    view = RunView(maps, stage)
-    story, marks, result = RunState(config), [{"t": 0.0, "name": "Maps"}], None
-    stage.hud(state=words.SIDE_BY_SIDE, mood="running", legend=legend(LIGHT, MAP, story))
-    stage.extra(curves=[], table=beginning(inputs))
-    stage.flush()
-    stage.time, drawn_at, at_work = BEFORE, -FRAME, ""
+    view = RunView(maps, recording)
+    run, marks, result = RunState(config), [{"t": 0.0, "name": "Maps"}], None
+    recording.hud(state=words.SIDE_BY_SIDE, mood="running", legend=legend(LIGHT, MAP, run))
+    recording.extra(curves=[], table=beginning(inputs))
+    recording.flush()
+    recording.time, drawn_at, at_work = BEFORE, -FRAME, ""
     for step in steps:
-        story.tell(step)
+        run.add(step)
         if step.stage != at_work:
             at_work = step.stage
             name = STAGES.get(at_work, at_work)
-            marks.append({"t": round(stage.time, 3), "name": name[0].upper() + name[1:]})
+            marks.append({"t": round(recording.time, 3), "name": name[0].upper() + name[1:]})
             drawn_at = -FRAME  # its first picture is not left out
         if isinstance(step.detail, MergeResult):
             result = step.detail
         stay = dwell(step, 1.0, again=True)
-        if stay >= FRAME or stage.time - drawn_at >= FRAME or result is not None:
-            drawn_at = stage.time
-            _draw(story, stage, view, inputs, config)
-        stage.time += stay
+        if stay >= FRAME or recording.time - drawn_at >= FRAME or result is not None:
+            drawn_at = recording.time
+            _draw(run, recording, view, inputs, config)
+        recording.time += stay
         if result is not None:
             break
     assert result is not None
     rows = _typeset(numbers(result, inputs, config))
     mood = verdict_text.mood(result.verdict)
-    stage.hud(mood=mood, state=result.verdict.reason)
-    stage.extra(table={"rows": rows, "says": verdict_text.remedy(result), "mood": mood})
-    stage.flush()
+    recording.hud(mood=mood, state=result.verdict.reason)
+    recording.extra(table={"rows": rows, "says": verdict_text.remedy(result), "mood": mood})
+    recording.flush()
     return {
-        "frames": stage.frames,
+        "frames": recording.frames,
         "pictures": scene.pictures,
         "marks": marks,
-        "length": round(stage.time + AFTER, 3),
+        "length": round(recording.time + AFTER, 3),
         "verdict": result.verdict.reason,
     }
 
@@ -160,15 +160,15 @@ def _typeset(rows: Iterable[tuple[str, ...]]) -> list[list[str]]:
     return [[name, *map(typeset, values)] for name, *values in rows]
 
 
-def _draw(story: RunState, stage: Recorder, view: RunView, inputs: MergeInputs, config: Any) -> None:
-    detail = story.last.detail if story.last else None
+def _draw(run: RunState, recording: Recorder, view: RunView, inputs: MergeInputs, config: Any) -> None:
+    detail = run.last.detail if run.last else None
     later = isinstance(detail, RefineDetail) and detail.index > 0
-    stage.particles = LATER_PARTICLES if later else PARTICLES
-    view.show(story, config, camera=True, live=True)
-    stage.hud(state=words.sentence(story), mood="running", legend=legend(LIGHT, MAP, story))
+    recording.particles = LATER_PARTICLES if later else PARTICLES
+    view.show(run, config, camera=True, live=True)
+    recording.hud(state=words.sentence(run), mood="running", legend=legend(LIGHT, MAP, run))
     seen = isinstance(detail, (ObservationDetail, AugmentDetail))
-    stage.extra(curves=curves(story), table=observed(inputs) if seen else None)
-    stage.flush()
+    recording.extra(curves=curves(run), table=observed(inputs) if seen else None)
+    recording.flush()
 
 
 def _compact(value: Any) -> Any:

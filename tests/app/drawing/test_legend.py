@@ -37,7 +37,7 @@ def steps(small_case) -> list[Step]:
 def story_of(steps: list[Step]) -> RunState:
     story = RunState(PROVEN)
     for step in steps:
-        story.tell(step)
+        story.add(step)
     return story
 
 

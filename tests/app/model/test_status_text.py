@@ -25,14 +25,14 @@ def told(small_case) -> RunState:
     """A whole run of the method with the proof."""
     story = RunState(PROVEN)
     for step in run("spectra-proven", small_case.ref, small_case.mov, small_case.observations, PROVEN):
-        story.tell(step)
+        story.add(step)
     return story
 
 
 def proving(told: RunState, **changes) -> str:
     story = RunState(PROVEN)
     window = told.get(ProofDetail).window
-    story.tell(Step("prove", ProofDetail(proof_state(**changes), window), 0.0))
+    story.add(Step("prove", ProofDetail(proof_state(**changes), window), 0.0))
     return words.sentence(story)
 
 
@@ -41,7 +41,7 @@ def ended(told: RunState, found_it: bool, T: Pose2 | None = None, **changes) -> 
     story = replace(told, _newest=dict(told._newest))
     proven = told.get(ProvenDetail)
     peak = replace(proven.peak, T_ref_mov=T) if T else proven.peak
-    story.tell(Step("prove", ProvenDetail(proof_state(**changes), peak, found_it), 0.0))
+    story.add(Step("prove", ProvenDetail(proof_state(**changes), peak, found_it), 0.0))
     return words.sentence(story)
 
 
@@ -112,7 +112,7 @@ def test_the_line_above_the_proof_is_a_sentence_without_infinities(state):
 def test_a_run_with_a_proof_never_speaks_of_gamma_where_it_means_the_agreement(small_case):
     story, said, shares = RunState(PROVEN), [], []
     for step in run("spectra-proven", small_case.ref, small_case.mov, small_case.observations, PROVEN):
-        story.tell(step)
+        story.add(step)
         said.append(words.sentence(story))
         shares.append(words.progress(story))
     assert not [line for line in said if "Γ" in line]

@@ -41,7 +41,7 @@ def asked(runs: RunController):
 
 def ended(result) -> RunState:
     run = RunState()
-    run.tell(Step("verdict", result, 0.0))
+    run.add(Step("verdict", result, 0.0))
     return run
 
 

@@ -59,46 +59,46 @@ class LessonFigure:
 
     needs : what the run must have come to
     draw  : makes the SVG, given where the dials stand
-    story : the run as far as the map shows it
+    run   : the run as far as the map shows it
     dials : what can be moved; asked once ``needs`` is there
     ink   : what is drawn over the map besides
-    turn  : how far map 2 is turned where it lies beside map 1; None: as the story has it
+    turn  : how far map 2 is turned where it lies beside map 1; None: as the run has it
     """
 
     needs: tuple[type, ...]
     draw: Callable[[LessonRun, At, Palette], str]
-    story: Callable[[LessonRun, At], RunState]
+    run: Callable[[LessonRun, At], RunState]
     dials: Callable[[LessonRun], tuple[FigureSlider, ...]] = lambda _: ()
     ink: Callable[[LessonRun, At, SceneLayout, Palette], list[Item]] = lambda *_: []
     turn: Callable[[LessonRun, At], float] | None = None
 
 
 def _up_to(kind: type) -> Callable[[LessonRun, At], RunState]:
-    return lambda study, at: study.story(kind)
+    return lambda study, at: study.run_until(kind)
 
 
 def _nth(kind: type) -> Callable[[LessonRun, At], RunState]:
-    return lambda study, at: study.story(kind, min(at[0], len(study.all(kind)) - 1))
+    return lambda study, at: study.run_until(kind, min(at[0], len(study.all(kind)) - 1))
 
 
 def _searching(
-    states: Callable[[LessonRun], list[SearchState]], ahead: int
+    states_of: Callable[[LessonRun], list[SearchState]], ahead: int
 ) -> Callable[[LessonRun, At], RunState]:
     """The run up to the candidates, and then this search in the best one's box."""
 
-    def story(study: LessonRun, at: At) -> RunState:
-        told, run = states(study), study.story(CandidatesDetail)
-        state = told[min(at[0] + ahead, len(told) - 1)]
-        run.tell(Step("refine", RefineDetail(0, 1, study.box, state), 0.0))
+    def run_until(study: LessonRun, at: At) -> RunState:
+        states, run = states_of(study), study.run_until(CandidatesDetail)
+        state = states[min(at[0] + ahead, len(states) - 1)]
+        run.add(Step("refine", RefineDetail(0, 1, study.box, state), 0.0))
         return run
 
-    return story
+    return run_until
 
 
 def _looking(study: LessonRun, at: At) -> RunState:
     """The run up to a look at the proof."""
     chosen = search.looks(study)
-    return study.story(ProofDetail, chosen[min(at[0], len(chosen) - 1)])
+    return study.run_until(ProofDetail, chosen[min(at[0], len(chosen) - 1)])
 
 
 def _lines(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
@@ -121,9 +121,9 @@ def _lines(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> l
 
 def _moves(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
     """Every particle's last step, and the three pulls on the chosen one, end to end."""
-    told, j = study.few, min(at[1], FEW - 1)
-    k = min(at[0] + 1, len(told) - 1)
-    before, after = told[max(0, k - 1)], told[k]
+    states, j = study.few, min(at[1], FEW - 1)
+    k = min(at[0] + 1, len(states) - 1)
+    before, after = states[max(0, k - 1)], states[k]
     items = [
         path(np.array([start, end]) - layout.anchor_ref, palette.particle, alpha=0.7, w=1)
         for start, end in zip(before.poses[:, :2], after.poses[:, :2], strict=True)

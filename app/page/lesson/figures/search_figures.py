@@ -37,7 +37,7 @@ def transforms(x: FloatArray, y: FloatArray, turn: FloatArray | float, pivot: Fl
 
 def best_of(study: LessonRun) -> Pose2:
     """The best transform that the run has come to."""
-    answer = study.story(type(study.steps[-1].detail)).answer if study.steps else None
+    answer = study.run_until(type(study.steps[-1].detail)).answer if study.steps else None
     return study.box.transform(study.box.centre) if answer is None else answer
 
 
@@ -126,36 +126,36 @@ def _box_plot(study: LessonRun, sheet: SvgCanvas, x: float, y: float, side: floa
 
 def samples(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The darts so far in the box, the best of them, and how the best value climbed."""
-    told, sheet = study.samples, SvgCanvas(232)
-    k = min(at[0], len(told) - 1)
+    states, sheet = study.samples, SvgCanvas(232)
+    k = min(at[0], len(states) - 1)
     plot = _box_plot(study, sheet, 42, 18, 160)
-    shown = told[max(0, k - 3) : k + 1]  # the newest ones; all of them would be a blot
-    count = (k + 1) * len(told[0].poses)
+    shown = states[max(0, k - 3) : k + 1]  # the newest ones; all of them would be a blot
+    count = (k + 1) * len(states[0].poses)
     sheet.text(0, 11, f"{count:,} darts", 11, bold=True)
     for age, state in enumerate(reversed(shown)):
         for px, py in plot.at(state.poses[:120, :2]).tolist():
             sheet.dot(px, py, 1.7, palette.particle, None, 0.9 - 0.22 * age)
-    sheet.star(*plot.one(*told[k].best[:2].tolist()), 7, palette.answer, palette.rim)
-    measure, best = measure_of(study.config), np.array([state.best_value for state in told])
+    sheet.star(*plot.one(*states[k].best[:2].tolist()), 7, palette.answer, palette.rim)
+    measure, best = measure_of(study.config), np.array([state.best_value for state in states])
     known = np.where(np.isfinite(best), best, 0.0)
     low, high = float(known.min()), max(float(known.max()), 1e-12)
     low = min(low, 0.9 * high)
-    chart = SvgPlot(sheet, 252, 18, 118, 160, (0, len(told)), (low, high + 0.08 * (high - low)))
+    chart = SvgPlot(sheet, 252, 18, 118, 160, (0, len(states)), (low, high + 0.08 * (high - low)))
     sheet.text(376, 11, f"best so far: {measure.text(float(best[k]))}", 11, "end", bold=True)
-    chart.curve(np.arange(1.0, len(told) + 1), known, css(palette.margin), 1, alpha=0.6)
+    chart.curve(np.arange(1.0, len(states) + 1), known, css(palette.margin), 1, alpha=0.6)
     chart.curve(np.arange(1.0, k + 2), known[: k + 1], css(palette.particle), 2.2)
-    chart.axes(f"throws of {len(told[0].poses):,}", "", ticks(0, len(told), 3), ticks(low, high, 4))
+    chart.axes(f"throws of {len(states[0].poses):,}", "", ticks(0, len(states), 3), ticks(low, high, 4))
     return sheet.svg("Samples in the box and the best of them")
 
 
 def swarm(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """One move of the swarm: all particles in the box, and the pulls on the chosen one from near by."""
-    told = study.few
-    k, j = min(at[0] + 1, len(told) - 1), min(at[1], FEW - 1)
-    before, after = told[max(0, k - 1)], told[k]
+    states = study.few
+    k, j = min(at[0] + 1, len(states) - 1), min(at[1], FEW - 1)
+    before, after = states[max(0, k - 1)], states[k]
     sheet = SvgCanvas(284)
     plot = _box_plot(study, sheet, 42, 18, 160)
-    sheet.text(0, 11, f"move {k} of {len(told) - 1}: all {FEW} particles", 11, bold=True)
+    sheet.text(0, 11, f"move {k} of {len(states) - 1}: all {FEW} particles", 11, bold=True)
     ends = (plot.at(state.poses[:, :2]).tolist() for state in (before, after))
     for n, (start, end) in enumerate(zip(*ends, strict=True)):
         sheet.path([start, end], palette.particle, 1, alpha=0.8)
@@ -235,7 +235,7 @@ def proof(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         sheet.image(upright(viridis(pooled / top)), 96.0 * k, 18, 90, 90)
         sheet.text(96.0 * k + 45, 121, f"{size} cell{'s' if size > 1 else ''}", 10, "middle")
     measure = measure_of(study.config)
-    chart = charts.proof(state, study.story(ProofDetail).ceiling, measure)
+    chart = charts.proof(state, study.run_until(ProofDetail).ceiling, measure)
     plot = SvgPlot(sheet, 42, 150, 324, 118, (-180, 180), chart.up)
     left = "proven" if state.proven else f"nothing above {measure.text(state.ceiling)} is left"
     sheet.text(0, 143, f"{state.nodes:,} blocks looked at: {left}", 11, bold=True)

@@ -141,8 +141,8 @@ def correlation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
 
 def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both maps at a candidate's turn and shift with their sums beside them, and the correlations."""
-    told, lifted = study.all(ShiftDetail), study.get(AugmentDetail)
-    candidate = told[min(at[0], len(told) - 1)].candidate
+    tried, lifted = study.all(ShiftDetail), study.get(AugmentDetail)
+    candidate = tried[min(at[0], len(tried) - 1)].candidate
     sheet, wide, high = SvgCanvas(320), 210.0, 120.0
     half = 2.2 * study.config.augment.spread
     view = view_of(lifted.ref.x_hat, half, wide, high)
@@ -150,7 +150,7 @@ def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     pixels = draw_map(view, palette, lifted.mov.grid, palette.mov, candidate.T_ref_mov, pixels)
     both = walls(lifted.ref.grid, view) & walls(lifted.mov.grid, view, candidate.T_ref_mov)
     pixels[both] = palette.agreed
-    words = f"candidate {min(at[0], len(told) - 1) + 1}: turned by {turn_label(candidate.T_ref_mov.theta)}"
+    words = f"candidate {min(at[0], len(tried) - 1) + 1}: turned by {turn_label(candidate.T_ref_mov.theta)}"
     map_panel(sheet, 42, wide, high, view, pixels, words)
     x0, y0, x1, y1 = view.rect
     below = SvgPlot(sheet, 42, 18 + high + 4, wide, 40, (x0, x1), (0, 1.08))
@@ -187,10 +187,10 @@ def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
 
 def window(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both windows to scale over map 1, and the coupled one from near by."""
-    told, grid = study.get(WindowDetail), study.inputs.ref
+    windows, grid = study.get(WindowDetail), study.inputs.ref
     found = study.all(ShiftDetail)
     turn = found[0].candidate.T_ref_mov.theta if found else 0.0
-    coupled, paper = told.coupled, told.paper
+    coupled, paper = windows.coupled, windows.paper
     off = rotation(turn) @ (coupled.pivot - paper.pivot)
     low, high = paper.low + off, paper.high + off
     sheet, side, small = SvgCanvas(236), 206.0, 156.0

@@ -24,14 +24,14 @@ def verdict(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
 def answers(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The best few answers: what agrees with each on the whole maps, and what contradicts it."""
     result = study.get(MergeResult)
-    told = result.weighed[:MOST_ANSWERS]
-    most = max(each.evidence.shared_wall for each in told) or 1.0
-    sheet = SvgCanvas(30 + ANSWER * len(told) + 22)
+    answers = result.weighed[:MOST_ANSWERS]
+    most = max(each.evidence.shared_wall for each in answers) or 1.0
+    sheet = SvgCanvas(30 + ANSWER * len(answers) + 22)
     sheet.text(0, 12, "place", 10.5, alpha=0.7)
     sheet.text(WIDE, 12, "how likely right, were there no other", 10.5, "end", alpha=0.7)
-    for row, each in enumerate(told):
+    for row, each in enumerate(answers):
         y, found = 30 + ANSWER * row, each.evidence
-        name = "named" if row == 0 else words.apart(each.T_ref_mov, told[0].T_ref_mov, result) + " away"
+        name = "named" if row == 0 else words.apart(each.T_ref_mov, answers[0].T_ref_mov, result) + " away"
         sheet.text(0, y + 12, name, 12, bold=row == 0)
         sheet.text(WIDE, y + 12, f"by itself {verdict_text.likelihood(probability(each.score))}", 11, "end")
         wide = 0.0
@@ -40,7 +40,7 @@ def answers(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
             wide += WIDE * metres / most
         says = f"{found.agreeing:.0f} m agree, {found.contradicting:.1f} m contradict; "
         sheet.text(0, y + 42, f"{says}{found.floor:.0f} m² of floor in common", 10.5, alpha=0.85)
-    y = 30 + ANSWER * len(told) + 8
+    y = 30 + ANSWER * len(answers) + 8
     after = sheet.chip(0, y, palette.agreed, "wall that agrees")
     sheet.chip(after, y, palette.conflict, "wall that contradicts")
     return sheet.svg("The best few answers by the walls of the whole maps")

@@ -79,7 +79,7 @@ def test_who_comes_back_finds_the_box_and_its_numbers_again_in_the_colours_of_no
     view, story = SwarmView(stage), RunState()
     one = BOX.centre[None]
     state = SearchState(0, one, np.zeros(1), one, np.zeros(1), BOX.centre, 0.0)
-    story.tell(Step("refine", RefineDetail(0, 1, BOX, state), 0.0))
+    story.add(Step("refine", RefineDetail(0, 1, BOX, state), 0.0))
 
     def frame(palette):
         view.show(story, palette, look=True)

@@ -140,7 +140,7 @@ def test_words_in_tables_are_never_html():
 def test_every_step_of_a_run_has_a_sentence_and_progress_never_falls(inputs):
     story, shares = RunState(), []
     for step in run("spectra-swarm", inputs.ref, inputs.mov, inputs.observations):
-        story.tell(step)
+        story.add(step)
         assert sentence(story) != "Starting."
         shares.append(progress(story))
     assert shares == sorted(shares)
@@ -150,14 +150,14 @@ def test_every_step_of_a_run_has_a_sentence_and_progress_never_falls(inputs):
 def test_a_run_with_several_sightings_says_how_many(inputs):
     several = inputs.observations * 3
     story = RunState()
-    story.tell(next(run("spectra-swarm", inputs.ref, inputs.mov, several)))
+    story.add(next(run("spectra-swarm", inputs.ref, inputs.mov, several)))
     assert sentence(story) == "Robot 1 saw robot 2 at 3 places: they are in both maps."
 
 
 def test_the_curves_share_one_axis_and_mark_what_was_chosen(inputs):
     story = RunState()
     for step in run("spectra-swarm", inputs.ref, inputs.mov, inputs.observations):
-        story.tell(step)
+        story.add(step)
     match, best = story.get(HoughDetail).match, story.get(CandidatesDetail).candidates[0]
     angles, correlation, marks, chosen = charts.turn_correlation(match, best.T_ref_mov.theta).columns
     assert len(angles) == len(correlation) == len(marks) == len(chosen)

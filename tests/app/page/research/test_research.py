@@ -57,10 +57,10 @@ class Listener:
     def say(self, words, share):
         self.heard.append(words.partition(":")[0])
 
-    def told(self, part):
+    def part_done(self, part):
         self.heard.append(part)
 
-    def over(self, why):
+    def ended(self, why):
         self.heard.append(("over", why))
 
 

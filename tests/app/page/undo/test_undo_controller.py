@@ -30,7 +30,7 @@ def undo(tab) -> UndoController:
 def merged(tab, result):
     """The snapshot of a merge with what came of it."""
     run = RunState(tab.state.config)
-    run.tell(Step("verdict", result, 0.0))
+    run.add(Step("verdict", result, 0.0))
     return replace(tab.state.snapshot(), goal="merge", outcome=run)
 
 

@@ -111,7 +111,7 @@ def test_it_is_bounded_and_the_newest_stays(count, most):
 def outcome(result) -> RunState:
     """Of a merge of the room with itself."""
     story = RunState(START.config)
-    story.tell(Step("verdict", replace(result, fusion=fuse((ROOM, ROOM), (Pose2(), Pose2()))), 0.0))
+    story.add(Step("verdict", replace(result, fusion=fuse((ROOM, ROOM), (Pose2(), Pose2()))), 0.0))
     return story
 
 

@@ -81,7 +81,7 @@ def test_its_captions_are_the_sentences_of_the_page(small_case, recording):
     config, said = METHODS["spectra-proven"].defaults, {words.SIDE_BY_SIDE, recording["verdict"]}
     story = RunState(config)
     for step in run("spectra-proven", small_case.ref, small_case.mov, small_case.observations, config):
-        story.tell(step)
+        story.add(step)
         said.add(words.sentence(story))
     assert set(captions(recording)) <= said
     assert any(caption.startswith("Searching: ") for caption in captions(recording))

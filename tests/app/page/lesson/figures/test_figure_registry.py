@@ -74,7 +74,7 @@ def test_every_picture_is_whole_wherever_its_dials_stand(request, which, name, p
         for bad in ("nan", "inf", "None"):
             assert not [text for text in words if bad in text]
             assert f'"{bad}' not in drawn
-        assert picture.story(study, at).last is not None
+        assert picture.run(study, at).last is not None
         for item in picture.ink(study, at, layout, palette):
             assert np.isfinite(item["p"]).all()
 
@@ -171,7 +171,7 @@ def test_the_swarm_of_the_lesson_is_small_and_tells_its_pulls(study):
 def test_the_map_shows_the_candidate_that_the_dial_stands_at(study):
     told = study.all(ShiftDetail)
     for k in range(len(told)):
-        story = PICTURES["shift"].story(study, (k,))
+        story = PICTURES["shift"].run(study, (k,))
         assert story.shifts[-1] is told[k]
 
 
