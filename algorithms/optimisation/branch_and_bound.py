@@ -119,7 +119,6 @@ def prove(
         if leading[1] is not None:
             nodes, sums = [*nodes, leading[1]], [*sums, leading[0]]
         poses = lattice.poses(lattice.coordinates(np.array(nodes).reshape(-1, 3), 0))
-        ceilings = search.ceilings()
         return ProofState(
             rival_sought=proven,
             nodes=search.nodes,
@@ -130,7 +129,7 @@ def prove(
             rival_values=np.array(sums[1:]),
             floor=least,
             turns=wrap_angles((np.arange(search.sectors) + 0.5) * 2**search.levels * lattice.step),
-            ceilings=np.minimum(ceilings, sums[0]) if proven else ceilings,
+            ceilings=search.ceilings(),
             found=search.found.copy(),
             stopped=stopped,
             proven=proven,
