@@ -39,7 +39,7 @@ def count_greys(grey: GreyArray, alpha: GreyArray | None) -> Counts:
     return np.rint(counts.ravel()).astype(np.int64)
 
 
-def as_meant(shading: Shading, counts: Counts) -> tuple[Shading, str]:
+def corrected(shading: Shading, counts: Counts) -> tuple[Shading, str]:
     """The shading that an image was made for, and a remark where that is not the one given.
 
     Only what is unmistakable is put right: the savers' own three greys, under a free_thresh by which their

@@ -16,7 +16,7 @@ from algorithms.common.errors import InputFileError, OutputError, SettingError, 
 from algorithms.common.pose import Pose2
 from algorithms.files import yaml_fields as fields
 from algorithms.files.atomic_write import write_files
-from algorithms.files.grey_levels import as_meant, count_greys, remarks
+from algorithms.files.grey_levels import corrected, count_greys, remarks
 from algorithms.files.image_decoder import read_pixels
 from algorithms.files.thresholds import MODES, GreyArray, Shading, cells_of, greys_of
 from algorithms.maps.grid_map import COARSEST, FINEST, CellArray, GridMap
@@ -24,10 +24,10 @@ from algorithms.maps.grid_map import COARSEST, FINEST, CellArray, GridMap
 YAML_SUFFIXES = (".yaml", ".yml")
 AT_ZERO = Pose2()
 USUAL = Shading()
-IMAGE_SUFFIXES = (
-    *(".pgm", ".ppm", ".pbm", ".pnm", ".png", ".bmp"),
-    *(".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".webp"),  # refused, but as images
-)
+READABLE_SUFFIXES = (".pgm", ".ppm", ".pbm", ".pnm", ".png", ".bmp")
+# lossy, or grey without one meaning: refused, but as images
+REFUSED_SUFFIXES = (".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".webp")
+IMAGE_SUFFIXES = READABLE_SUFFIXES + REFUSED_SUFFIXES
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class GreyImage:
         what is odd about that, each a clause with the cure.
         """
         counts = count_greys(self.grey, self.alpha)
-        shading, meant = as_meant(shading, counts)
+        shading, meant = corrected(shading, counts)
         cells = cells_of(self.grey, self.alpha, shading)
         odd = remarks(shading, counts, cells)
         return cells, (meant, *odd) if meant else odd

@@ -21,7 +21,7 @@ from algorithms.maps.grid_map import (
     GridMap,
     check_size,
 )
-from algorithms.maps.robots import NOWHERE, Robots
+from algorithms.maps.robots import NO_ROBOTS, Robots
 
 SAME_PLACE = 0.12  # metres; a wall that both maps show so near to each other is one, and no robot
 
@@ -78,7 +78,7 @@ def fuse(
     maps: Sequence[GridMap],
     transforms: Sequence[Pose2],
     rule: ConflictRule = ConflictRule.OCCUPIED_WINS,
-    robots: Robots = NOWHERE,
+    robots: Robots = NO_ROBOTS,
 ) -> Fusion:
     """Merge maps under their transforms to the first one's frame; the first transform is the identity.
 

@@ -27,4 +27,4 @@ class Robots:
         return np.concatenate([self.in_ref, T_ref_mov.apply(self.in_mov)])
 
 
-NOWHERE = Robots(np.zeros((0, 2)), np.zeros((0, 2)), 0.0)
+NO_ROBOTS = Robots(np.zeros((0, 2)), np.zeros((0, 2)), 0.0)

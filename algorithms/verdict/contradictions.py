@@ -50,18 +50,18 @@ class Contradictions:
 
     ref_only, mov_only : (H, W) bool on the merged grid: walls of one map where the other saw free floor
     places : most wall first
-    specks : wall in patches too short to be a place; metres
+    small_parts : wall in patches too short to be a place; metres
     """
 
     ref_only: BoolArray
     mov_only: BoolArray
     places: tuple[Contradiction, ...]
-    specks: float
+    small_parts: float
 
     @property
     def wall(self) -> float:
         """Contradicting wall of both maps, wherever it is; metres."""
-        return sum(place.wall for place in self.places) + self.specks
+        return sum(place.wall for place in self.places) + self.small_parts
 
 
 def find_conflicts(fusion: Fusion, gap: float = GAP) -> Contradictions:

@@ -16,7 +16,7 @@ import numpy as np
 from algorithms.common.parallel_kernels import kernel
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import BoolArray
-from algorithms.maps.robots import NOWHERE, Robots
+from algorithms.maps.robots import NO_ROBOTS, Robots
 from algorithms.verdict.slipping_patches import Apart, Slipped, slip_patches
 from algorithms.verdict.wall_map import ANY_SIDE, NEAR, SHARES, ByteArray, WallMap, sectors, transform_between
 
@@ -65,7 +65,7 @@ def _share(against: float, agreeing: float) -> float:
 
 
 def evidence(
-    ref: WallMap, mov: WallMap, T_ref_mov: Pose2, robots: Robots = NOWHERE, slip: bool = True
+    ref: WallMap, mov: WallMap, T_ref_mov: Pose2, robots: Robots = NO_ROBOTS, slip: bool = True
 ) -> Evidence:
     """Weigh the walls of both maps, each looked up in the other.
 
@@ -83,13 +83,13 @@ def evidence(
     agreeing, contradicting, squared = (sum((found.totals[k] for found in slipped), 0.0) for k in range(3))
     apart = [place for found in slipped for place in found.apart]
     rigid_agreeing = sum(side.agreeing for side in sides)
-    one_way = abs(sides[0].direction(T_ref_mov.theta) + sides[1].direction(0.0))
+    lengthwise = abs(sides[0].direction(T_ref_mov.theta) + sides[1].direction(0.0))
     return Evidence(
         agreeing=agreeing,
         contradicting=contradicting,
         rigid_agreeing=rigid_agreeing,
         rigid_contradicting=sum(side.contradicting for side in sides),
-        across=max(0.0, rigid_agreeing - one_way) / 2,
+        across=max(0.0, rigid_agreeing - lengthwise) / 2,
         floor=sum(side.floor() for side in sides) / 2,
         slip=sqrt(squared / agreeing) if agreeing else 0.0,
         apart=tuple(sorted(apart, key=lambda place: (-place.metres, place.x, place.y))),

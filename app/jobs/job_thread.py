@@ -77,7 +77,7 @@ class JobThread:
         return self._requests.newest is not None
 
     @property
-    def telling(self) -> bool:
+    def runs_method(self) -> bool:
         """Whether that is a run that is told step by step, and no search for a refusal's cause."""
         job = self._requests.newest
         return job is not None and job.goal != "cause"

@@ -14,7 +14,7 @@ def summary(found: Contradictions) -> str:
     if not found.places:
         return f"{found.wall:.1f} m of wall contradict, in specks here and there."
     many = "one place" if len(found.places) == 1 else f"{len(found.places)} places"
-    rest = sum(place.wall for place in found.places[MOST_PLACES:]) + found.specks
+    rest = sum(place.wall for place in found.places[MOST_PLACES:]) + found.small_parts
     further = f", and {rest:.1f} m in smaller patches" if rest >= 0.05 else ""
     return f"{found.wall:.1f} m of wall contradict: {many}{further}. Where, in metres of map 1's frame:"
 

@@ -84,7 +84,7 @@ class RunController:
             mode.changed()
             return
         with state.locks.action, state.locks.drawing:
-            live = self.thread.telling and state.goal == "merge"
+            live = self.thread.runs_method and state.goal == "merge"
             goal = state.goal or "candidates"
             job = state.job(goal=goal, pace=self._panels.run.pace if live else 0.0)
             if job is not None:

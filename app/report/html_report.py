@@ -25,7 +25,7 @@ from app.model.status_text import typeset
 from app.report import report_figures as outcome
 from app.report.result_rows import STAGES, numbers
 from app.report.ros_transform import publish_command
-from app.system.cancellation import Check, unwatched
+from app.system.cancellation import Check, never_cancelled
 from app.system.data_paths import asset
 
 _STYLE = asset("report.css")
@@ -44,7 +44,7 @@ def report_page(
     inputs: MergeInputs,
     config: Any,
     report: Mapping[str, Any],
-    check: Check = unwatched,
+    check: Check = never_cancelled,
 ) -> bytes:
     """The content of report.html.
 

@@ -27,7 +27,7 @@ from app.drawing.palette import LIGHT
 from app.model.merge_inputs import MergeInputs
 from app.report.html_report import report_page
 from app.report.ros_transform import transform_yaml
-from app.system.cancellation import Check, unwatched
+from app.system.cancellation import Check, never_cancelled
 from app.system.version import versions
 
 MERGED = "merged"
@@ -173,7 +173,7 @@ def result_files(
     config: Any,
     report: Mapping[str, Any],
     with_merged: bool,
-    check: Check = unwatched,
+    check: Check = never_cancelled,
 ) -> dict[str, bytes]:
     """All files of a result by name, in the order they are to be written: the report is the last.
 
@@ -206,7 +206,7 @@ class ResultFiles:
         """Everything by name: what ``mapmeld merge`` leaves in a folder, and the observation as used."""
         return self.make()
 
-    def make(self, check: Check = unwatched) -> Mapping[str, bytes]:
+    def make(self, check: Check = never_cancelled) -> Mapping[str, bytes]:
         """The same; ``check`` is called now and then while they are made, which is once."""
         if not self._made:
             i, maps = self.inputs, {"map1": self.inputs.ref, "map2": self.inputs.mov}

@@ -26,7 +26,7 @@ def wanted(check: Check) -> bool:
     return True
 
 
-def unwatched(done: float | None = None, /) -> None:
+def never_cancelled(done: float | None = None, /) -> None:
     """The check of work that cannot be left."""
 
 

@@ -37,7 +37,7 @@ MAX_UPLOADS = 2 * MAX_UPLOAD  # bytes on their way from one tab: two maps
 MAX_UPLOADS_OF_ALL = 5 * MAX_UPLOAD  # bytes on their way from all tabs
 MAX_OPEN_UPLOADS = 8  # of one tab
 MAX_NAME = 255  # letters of a file's name
-SILENCE = 60.0  # seconds until a connection that says nothing is given up
+IDLE_LIMIT = 60.0  # seconds until a connection that says nothing is given up
 SHORT = 0.5  # seconds; what takes less can be left by nobody
 CLOSE_PATIENCE = 10.0  # seconds until a connection that is left ends, whatever it still holds
 
@@ -185,7 +185,7 @@ class Uploads:
 
     async def _watched(self, arrival: Arrival) -> bool:
         """Take it in, and have its tab know where that takes long; whether it is there."""
-        alarm = arrival.loop.call_later(SHORT, self._lasts, arrival)
+        alarm = arrival.loop.call_later(SHORT, self._say_slow, arrival)
         try:
             return await self._taken(arrival)
         finally:
@@ -215,7 +215,7 @@ class Uploads:
         arrival.gui._finish_file_upload(arrival.tab, arrival.id, arrival.button)
         return True
 
-    def _lasts(self, arrival: Arrival) -> None:
+    def _say_slow(self, arrival: Arrival) -> None:
         arrival.long = True
         self._tell(arrival.tab)
 
@@ -230,7 +230,7 @@ class Uploads:
 
 
 async def _received(connection: Any) -> Any:
-    return await asyncio.wait_for(connection.recv(), SILENCE)
+    return await asyncio.wait_for(connection.recv(), IDLE_LIMIT)
 
 
 async def _end(connection: Any, why: str) -> None:

@@ -31,7 +31,7 @@ def proof_state(**changes: Any) -> ProofState:
     return replace(state, **changes)
 
 
-NOWHERE: dict[str, Any] = {  # what a proof without an optimum changes of it
+NO_ROBOTS: dict[str, Any] = {  # what a proof without an optimum changes of it
     "best": None,
     "best_value": -inf,
     "proven": False,

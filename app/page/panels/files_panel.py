@@ -13,7 +13,7 @@ import viser
 from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import MapMergeError
 from algorithms.files.case_folder import read_case
-from algorithms.files.map_file import map_from_bytes, parse_meta
+from algorithms.files.map_file import READABLE_SUFFIXES, map_from_bytes, parse_meta
 from algorithms.files.observation_file import observations_from_bytes
 from algorithms.maps.grid_map import GridMap
 from app.drawing.palette import QUIET
@@ -22,17 +22,17 @@ from app.page.cancellable_task import CancellableTask
 from app.page.panels.html_widgets import put
 from app.page.panels.image_form import ImageForm
 from app.system import data_paths as paths
-from app.system.cancellation import CancellableReader, Cancelled, Check, unwatched
+from app.system.cancellation import CancellableReader, Cancelled, Check, never_cancelled
 
 NONE = "(choose)"
-TAKEN = viser.UploadedFile("", b"")  # what a button holds that holds no file any more
+NO_FILE = viser.UploadedFile("", b"")  # what a button holds that holds no file any more
 
 # key -> label of the button, what the picker offers
 SLOTS = {
     "yaml1": ("Map 1: YAML", ".yaml,.yml"),
-    "image1": ("Map 1: image", ".pgm,.png,.bmp"),
+    "image1": ("Map 1: image", ",".join(READABLE_SUFFIXES)),
     "yaml2": ("Map 2: YAML", ".yaml,.yml"),
-    "image2": ("Map 2: image", ".pgm,.png,.bmp"),
+    "image2": ("Map 2: image", ",".join(READABLE_SUFFIXES)),
     "observation": ("Observation: YAML", ".yaml,.yml"),
 }
 
@@ -61,7 +61,7 @@ def _large(upload: Upload) -> bool:
 
 
 def inputs_from(
-    uploads: dict[str, Upload], known: Known | None = None, check: Check = unwatched
+    uploads: dict[str, Upload], known: Known | None = None, check: Check = never_cancelled
 ) -> MergeInputs:
     """What the files so far make up: a map where both its files are there, observations.
 
@@ -188,8 +188,8 @@ class FilesPanel:
     def _arrived(self, key: str, event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
         """Take what the button holds; it would keep that, refused or not, for as long as the tab is there."""
         held = event.target._impl
-        file, held.value = held.value, TAKEN
-        if file is not TAKEN:  # by an earlier call, where two files came at once: the newest counts
+        file, held.value = held.value, NO_FILE
+        if file is not NO_FILE:  # by an earlier call, where two files came at once: the newest counts
             self._take_upload(key, file)
 
     def _take_upload(self, key: str, file: viser.UploadedFile) -> None:
@@ -222,7 +222,7 @@ class FilesPanel:
             self._offer_forms(check)
             return inputs_from(self._uploads, self._known, check)
 
-    def _offer_forms(self, check: Check = unwatched) -> None:
+    def _offer_forms(self, check: Check = never_cancelled) -> None:
         """A form for every image that came without a YAML file; raises MapMergeError as ``inputs_from``."""
         for number, form in self._forms.items():
             form.show(self._uploads.get(f"image{number}"), self._uploads.get(f"yaml{number}"), check)

@@ -26,7 +26,7 @@ from app.drawing.palette import LIGHT, QUIET, Rgb, css
 from app.drawing.png import data_uri
 from app.model.merge_inputs import Upload
 from app.page.panels.html_widgets import box, on_press, put
-from app.system.cancellation import CancellableReader, Check, unwatched
+from app.system.cancellation import CancellableReader, Check, never_cancelled
 
 RESOLUTION = 0.05  # metres per cell: what most robots' maps have
 PREVIEW = 280  # pixels of a side at most: as wide as the panel, so that every pixel is a square of its own
@@ -100,7 +100,7 @@ class ImageForm:
 
     # --- what it is asked ---------------------------------------------------------------------------
 
-    def show(self, image: Upload | None, text: Upload | None, check: Check = unwatched) -> None:
+    def show(self, image: Upload | None, text: Upload | None, check: Check = never_cancelled) -> None:
         """Offer the form for an image whose YAML file is missing or was made here; else put it away.
 
         check  : is called now and then while the image is read, and may leave that by raising

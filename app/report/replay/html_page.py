@@ -20,7 +20,7 @@ from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
 from app.model.settings import settings_of, text_for, value_at
 from app.report.replay.recorder import LATER_PARTICLES, PARTICLES, PICTURE, Recording, record, sizes
-from app.system.cancellation import Check, unwatched, wanted
+from app.system.cancellation import Check, never_cancelled, wanted
 from app.system.data_paths import asset
 from app.system.version import versions
 
@@ -77,7 +77,7 @@ def replay_of(
     job: MergeJob,
     steps: Callable[[MergeJob, Callable[[], bool]], Iterator[Step]],
     inputs: MergeInputs,
-    check: Check = unwatched,
+    check: Check = never_cancelled,
 ) -> bytes:
     """The page for a run.
 

@@ -15,7 +15,7 @@ from mapfiles import image_map_from_bytes
 from PIL import Image
 
 from algorithms.common.pose import Pose2
-from algorithms.files.grey_levels import as_meant, count_greys, remarks
+from algorithms.files.grey_levels import corrected, count_greys, remarks
 from algorithms.files.map_file import map_from_bytes, map_to_bytes, read_map
 from algorithms.files.thresholds import Shading, cells_of
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN
@@ -198,7 +198,7 @@ def test_whatever_is_read_the_remarks_are_clauses_and_the_reading_changes_only_t
     alpha = np.full(image.shape, 255, dtype=np.uint8) if with_alpha else None
     counts = count_greys(image, alpha)
     assert counts.sum() == image.size
-    meant, said = as_meant(shading, counts)
+    meant, said = corrected(shading, counts)
     assert (meant == shading) == (said == "")
     if not {205} < set(np.unique(image).tolist()) <= {0, 205, 254}:
         assert meant == shading

@@ -13,7 +13,7 @@ from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import Case
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.maps.map_fusion import fuse
-from algorithms.maps.robots import NOWHERE
+from algorithms.maps.robots import NO_ROBOTS
 from algorithms.verdict.contradictions import LEAST, find_conflicts
 from algorithms.verdict.wall_evidence import evidence
 from algorithms.verdict.wall_map import make_wall_map
@@ -77,7 +77,7 @@ def test_most_wall_comes_first_and_no_wall_is_lost_whatever_the_frame(lengths, t
     walls = [place.wall for place in told.places]
     assert walls == sorted(walls, reverse=True)
     assert told.wall == pytest.approx(sum(lengths) * CELL)
-    assert told.specks == pytest.approx(sum(n for n in lengths if n * CELL < LEAST) * CELL)
+    assert told.small_parts == pytest.approx(sum(n for n in lengths if n * CELL < LEAST) * CELL)
     for place in told.places:  # each stands on a wall of map 1 that the other denies
         col = ref.grid_coordinates(np.array([place.x, place.y]))[0]
         assert (col - 20.5) % 25 == pytest.approx(0, abs=1e-6) or (col - 20.5) % 25 == pytest.approx(25)
@@ -124,6 +124,6 @@ def test_the_places_hold_the_wall_that_the_evidence_counts(small_case: Case):
     wrong = Pose2(truth.x + 0.7, truth.y - 0.4, truth.theta + 0.1)
     told = find_conflicts(fuse((ref, mov), (Pose2(), wrong)))
     assert told.wall == pytest.approx(
-        evidence(make_wall_map(ref), make_wall_map(mov), wrong, NOWHERE).rigid_contradicting, rel=0.2
+        evidence(make_wall_map(ref), make_wall_map(mov), wrong, NO_ROBOTS).rigid_contradicting, rel=0.2
     )
     assert told.wall > 5

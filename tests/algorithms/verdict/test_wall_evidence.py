@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from algorithms.common import parallel_kernels as kernels
 from algorithms.common.pose import Pose2, rotation
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
-from algorithms.maps.robots import NOWHERE, Robots
+from algorithms.maps.robots import NO_ROBOTS, Robots
 from algorithms.verdict.slipping_patches import PATCH, SLIP
 from algorithms.verdict.wall_evidence import Evidence, evidence
 from algorithms.verdict.wall_map import make_wall_map
@@ -29,7 +29,7 @@ def hall(walls, side=16.0, cell=0.05):
     return GridMap(cells, cell)
 
 
-def weighed(ref, mov, T_ref_mov, robots=NOWHERE) -> Evidence:
+def weighed(ref, mov, T_ref_mov, robots=NO_ROBOTS) -> Evidence:
     return evidence(make_wall_map(ref), make_wall_map(mov), T_ref_mov, robots)
 
 

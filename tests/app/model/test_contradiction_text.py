@@ -23,10 +23,10 @@ WALL = Contradiction(1.0, -2.0, 0.5, 3.0, 0.0)
 
 def test_the_summary_counts_places_and_wall_and_says_where_there_is_none():
     assert summary(NOTHING) == "No wall of one map lies in the other's free floor."
-    assert summary(replace(NOTHING, specks=0.4)).startswith("0.4 m of wall contradict, in specks")
-    one = replace(NOTHING, places=(WALL,), specks=0.5)
+    assert summary(replace(NOTHING, small_parts=0.4)).startswith("0.4 m of wall contradict, in specks")
+    one = replace(NOTHING, places=(WALL,), small_parts=0.5)
     assert summary(one).startswith("3.5 m of wall contradict: one place, and 0.5 m in smaller patches.")
-    assert "smaller" not in summary(replace(one, specks=0.0))
+    assert "smaller" not in summary(replace(one, small_parts=0.0))
 
 
 def test_only_the_largest_places_are_listed_and_ringed_and_the_rest_is_told_in_sum():

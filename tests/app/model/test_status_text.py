@@ -7,7 +7,7 @@ from math import inf, radians
 
 import numpy as np
 import pytest
-from proofs import NOWHERE, proof_state
+from proofs import NO_ROBOTS, proof_state
 
 from algorithms.common.pose import Pose2
 from algorithms.methods.merge_result import MergeResult
@@ -88,8 +88,8 @@ def test_a_proof_that_was_given_up_says_what_may_still_be(told):
 
 
 def test_sightings_that_exclude_each_other_and_maps_that_fit_nowhere_are_told_apart(told):
-    assert "every sighting" in ended(told, False, **NOWHERE, empty=True, ceiling=0.0)
-    assert "nothing anywhere is above" in ended(told, False, **NOWHERE, ceiling=0.0)
+    assert "every sighting" in ended(told, False, **NO_ROBOTS, empty=True, ceiling=0.0)
+    assert "nothing anywhere is above" in ended(told, False, **NO_ROBOTS, ceiling=0.0)
 
 
 @pytest.mark.parametrize(

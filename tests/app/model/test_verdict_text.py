@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from proofs import NOWHERE, proof_state
+from proofs import NO_ROBOTS, proof_state
 
 from algorithms.common.pose import Pose2
 from algorithms.methods.merge_result import MergeResult
@@ -15,8 +15,8 @@ from app.model import verdict_text as words
 
 
 def test_a_proof_without_an_optimum_says_whether_the_sightings_or_the_maps_are_to_blame():
-    assert words.optimum(proof_state(**NOWHERE, ceiling=0.0)) == "nothing fits"
-    assert words.optimum(proof_state(**NOWHERE, empty=True)).startswith("none")
+    assert words.optimum(proof_state(**NO_ROBOTS, ceiling=0.0)) == "nothing fits"
+    assert words.optimum(proof_state(**NO_ROBOTS, empty=True)).startswith("none")
 
 
 def test_an_unproven_optimum_says_why():

@@ -29,7 +29,9 @@ def tab(inputs):
 @pytest.fixture
 def controller(monkeypatch) -> Callable[..., RunController]:
     """Makes a controller whose thread only notes what is asked of it."""
-    monkeypatch.setattr(run_controller, "JobThread", lambda *_: Mock(JobThread, busy=False, telling=False))
+    monkeypatch.setattr(
+        run_controller, "JobThread", lambda *_: Mock(JobThread, busy=False, runs_method=False)
+    )
     return lambda tab: RunController(tab, Mock(), stop_upload=Mock())
 
 

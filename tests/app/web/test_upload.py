@@ -243,7 +243,7 @@ def test_a_button_that_there_is_not_takes_no_file(server, tab):
 
 
 def test_who_announces_a_file_and_sends_nothing_is_given_up(server, tab, monkeypatch):
-    monkeypatch.setattr("app.web.upload.SILENCE", 0.2)
+    monkeypatch.setattr("app.web.upload.IDLE_LIMIT", 0.2)
     file = WireFile(tab, IMAGE, "long.pgm", LONG)
     assert file.over() == ""
     assert server.gate.dropped["upload silent"]

@@ -30,7 +30,7 @@ from app.model.run_state import RunState
 from app.page.lesson.figures import map_figures as maps
 from app.page.lesson.figures import search_figures as search
 from app.page.lesson.figures import spectra_figures as spectra
-from app.page.lesson.figures import verdict_figure as judgement
+from app.page.lesson.figures import verdict_figure
 from app.page.lesson.lesson_run import FEW, LessonRun
 
 At = Sequence[int]
@@ -183,9 +183,9 @@ PICTURES: dict[str, LessonFigure] = {
         (ProvenDetail,), search.proof, _looking,
         lambda study: (FigureSlider("look", (count := len(search.looks(study))), count - 1),),
     ),
-    "answers": LessonFigure((MergeResult,), judgement.answers, _up_to(WeighedDetail)),
+    "answers": LessonFigure((MergeResult,), verdict_figure.answers, _up_to(WeighedDetail)),
     "merged": LessonFigure((MergeResult,), maps.merged, _up_to(Fusion)),
-    "verdict": LessonFigure((MergeResult,), judgement.verdict, _up_to(MergeResult)),
+    "verdict": LessonFigure((MergeResult,), verdict_figure.verdict, _up_to(MergeResult)),
 }  # fmt: skip
 
 
