@@ -88,3 +88,4 @@ class OtherResultController:
         with self._state.locks.drawing:
             self._state.update(other=None)
             self._display.messages.hud(guest="")
+            self._display.messages.flush()
