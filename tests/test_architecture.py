@@ -305,3 +305,32 @@ def test_contributing_lists_the_packages_that_there_are():
     told = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
     table = set(re.findall(r"^\| `((?:algorithms|app)/[a-z_/]+)` \|", told, flags=re.M))
     assert table == {package.replace(".", "/") for package in RANK if "." in package}
+
+
+def test_the_state_of_a_page_is_changed_by_controllers_alone():
+    def changes(tree: ast.Module) -> bool:
+        for node in ast.walk(tree):
+            targets = node.targets if isinstance(node, ast.Assign) else []
+            called = [node.func] if isinstance(node, ast.Call) else []
+            for at in (*targets, *called):
+                if isinstance(at, ast.Attribute) and ast.unparse(at.value).split(".")[-1] in (
+                    "state",
+                    "_state",
+                ):
+                    if at in targets or at.attr in ("update", "turn_to_map"):
+                        return True
+        return False
+
+    page = {module: tree for module, tree in sources().items() if module.startswith("app.page")}
+    writers = {module for module, tree in page.items() if changes(tree)}
+    allowed = {module for module in page if module.endswith("_controller")} | {"app.page.page"}
+    assert "app.page.run_controller" in writers  # it is seen
+    assert writers <= allowed, "who draws reads the state: see CONTRIBUTING.md"
+
+
+def test_what_draws_knows_no_controller():
+    drawing = ("_panel", "_display", "_view")
+    for module, tree in sources().items():
+        if module.endswith(drawing):
+            named = {node.module or "" for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+            assert not {name for name in named if name.endswith("_controller")}, module

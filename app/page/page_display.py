@@ -214,12 +214,6 @@ class PageDisplay:
             self._say_verdict(result)
         self.messages.flush()
 
-    def show_map(self, draw_map: Callable[[], None] | None = None) -> None:
-        """The map, where another view is shown; ``draw_map`` as in ``show_view``."""
-        if self._state.view != MAP:
-            self._state.update(view=MAP)
-            self.show_view(draw_map)
-
     def show_legend(self) -> None:
         """What the colours of the picture mean."""
         state, mode = self._state, self.views.comparison.mode

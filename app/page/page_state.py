@@ -91,6 +91,11 @@ class PageState:
             for callback in self._callbacks.get(topic, ()):
                 callback()
 
+    def turn_to_map(self) -> bool:
+        """Choose the map as the view; whether it was another one."""
+        other, self.view = self.view != MAP, MAP
+        return other
+
     def snapshot(self) -> PageSnapshot:
         """What a person has set, before anything has come of it."""
         return PageSnapshot(

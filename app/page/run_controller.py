@@ -226,8 +226,9 @@ class RunController:
         state, replay = self._state, self._panels.export.replay
         contradictions, html = self._weigh(result, config)
         by_hand = result.method == BY_HAND
-        state.search = state.search if by_hand else run
-        state.update(run=run, result_config=config, contradictions=contradictions, result=result)
+        search = state.search if by_hand else run
+        found = {"result": result, "result_config": config, "contradictions": contradictions}
+        state.update(run=run, search=search, **found)
         self._display.show_answer(result, html, live)
         job = state.job()
         if by_hand or job is None:  # there was no run that could be recorded

@@ -34,7 +34,7 @@ class ViewController:
 
     def darken(self, dark: bool) -> None:
         with self._state.locks.drawing:
-            self._state.palette = DARK if dark else LIGHT
+            self._state.palette = DARK if dark else LIGHT  # who subscribed to it draws over the page: later
             self._display.recolour()
             self._show()
             self._state.update(palette=self._state.palette)

@@ -72,7 +72,8 @@ class MapDragController:
         searches = isinstance(manual.config, PipelineConfig)
         self._panel.open(True, refine=searches, prove=searches)
         self._display.views.comparison.offer(None, self._state.palette)
-        self._display.show_map(self._redraw)
+        if self._state.turn_to_map():
+            self._display.show_view(self._redraw)
         self._display.withdraw_result()
         self._display.show_legend()
         self._redraw()

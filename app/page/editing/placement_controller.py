@@ -98,7 +98,8 @@ class PlacementController:
                 self._layout = lay_out(i.ref, i.mov, None)
                 self._display.views.comparison.clear()
                 self._display.withdraw_result()
-                self._display.show_map(self._show)
+                if state.turn_to_map():
+                    self._display.show_view(self._show)
                 self._maps.load(replace(i, observations=()), self._layout, state.palette)
                 self._display.clear_read_out()
                 shown = {"frames": self._layout.frames(), "legend": legend(state.palette, MAP, RunState())}

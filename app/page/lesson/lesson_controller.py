@@ -16,7 +16,7 @@ from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
 from app.model.view_modes import LESSON
 from app.page.lesson.figures.figure_registry import PICTURES
-from app.page.lesson.lesson_display import LessonDisplay
+from app.page.lesson.lesson_display import LessonDisplay, OnMap
 from app.page.lesson.lesson_run import LessonRun, keep
 from app.page.lesson.lesson_texts import StepText, files, read_step, with_settings
 from app.page.lesson.placeholders import NUMBERS
@@ -103,7 +103,7 @@ class LessonController:
         with self._locks.drawing:
             self._panels.run.open(LESSON, open_)
             self._panels.charts.visible(not open_)
-            self._display.dock(open_)
+            self._display.dock(open_, turned=open_ and self._state.turn_to_map())
 
     def _settings_changed(self) -> None:
         """A setting was moved by hand."""
@@ -125,7 +125,7 @@ class LessonController:
                 self._text = None
                 with self._locks.drawing:
                     self._panel.broken(index, self._files[index].name, str(error))
-                    self._display.run(RunState(), f"Lesson: {error}", look=True)
+                    self._show_on_map(OnMap(RunState()), f"Lesson: {error}", look=True)
                 return
             self._show(fresh=True)
 
@@ -240,4 +240,8 @@ class LessonController:
             if not moved:
                 self._display.words(self._index, text, study, self._answered)
             says = f"Lesson, step {self._index + 1} of {len(self._files)}: {text.title}"
-            self._display.picture(text, study, says, fresh, self._done)
+            self._show_on_map(self._display.picture(text, study, self._done), says, fresh)
+
+    def _show_on_map(self, step: OnMap, says: str, look: bool) -> None:
+        self._state.update(run=step.run)
+        self._display.on_map(step, says, look)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 
 from app.drawing.draw_items import Item
 from app.model.run_state import RunState
@@ -21,6 +22,22 @@ NO_MAPS = "Load two maps and an observation: the lesson is about them."
 NOT_HERE = "The method as it is set does not come to this. Choose another method, or put its settings back."
 
 
+@dataclass(frozen=True)
+class OnMap:
+    """What a step shows on the map.
+
+    run  : as far as the step goes
+    ink  : what is drawn over it
+    turn : by which map 2 is turned beside map 1; None: not at all
+    busy : whether it is being worked out
+    """
+
+    run: RunState
+    ink: list[Item] | None = None
+    turn: float | None = None
+    busy: bool = False
+
+
 class LessonDisplay:
     """Draws a step; whoever calls is drawing; ``places`` of the dials: empty where they begin."""
 
@@ -28,13 +45,14 @@ class LessonDisplay:
         self._state, self._display, self._panel = state, display, panel
         self.places: tuple[int, ...] = ()
 
-    def dock(self, open_: bool) -> None:
+    def dock(self, open_: bool, turned: bool) -> None:
+        """Open the dock or close it; ``turned``: the map is in view from now on, and was not before."""
         self._panel.visible(open_)
         self._display.views.comparison.clear()
         self._display.clear_read_out()
         self._display.messages.layer("lesson", None)
-        if open_:
-            self._display.show_map()
+        if turned:
+            self._display.show_view()
         self._display.show_buttons()
 
     def words(self, index: int, text: StepText, study: LessonRun, answered: Collection[int]) -> None:
@@ -44,49 +62,36 @@ class LessonDisplay:
         answers = enumerate(filled(trial.answer, numbers) for trial in text.trials)
         self._panel.trials(text.trials, [answer if k in answered else "" for k, answer in answers])
 
-    def picture(self, text: StepText, study: LessonRun, says: str, fresh: bool, done: bool) -> None:
-        """Draw a step's picture, and what belongs to it on the map; or say why there is none yet.
+    def picture(self, text: StepText, study: LessonRun, done: bool) -> OnMap:
+        """Draw a step's picture, or say why there is none yet; what belongs to it on the map.
 
-        says  : the sentence over the map
-        fresh : look at the map anew
-        done  : the run has come to its end
+        done : the run has come to its end
         """
-        state, picture = self._state, PICTURES.get(text.picture)
+        palette, picture = self._state.palette, PICTURES.get(text.picture)
         if picture is None or not study.possible or not study.reached(*picture.needs):
             waiting = "" if picture is None else NO_MAPS if not study.inputs.complete else WAIT
             over = done or not study.possible
             self._panel.picture(NOT_HERE if waiting == WAIT and over else waiting)
             self._panel.dials((), ())
-            self.run(RunState(study.config), says, fresh, busy=waiting == WAIT and not over)
-            return
+            return OnMap(RunState(study.config), busy=waiting == WAIT and not over)
         dials = picture.dials(study)
         places = self._placed(dials)
         self._panel.dials(dials, places)
-        self._panel.picture(picture.draw(study, places, state.palette))
-        ink = picture.ink(study, places, self._display.views.map.layout, state.palette)
-        turn = picture.turn(study, places) if picture.turn else None
-        self.run(picture.run(study, places), says, fresh, ink, turn)
+        self._panel.picture(picture.draw(study, places, palette))
+        ink = picture.ink(study, places, self._display.views.map.layout, palette)
+        return OnMap(picture.run(study, places), ink, picture.turn(study, places) if picture.turn else None)
 
-    def run(
-        self,
-        run: RunState,
-        says: str,
-        look: bool,
-        ink: list[Item] | None = None,
-        turn: float | None = None,
-        busy: bool = False,
-    ) -> None:
-        """Show a run on the map, and what the lesson draws over it.
+    def on_map(self, step: OnMap, says: str, look: bool) -> None:
+        """Draw the state's run on the map, and what the lesson draws over it.
 
+        says : the sentence over the map
         look : the camera goes there, too
-        turn : by which map 2 is turned beside map 1; None: not at all
         """
-        state, messages = self._state, self._display.messages
-        state.update(run=run)
+        messages = self._display.messages
         with self._display.together():
-            self._display.show_lesson_step(look, turn)
-            messages.layer("lesson", ink if state.view == MAP else None)
-            messages.hud(state=says, mood="running" if busy else "idle", progress=None)
+            self._display.show_lesson_step(look, step.turn)
+            messages.layer("lesson", step.ink if self._state.view == MAP else None)
+            messages.hud(state=says, mood="running" if step.busy else "idle", progress=None)
             self._display.show_legend()
             messages.flush()
 

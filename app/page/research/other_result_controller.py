@@ -72,7 +72,8 @@ class OtherResultController:
         state, display, views = self._state, self._display, self._display.views
         self._modes.enter(self._mode)
         state.update(run=run, other=other)
-        display.show_map()
+        if state.turn_to_map():
+            display.show_view()
         with display.together():
             views.run.show(run, other.config, camera=self._panels.run.follow, live=False)
             views.comparison.offer(contradictions, state.palette)

@@ -61,7 +61,7 @@ def display(inputs, panel, messages) -> LessonDisplay:
 
 
 def drawn(display: LessonDisplay, panel: Mock, text: StepText, study: LessonRun, done: bool = False) -> str:
-    display.picture(text, study, "Lesson", fresh=True, done=done)
+    display.on_map(display.picture(text, study, done), "Lesson", look=True)
     return panel.picture.call_args.args[0]
 
 
