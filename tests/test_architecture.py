@@ -313,12 +313,10 @@ def test_the_state_of_a_page_is_changed_by_controllers_alone():
             targets = node.targets if isinstance(node, ast.Assign) else []
             called = [node.func] if isinstance(node, ast.Call) else []
             for at in (*targets, *called):
-                if isinstance(at, ast.Attribute) and ast.unparse(at.value).split(".")[-1] in (
-                    "state",
-                    "_state",
-                ):
-                    if at in targets or at.attr in ("update", "turn_to_map"):
-                        return True
+                writes = at in targets or getattr(at, "attr", "") in ("update", "turn_to_map")
+                owner = ast.unparse(at.value) if isinstance(at, ast.Attribute) else ""
+                if writes and owner.split(".")[-1] in ("state", "_state"):
+                    return True
         return False
 
     page = {module: tree for module, tree in sources().items() if module.startswith("app.page")}

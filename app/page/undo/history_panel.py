@@ -14,7 +14,7 @@ DOTS = {Outcome.MERGED: "#009E73", Outcome.BENT: "#E69F00", Outcome.REFUSED: "#D
 
 
 class HistoryPanel:
-    """Shows where one has been. map_viewer.js tells which of its buttons was pressed."""
+    """Shows where one has been. map_editing.js tells which of its buttons was pressed."""
 
     def __init__(self, gui: viser.GuiApi) -> None:
         self._steps = gui.add_html(steps_html("", ""), order=4.5)
@@ -46,7 +46,7 @@ def steps_html(undo: str, redo: str) -> str:
 
 
 def history_html(history: UndoHistory) -> str:
-    """HTML of a button per step, newest first; map_viewer.js tells which one was pressed."""
+    """HTML of a button per step, newest first; map_editing.js tells which one was pressed."""
     rows = []
     for number, step in reversed(list(enumerate(history.steps))):
         here, undone = number == history.position, number > history.position
