@@ -19,7 +19,7 @@ from algorithms.common.pose import Pose2
 from algorithms.files.atomic_write import write_files
 from algorithms.files.case_folder import Case
 from algorithms.files.map_file import map_to_bytes
-from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, observations_to_bytes
+from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, known_to_bytes
 from algorithms.files.truth_file import TRUTH_FILE, Truth, truth_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.methods.merge_result import MergeResult
@@ -57,8 +57,8 @@ def write_case(case: Case, folder: Path) -> Path:
     files = {
         **map_to_bytes(case.ref, "map1"),
         **map_to_bytes(case.mov, "map2"),
-        OBSERVATION_FILE: observations_to_bytes(case.observations),
-        ROUGH_OBSERVATION_FILE: observations_to_bytes(rough),
+        OBSERVATION_FILE: known_to_bytes(case.observations),
+        ROUGH_OBSERVATION_FILE: known_to_bytes(rough),
     }
     if case.truth is not None:
         files[TRUTH_FILE] = truth_to_bytes(case.truth)

@@ -52,6 +52,9 @@ EXERCISED_BY = {
         "algorithms.methods.spectra_config",
         "algorithms.methods.spectra_stages",
     },
+    "algorithms/observations/test_priors.py": {
+        "algorithms.observations.sighted_ring",
+    },
     "algorithms/observations/test_search_window.py": {
         "algorithms.optimisation.search_box",
     },

@@ -125,7 +125,7 @@ def test_what_a_user_can_mend_is_an_error_of_ours(tmp_path):
         mapmeld.write_map(tmp_path / "map.pgm", grid)
     with pytest.raises(mapmeld.SettingError, match="no method 'spectre'; known are spectra-proven, "):
         mapmeld.run("spectre", grid, grid, ())
-    with pytest.raises(mapmeld.SettingError, match="there is no observation"):
+    with pytest.raises(mapmeld.SettingError, match="needs an observation"):
         mapmeld.run("spectra-proven", grid, grid, ())
     for name in ("InputFileError", "NoAnswerError", "OutputError", "SettingError", "TooLargeError"):
         assert issubclass(getattr(mapmeld, name), mapmeld.MapMergeError)

@@ -13,19 +13,21 @@ from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import contextmanager, suppress
 from functools import cache, update_wrapper
 from itertools import pairwise
 from pickle import UnpicklingError
-from threading import Lock
+from threading import Lock, local
 from typing import Any, ParamSpec, TypeVar, cast
 
 log = logging.getLogger(__name__)
 
 P = ParamSpec("P")
 R = TypeVar("R")
+Given = TypeVar("Given")
+Made = TypeVar("Made")
 
 
 _UNREADABLE = (OSError, EOFError, UnpicklingError)
@@ -159,17 +161,44 @@ def _pool() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(max_workers=cores(), thread_name_prefix="mapmeld-kernel")
 
 
+_shared = local()  # whether the work of this thread is a part of what all threads share
+
+
 def run_in_threads(work: Callable[[int, int], None], n: int, at_least: int = 1) -> None:
     """Call ``work(start, stop)`` so that the calls cover [0, n), on all threads.
+
+    Work that is itself a part of such work stays on its thread.
 
     at_least : items below which another thread does not pay
     """
     parts = max(1, min(threads(), n // max(1, at_least)))
-    if parts == 1:
+    if parts == 1 or getattr(_shared, "inside", False):
         work(0, n)
         return
+
+    def part(start: int, stop: int) -> None:
+        _shared.inside = True
+        try:
+            work(start, stop)
+        finally:
+            _shared.inside = False
+
     edges = [n * part // parts for part in range(parts + 1)]
-    futures = [_pool().submit(work, start, stop) for start, stop in pairwise(edges[1:])]
-    work(edges[0], edges[1])
+    futures = [_pool().submit(part, start, stop) for start, stop in pairwise(edges[1:])]
+    try:
+        part(edges[0], edges[1])
+    finally:
+        wait(futures)
     for future in futures:
         future.result()
+
+
+def each_on_a_core(make: Callable[[Given], Made], items: Sequence[Given]) -> list[Made]:
+    """What ``make`` makes of each item, in their order, shared among all threads."""
+    made: dict[int, Made] = {}
+
+    def work(start: int, stop: int) -> None:
+        made.update((n, make(items[n])) for n in range(start, stop))
+
+    run_in_threads(work, len(items))
+    return [made[n] for n in range(len(items))]

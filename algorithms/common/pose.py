@@ -86,6 +86,11 @@ class Pose2:
         return np.array([self.x, self.y, self.theta])
 
 
+def chord(angle: float) -> float:
+    """How far a turn by so many radians moves a point at a distance of one."""
+    return 2 * sin(min(angle, pi) / 2)
+
+
 def pose_error(T_a: Pose2, T_b: Pose2, at_mov: FloatArray) -> tuple[float, float]:
     """How far two answers to one question lie apart.
 

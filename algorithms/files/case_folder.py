@@ -9,10 +9,12 @@ from pathlib import Path
 from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError, unreadable
 from algorithms.files.map_file import read_map
-from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, read_observations
+from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, read_known
 from algorithms.files.truth_file import TRUTH_FILE, Truth, read_truth
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.observation import Observation
+from algorithms.observations.pair_problem import Known
+from algorithms.observations.priors import Prior
 
 FIRST_MAP_FILE = "map1.yaml"
 SECOND_MAP_FILE = "map2.yaml"
@@ -24,6 +26,7 @@ class Case:
 
     ref, mov         : map1.yaml, the observer's, and map2.yaml, that of the robot it saw
     observation_file : name of the file that ``observations`` came from
+    priors           : what else is known
     truth            : None where the folder holds no truth.yaml
     """
 
@@ -33,6 +36,12 @@ class Case:
     observations: tuple[Observation, ...]
     observation_file: str
     truth: Truth | None
+    priors: tuple[Prior, ...] = ()
+
+    @property
+    def known(self) -> tuple[Known, ...]:
+        """All that is known of how the maps lie."""
+        return (*self.observations, *self.priors)
 
 
 def read_case(folder: Path | str, rough: bool = False) -> Case:
@@ -43,14 +52,16 @@ def read_case(folder: Path | str, rough: bool = False) -> Case:
     """
     folder = Path(folder)
     observation_file = ROUGH_OBSERVATION_FILE if rough else OBSERVATION_FILE
+    known = read_known(folder / observation_file)
     truth_path = folder / TRUTH_FILE
     return Case(
         name=show_hidden(folder.resolve().name),
         ref=read_map(folder / FIRST_MAP_FILE),
         mov=read_map(folder / SECOND_MAP_FILE),
-        observations=read_observations(folder / observation_file),
+        observations=tuple(each for each in known if isinstance(each, Observation)),
         observation_file=observation_file,
         truth=read_truth(truth_path) if truth_path.exists() else None,
+        priors=tuple(each for each in known if not isinstance(each, Observation)),
     )
 
 

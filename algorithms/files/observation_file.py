@@ -1,18 +1,18 @@
-"""Reading and writing the file of one sighting or several."""
+"""Reading and writing the file of what is known of two maps: sightings, rough poses, turns and places."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import pi
+from collections.abc import Callable, Iterator, Sequence
+from math import pi, radians
 from pathlib import Path
 from textwrap import indent
 
-from algorithms.common.errors import SettingError
+from algorithms.common.errors import InputFileError, SettingError
 from algorithms.common.pose import Pose2
 from algorithms.files import yaml_fields as fields
 from algorithms.files.atomic_write import write_file
 from algorithms.files.map_file import read_bytes
-from algorithms.files.yaml_fields import Fields, number_text, positive_number
+from algorithms.files.yaml_fields import Fields, number_text, optional_number, positive_number
 from algorithms.observations.observation import (
     MOST_RANGE,
     SIGMA_BEARING,
@@ -21,6 +21,8 @@ from algorithms.observations.observation import (
     SIGMA_RANGES,
     Observation,
 )
+from algorithms.observations.pair_problem import Known
+from algorithms.observations.priors import NEAR_RADIUS, InitialPose, NearPlace, Prior, TurnPrior
 
 OBSERVATION_FILE = "observation.yaml"
 ROUGH_OBSERVATION_FILE = "observation_rough.yaml"
@@ -29,9 +31,17 @@ MOST_OBSERVATIONS = 64  # of one pair; their YAML stays far below what the parse
 
 
 def read_observations(path: Path | str) -> tuple[Observation, ...]:
-    """Read an observation file, of one sighting or a list of them; raises InputFileError."""
+    """Read a file of one sighting or a list of them; raises InputFileError."""
     path = Path(path)
     return observations_from_bytes(str(path), read_bytes(path, "an observation"))
+
+
+def read_known(path: Path | str) -> tuple[Known, ...]:
+    """Read a file of anything that is known: sightings, and what else ``known_from_bytes`` takes; raises
+    InputFileError.
+    """
+    path = Path(path)
+    return known_from_bytes(str(path), read_bytes(path, "an observation"))
 
 
 def observations_from_bytes(name: str, data: bytes) -> tuple[Observation, ...]:
@@ -46,8 +56,64 @@ def observations_from_bytes(name: str, data: bytes) -> tuple[Observation, ...]:
     return tuple(_observation(entry) for entry in entries)
 
 
+def known_from_bytes(name: str, data: bytes) -> tuple[Known, ...]:
+    """What a file or an upload holds: each entry is a sighting, has keys initial, turn or near, or both.
+
+    name   : of the file, as the user knows it
+    raises : InputFileError, which names the entry where the file is a list
+    """
+    entries = fields.parse_entries(name, data, "an observation's YAML file", "observation", MOST_OBSERVATIONS)
+    return tuple(known for entry in entries for known in _known(entry))
+
+
+def _known(f: Fields) -> Iterator[Known]:
+    f.refuse_unknown(*SIGHTING, *PRIORS)
+    if any(key in f.values for key in SIGHTING) or not any(key in f.values for key in PRIORS):
+        sighting = {key: value for key, value in f.values.items() if key in SIGHTING}
+        yield _observation(Fields(f.source, sighting, f.prefix))
+    for key, read in PRIORS.items():
+        if key in f.values:
+            part = f.section(key, f"give a mapping, as in {EXAMPLES[key]}")
+            try:
+                yield read(part)
+            except SettingError as error:  # "initial: sigma_x is −1 m; it must be …"
+                raise InputFileError(f.source, f.prefix + str(error), f"as in {EXAMPLES[key]}") from error
+
+
+def _initial(f: Fields) -> InitialPose:
+    f.refuse_unknown("pose", "sigma")
+    pose = f.pose("pose", (3,), "give [x, y, yaw] of map 2's frame in map 1's; m, m, rad")
+    if "sigma" not in f.values:
+        return InitialPose(Pose2(*pose))
+    return InitialPose(Pose2(*pose), *f.pose("sigma", (3,), "give [m, m, rad], or leave it out"))
+
+
+def _turn(f: Fields) -> TurnPrior:
+    f.refuse_unknown("yaw", "sigma")
+    yaw = f.number("yaw", "give how far map 2's frame is turned in map 1's; radians")
+    sigma = optional_number(f, "sigma", "give radians, or leave it out")
+    return TurnPrior(yaw) if sigma is None else TurnPrior(yaw, sigma)
+
+
+def _near(f: Fields) -> NearPlace:
+    f.refuse_unknown("map1", "map2", "radius")
+    ref = f.pose("map1", (2,), "give [x, y] of the place in map 1; m")
+    mov = f.pose("map2", (2,), "give [x, y] of the same place in map 2; m")
+    radius = optional_number(f, "radius", "give metres, or leave it out")
+    return NearPlace(ref[0], ref[1], mov[0], mov[1], NEAR_RADIUS if radius is None else radius)
+
+
+SIGHTING = ("observer", "observed", "measurement")
+PRIORS: dict[str, Callable[[Fields], Prior]] = {"initial": _initial, "turn": _turn, "near": _near}
+EXAMPLES = {
+    "initial": "initial: {pose: [x, y, yaw], sigma: [m, m, rad]}",
+    "turn": "turn: {yaw: rad, sigma: rad}",
+    "near": "near: {map1: [x, y], map2: [x, y], radius: m}",
+}
+
+
 def _observation(f: Fields) -> Observation:
-    f.refuse_unknown("observer", "observed", "measurement")
+    f.refuse_unknown(*SIGHTING)
     observer = f.section("observer", "add observer: {pose: [x, y, yaw]}, robot 1 in map 1")
     observer.refuse_unknown("pose")
     observed = f.section("observed", "add observed: {pose: [x, y, yaw]}, robot 2 in map 2")
@@ -56,6 +122,10 @@ def _observation(f: Fields) -> Observation:
     m.refuse_unknown("range", "bearing", "sigma_range", "sigma_bearing", "bearing_back")
     seen_from = observer.pose("pose", (3,), "give [x, y, yaw] of robot 1 in map 1; m, m, rad")
     where = observed.pose("pose", (2, 3), "give [x, y] or [x, y, yaw] of robot 2 in map 2; m, m, rad")
+    for section, pose in ((observer, seen_from), (observed, where)):
+        if any(abs(yaw) > 2 * pi for yaw in pose[2:]):
+            found = f"turns by {pose[2]:g} rad, more than a whole turn"
+            raise section.error("pose", found, f"it looks like degrees: give radians, {radians(pose[2]):.4g}")
     back = (
         _bearing(m, "bearing_back", "give radians, or leave it out") if "bearing_back" in m.values else None
     )
@@ -77,24 +147,35 @@ def _observation(f: Fields) -> Observation:
     )
 
 
-def write_observations(path: Path | str, observations: Sequence[Observation]) -> None:
+def write_observations(path: Path | str, observations: Sequence[Known]) -> None:
     """Write an observation file whole or not at all; raises OutputError, SettingError."""
-    write_file(Path(path), observations_to_bytes(observations))
+    write_file(Path(path), known_to_bytes(observations))
 
 
-def observations_to_bytes(observations: Sequence[Observation]) -> bytes:
-    """The content of an observation file; it reads back to equal Observations.
+def known_to_bytes(known: Sequence[Known]) -> bytes:
+    """The content of an observation file; it reads back to equal values.
 
     A single one is written as it is, several as a list.
 
     raises : SettingError where there are none, or more than a file may hold
     """
-    if not 1 <= len(observations) <= MOST_OBSERVATIONS:
-        raise SettingError(f"a file holds 1 to {MOST_OBSERVATIONS} observations, not {len(observations)}")
-    entries = ["\n".join(_lines(o)) for o in observations]
+    if not 1 <= len(known) <= MOST_OBSERVATIONS:
+        raise SettingError(f"a file holds 1 to {MOST_OBSERVATIONS} observations, not {len(known)}")
+    entries = ["\n".join(_lines(one) if isinstance(one, Observation) else [_prior(one)]) for one in known]
     if len(entries) > 1:
         entries = [f"- {indent(entry, '  ').lstrip()}" for entry in entries]
     return ("\n".join(entries) + "\n").encode()
+
+
+def _prior(prior: Prior) -> str:
+    if isinstance(prior, InitialPose):
+        pose, sigma = _list(prior.pose.array().tolist()), _list(prior.sigmas.tolist())
+        return f"initial: {{pose: {pose}, sigma: {sigma}}}  # map 2's frame in map 1's: m, m, rad"
+    if isinstance(prior, TurnPrior):
+        yaw, sigma = number_text(prior.yaw), number_text(prior.sigma)
+        return f"turn: {{yaw: {yaw}, sigma: {sigma}}}  # of map 2's frame in map 1's: rad"
+    ref, mov = _list([prior.ref_x, prior.ref_y]), _list([prior.mov_x, prior.mov_y])
+    return f"near: {{map1: {ref}, map2: {mov}, radius: {number_text(prior.radius)}}}  # one place: m"
 
 
 def _lines(o: Observation) -> list[str]:

@@ -22,7 +22,7 @@ from algorithms.methods.spectra_stages import OPTIMISERS, augment_both, objectiv
 from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import AnswersDetail, Detail, ObservationDetail, RefineDetail, Step
 from algorithms.observations.pair_problem import PairProblem
-from algorithms.observations.search_window import CoupledWindow, coupled_window
+from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.objective import Lookup, Objective
 from algorithms.optimisation.particle_swarm import settled_within
 from algorithms.optimisation.search_box import SearchBox, pose_about
@@ -104,13 +104,13 @@ class ManualMerge:
     @property
     def window(self) -> CoupledWindow:
         """The coupled window, but without an end: a person may know better than the sighting."""
-        return replace(coupled_window(self.problem.encounters, self.config.window), k=inf)
+        return replace(self.problem.window(self.config.window), k=inf)
 
     def box(self, T_ref_mov: Pose2) -> SearchBox:
         """The optimiser's box around a transform, eqs. (18)–(20), not cut to any window."""
         margins = self.config.box
         half = np.array([margins.sigma_x, margins.sigma_y, radians(margins.sigma_theta)])
-        pivot = self.problem.encounters[0].x_mov
+        pivot = self.problem.pivot
         centre = pose_about(pivot, T_ref_mov)
         return SearchBox(centre - half, centre + half, pivot)
 

@@ -10,6 +10,7 @@ from algorithms.maps.map_fusion import Fusion
 from algorithms.observations.observation import Encounter
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.verdict.decision import Verdict
+from algorithms.verdict.probability_model import ModelKind
 from algorithms.verdict.ranking import Weighed
 
 
@@ -32,8 +33,11 @@ class MergeResult:
                     agree; None for a method without an objective
     verdict       : whether to trust it, and why
     fusion        : the merged map, in map 1's frame, and where the maps agree
-    encounters    : where robot 2 was seen, a place per sighting
+    encounters    : where robot 2 was seen, a place per sighting; () without one
+    pivot         : (2,) where answers are held against each other: where robot 2 was first seen, or the
+                    middle of map 2's walls; metres, mov frame
     answers       : everything the optimiser ended on, best first
+    kind          : of model that weighed the answers
     weighed       : T_ref_mov and the other answers that may be right, as the whole maps weigh them
     proof         : how the proof ended; None for a method without one
     search_found_it : whether the optimiser had come to the proven answer; None without a proof
@@ -46,9 +50,11 @@ class MergeResult:
     verdict: Verdict
     fusion: Fusion
     encounters: tuple[Encounter, ...]
+    pivot: FloatArray
     answers: tuple[Answer, ...]
     method: str
     seed: int
+    kind: ModelKind = "sighting"
     weighed: tuple[Weighed, ...] = ()
     proof: ProofState | None = None
     search_found_it: bool | None = None

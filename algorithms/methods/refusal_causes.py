@@ -15,6 +15,7 @@ import numpy as np
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
+from algorithms.maps.coarse_grid import pooled
 from algorithms.maps.grid_map import GridMap, remarks_on
 from algorithms.methods import spectra_method
 from algorithms.methods.merge_result import MergeResult
@@ -26,7 +27,6 @@ from algorithms.observations.observation import Observation
 from algorithms.observations.pair_problem import PairProblem
 from algorithms.optimisation.particle_swarm import SwarmConfig
 from algorithms.verdict.decision import Verdict
-from algorithms.verdict.wall_map import pooled
 
 SCALES = (0.5, 2.0, 0.8, 1.25, 0.4, 2.5)  # between cells of 0.02, 0.025, 0.04, 0.05 and 0.1 m
 PATIENCE = 2  # of the proof, in 10⁵ nodes: how long each change is tried
@@ -103,7 +103,7 @@ def find_cause(problem: PairProblem, config: PipelineConfig) -> Iterator[TriedDe
     config : of the default method
     """
     remarks = " ".join(remarks_on((problem.ref, problem.mov)))
-    causes = _causes(problem.mov)
+    causes = _causes(problem.mov) if problem.observations else []
     ref, mov = (pooled(grid, ceil(sqrt(grid.cells.size / MOST_CELLS))) for grid in (problem.ref, problem.mov))
     coarse = replace(problem, ref=ref, mov=mov)
     total, number = sum(map(len, causes)), 0
@@ -129,7 +129,7 @@ def _try(problem: PairProblem, cause: Cause, config: PipelineConfig) -> MergeRes
     quick: Any = replace(config, swarm=NO_SWARM, proof=replace(config.proof, patience=PATIENCE))
     try:
         changed = [cause.change(problem.mov, o) for o in problem.observations]
-        right = PairProblem(problem.ref, changed[0][0], tuple(o for _, o in changed))
+        right = PairProblem(problem.ref, changed[0][0], tuple(o for _, o in changed))  # a prior may be wrong
         *_, last = run_search(spectra_method.search, right, quick)
     except MapMergeError:  # a robot off its map, or cells too fine: this was not the cause
         return None

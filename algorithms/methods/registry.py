@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from algorithms.common.errors import SettingError
 from algorithms.maps.grid_map import GridMap
-from algorithms.methods import refusal_causes, spectra_method
+from algorithms.methods import plane_method, refusal_causes, spectra_method
 from algorithms.methods.baselines import (
     bilateral,
     carpin_spectra,
@@ -33,12 +33,13 @@ from algorithms.methods.shared_stages import Search, run_search
 from algorithms.methods.spectra_config import PipelineConfig, RefineConfig
 from algorithms.methods.stage_runner import StageCache
 from algorithms.methods.steps import CauseDetail, Step
-from algorithms.observations.observation import Observation
-from algorithms.observations.pair_problem import PairProblem
+from algorithms.observations.pair_problem import Known, PairProblem
 from algorithms.observations.search_window import WindowConfig
 from algorithms.optimisation.branch_and_bound import ProofConfig
 from algorithms.spectra.augmented_map import AugmentConfig
 from algorithms.spectra.candidates import CandidateConfig
+from algorithms.verdict.decision import VerdictConfig
+from algorithms.verdict.probability_model import shipped_model
 from algorithms.verdict.ranking import WINDOW_EDGE
 
 Family = Literal["ours", "paper", "rivals"]
@@ -53,7 +54,8 @@ class Method:
     title    : what a person reads in a menu
     defaults : its frozen config; panel and flags are made from it
     family   : whose it is; methods of one family stand together in a menu
-    uses_observation : whether the sighting helps it to its transform; the verdict weighs it in any case
+    uses_observation : whether a sighting helps it to its transform; the verdict weighs it in any case
+    needs_sighting : whether it cannot do without one
     """
 
     search: Search
@@ -61,14 +63,17 @@ class Method:
     defaults: Any
     family: Family = "ours"
     uses_observation: bool = True
+    needs_sighting: bool = True
 
 
 DEFAULT_METHOD = "spectra-proven"
+PLANE_METHOD = "whole-plane"
+SHARP = 3.0  # metres; a wider window is searched faster over the plane than block by block
 
 
 def _features(title: str, detector: DetectorConfig, reach: float) -> Method:
     config = FeatureConfig(picture=PictureConfig(reach=reach), detector=detector)
-    return Method(feature_matching.search, title, config, "rivals", False)
+    return Method(feature_matching.search, title, config, "rivals", False, False)
 
 
 METHODS: dict[str, Method] = {
@@ -82,6 +87,12 @@ METHODS: dict[str, Method] = {
             proof=ProofConfig(whole_circle=True),
             whole_maps=True,
         ),
+    ),
+    PLANE_METHOD: Method(
+        plane_method.search,
+        "Whole plane, any knowledge or none",
+        plane_method.PlaneMethodConfig(verdict=VerdictConfig(accept_from=shipped_model("plane").accept_from)),
+        needs_sighting=False,
     ),
     "spectra-swarm": Method(spectra_method.search, "Spectra, all candidates, swarm", PipelineConfig()),
     "spectra-montecarlo": Method(
@@ -107,10 +118,20 @@ METHODS: dict[str, Method] = {
         "paper",
     ),
     "smm-only": Method(
-        carpin_spectra.search, "Spectra alone (Carpin)", carpin_spectra.CarpinConfig(), "rivals", False
+        carpin_spectra.search,
+        "Spectra alone (Carpin)",
+        carpin_spectra.CarpinConfig(),
+        "rivals",
+        False,
+        False,
     ),
     "mse": Method(
-        mse_registration.search, "Least squared error (MSE)", mse_registration.MseConfig(), "rivals", False
+        mse_registration.search,
+        "Least squared error (MSE)",
+        mse_registration.MseConfig(),
+        "rivals",
+        False,
+        False,
     ),
     "harris": _features("Harris corners", HarrisConfig(), reach=1.0),
     "shi-tomasi": _features("Shi–Tomasi corners", ShiTomasiConfig(), reach=1.0),
@@ -121,44 +142,61 @@ METHODS: dict[str, Method] = {
         phase_correlation.PhaseCorrelationConfig(),
         "rivals",
         False,
+        False,
     ),
     "sift": _features("SIFT features", SiftConfig(), reach=0.4),
     "orb": _features("ORB features", OrbConfig(), reach=1.0),
 }
 
 
+def default_method(problem: PairProblem) -> str:
+    """The method that suits what is known: near a sighting that is sharp enough the proven one, else the one
+    that searches the plane.
+    """
+    sharp = problem.observations and problem.window(WindowConfig()).disc <= SHARP
+    return DEFAULT_METHOD if sharp else PLANE_METHOD
+
+
 def run(
-    name: str,
+    name: str | None,
     ref: GridMap,
     mov: GridMap,
-    observations: Observation | Sequence[Observation],
+    known: Known | Sequence[Known] = (),
     config: Any = None,
     seed: int = 0,
     memo: StageCache | None = None,
 ) -> Iterator[Step]:
     """Yield the steps of one method of the table; the last one's detail is the MergeResult.
 
-    name         : a key of METHODS
-    ref, mov     : the observer's map, and that of the robot it saw
-    observations : one sighting, or several between the makers of these two maps
-    config       : the method's ``defaults``, or a changed copy of them
-    seed         : of the random numbers; the same seed gives the same answer
-    memo         : keep it between runs: stages before the first changed setting are then not run again
-    raises       : SettingError, at once, where there is no such method or observation, or a robot stands far
-                   off its own map; while it runs NoAnswerError where the method finds no transform at
-                   all, and TooLargeError where the merged map would be
+    name     : a key of METHODS; None: ``default_method``
+    ref, mov : the observer's map, and that of the robot it saw; without a sighting, any two
+    known    : sightings between the makers of these two maps, initial poses, rough turns, near places: one,
+               several or none
+    config   : the method's ``defaults``, or a changed copy of them
+    seed     : of the random numbers; the same seed gives the same answer
+    memo     : keep it between runs: stages before the first changed setting are then not run again
+    raises   : SettingError, at once, where there is no such method, where it needs a sighting and there is
+               none, where a robot stands far off its own map, or where what is known contradicts itself;
+               while it runs NoAnswerError where the method finds no transform at all, and TooLargeError
+               where the merged map would be
     """
-    if name not in METHODS:
+    if name is not None and name not in METHODS:
         raise SettingError(f"there is no method {name!r}; known are {', '.join(METHODS)}")
-    problem, method = PairProblem.of(ref, mov, observations), METHODS[name]
+    problem = PairProblem.of(ref, mov, known)
+    name = default_method(problem) if name is None else name
+    method = METHODS[name]
+    if method.needs_sighting and not problem.observations:
+        raise SettingError(
+            f"the method {name} needs an observation; give at least one, or choose {PLANE_METHOD}"
+        )
     return run_search(method.search, problem, method.defaults if config is None else config, seed, memo, name)
 
 
 def run_explained(
-    name: str,
+    name: str | None,
     ref: GridMap,
     mov: GridMap,
-    observations: Observation | Sequence[Observation],
+    known: Known | Sequence[Known] = (),
     config: Any = None,
     seed: int = 0,
     memo: StageCache | None = None,
@@ -167,27 +205,25 @@ def run_explained(
     MergeResult, with a hint in its verdict where a cause was found.
     """
     last: Step | None = None
-    for step in run(name, ref, mov, observations, config, seed, memo):
+    for step in run(name, ref, mov, known, config, seed, memo):
         last = step
         yield step
     if last is None or not isinstance(last.detail, MergeResult) or last.detail.verdict.accepted:
         return
-    for step in find_cause(ref, mov, observations):
+    for step in find_cause(ref, mov, known):
         if isinstance(step.detail, CauseDetail):
             yield Step(step.stage, last.detail.with_hint(step.detail.hint), step.seconds)
         else:
             yield step
 
 
-def find_cause(
-    ref: GridMap, mov: GridMap, observations: Observation | Sequence[Observation]
-) -> Iterator[Step]:
+def find_cause(ref: GridMap, mov: GridMap, known: Known | Sequence[Known] = ()) -> Iterator[Step]:
     """Yield a step for every simple change to map 2 under which two maps may agree that were refused; the
     last one's detail is a CauseDetail.
     """
     began = perf_counter()
     default = METHODS[DEFAULT_METHOD].defaults
-    for detail in refusal_causes.find_cause(PairProblem.of(ref, mov, observations), default):
+    for detail in refusal_causes.find_cause(PairProblem.of(ref, mov, known), default):
         yield Step("explain", detail, perf_counter() - began)
         began = perf_counter()
 
@@ -195,8 +231,8 @@ def find_cause(
 def merge(
     ref: GridMap,
     mov: GridMap,
-    observations: Observation | Sequence[Observation],
-    method: str = DEFAULT_METHOD,
+    known: Known | Sequence[Known] = (),
+    method: str | None = None,
     config: Any = None,
     seed: int = 0,
 ) -> MergeResult:
@@ -205,6 +241,6 @@ def merge(
     A refused merge has a transform and a map as well: ask ``verdict.accepted``. Arguments and errors are
     those of ``run``.
     """
-    *_, last = run(method, ref, mov, observations, config, seed)
+    *_, last = run(method, ref, mov, known, config, seed)
     assert isinstance(last.detail, MergeResult)
     return last.detail

@@ -14,6 +14,7 @@ from algorithms.methods.steps import ObservationDetail, Step
 from algorithms.observations.pair_problem import PairProblem
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.verdict.decision import judge
+from algorithms.verdict.probability_model import ModelKind, shipped_model
 from algorithms.verdict.ranking import Weighed
 
 
@@ -25,6 +26,7 @@ class Found:
     others     : other answers that may be the right one; None for a method that knows none
     covariance : (3, 3) of x, y, theta of the named one; metres and radians
     doubts     : what the search itself has against its answer, each a clause of a sentence
+    kind       : of model that weighed the answers
     the rest   : as in MergeResult
     """
 
@@ -36,6 +38,7 @@ class Found:
     doubts: Sequence[str] = ()
     proof: ProofState | None = None
     search_found_it: bool | None = None
+    kind: ModelKind = "sighting"
 
 
 Search = Callable[[PairProblem, Any, int, StageRunner], Generator[Step, None, Found]]
@@ -59,7 +62,7 @@ def run_search(
              given again (``Step.reused``)
     """
     runner = StageRunner({} if memo is None else memo)
-    seen = (problem.observations, problem.ref.resolution, problem.mov.resolution)
+    seen = (problem.observations, problem.priors, problem.ref.resolution, problem.mov.resolution)
     yield from runner.stage("observe", seen, lambda: [ObservationDetail(problem.encounters)])
     found = yield from search(problem, config, seed, runner)
     best = found.named.T_ref_mov
@@ -95,14 +98,18 @@ def finish_merge(
     fusion    : of both maps under the named transform
     timings_s : seconds of each stage so far
     """
-    pivot = problem.encounters[0].x_mov
+    model = shipped_model(found.kind)
+    about = problem.pivot, config.verdict, found.doubts, model, bool(problem.observations)
+    verdict = judge(fusion, found.named, found.others, *about)
     return MergeResult(
         T_ref_mov=found.named.T_ref_mov,
         covariance=found.covariance,
         value=found.value,
-        verdict=judge(fusion, found.named, found.others, pivot, config.verdict, found.doubts),
+        verdict=verdict,
+        kind=found.kind,
         fusion=fusion,
         encounters=problem.encounters,
+        pivot=problem.pivot,
         answers=found.answers,
         method=method,
         seed=seed,

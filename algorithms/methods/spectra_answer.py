@@ -12,9 +12,8 @@ from algorithms.methods.shared_stages import Found
 from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.spectra_stages import RIVAL_FLOOR
 from algorithms.methods.steps import AnswersDetail, CandidatesDetail, ProvenDetail, WeighedDetail
-from algorithms.observations.observation import Encounter
 from algorithms.observations.pair_problem import PairProblem
-from algorithms.observations.search_window import CoupledWindow, Window, coupled_window
+from algorithms.observations.search_window import CoupledWindow, Window
 from algorithms.optimisation.branch_and_bound import MOST_RIVALS
 from algorithms.optimisation.covariance import covariance_of, peak_covariance
 from algorithms.optimisation.objective import Objective
@@ -34,7 +33,7 @@ def weigh_answers(
 ) -> WeighedDetail:
     """The best few answers by the whole maps. The likeliest is named, or the search's own best."""
     whole = whole_maps_of(problem, config)
-    few, model = _best_few(refined, proven, problem.encounters[0], config), shipped_model()
+    few, model = _best_few(refined, proven, problem.pivot, config), shipped_model()
     apart = config.proof.distance, radians(config.proof.angle)
     if not config.whole_maps:
         named, *others = (weigh(whole, T, model) for T in few)
@@ -49,13 +48,13 @@ def weigh_answers(
 
 def whole_maps_of(problem: PairProblem, config: PipelineConfig) -> WholeMaps:
     """Both maps as a whole, as these settings weigh them."""
-    window = coupled_window(problem.encounters, config.window)
+    window = problem.window(config.window)
     robots = problem.robots(config.verdict.robot_size)
     return make_whole_maps(problem.ref, problem.mov, robots, window, config.agreement.evidence)
 
 
 def _best_few(
-    refined: AnswersDetail, proven: ProvenDetail | None, at: Encounter, config: PipelineConfig
+    refined: AnswersDetail, proven: ProvenDetail | None, pivot: FloatArray, config: PipelineConfig
 ) -> list[Pose2]:
     """What the whole maps are asked about: the search's best, and others at least half as good."""
     if proven is not None:
@@ -64,7 +63,7 @@ def _best_few(
     angle = radians(2 * config.box.sigma_theta)
     kept: list[Answer] = []  # each elsewhere than those before it
     for answer in refined.answers:
-        apart = [pose_error(answer.T_ref_mov, known.T_ref_mov, at.x_mov) for known in kept]
+        apart = [pose_error(answer.T_ref_mov, known.T_ref_mov, pivot) for known in kept]
         if all(metres > distance or turn > angle for metres, turn in apart):
             kept.append(answer)
     best, *others = kept
@@ -129,7 +128,7 @@ def covariance_at(
     T = named.T_ref_mov
     if peak is None or config.refine.objective == "gamma":
         return peak_covariance(objective, T, box_around(T, window, config.box), config.augment.spread)
-    coupled = coupled_window(problem.encounters, config.window)
+    coupled = problem.window(config.window)
     widest = np.append(np.sqrt(np.diag(coupled.covariances[0])), radians(config.proof.angle))
     bend = named.evidence.slip if is_bent(named.evidence, config.verdict) else 0.0
     least = np.hypot(LEAST_DEVIATION, bend) * np.array([1.0, 1.0, 1 / PATCH])

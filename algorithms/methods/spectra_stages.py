@@ -24,13 +24,7 @@ from algorithms.methods.steps import (
     WindowDetail,
 )
 from algorithms.observations.pair_problem import PairProblem
-from algorithms.observations.search_window import (
-    CoupledWindow,
-    Window,
-    coupled_window,
-    paper_window,
-    shift_window,
-)
+from algorithms.observations.search_window import CoupledWindow, Window, paper_window, shift_window
 from algorithms.optimisation.branch_and_bound import prove
 from algorithms.optimisation.likelihood_field import make_agreement
 from algorithms.optimisation.monte_carlo import monte_carlo
@@ -63,8 +57,8 @@ def first_look(
 ) -> Iterator[Detail]:
     """A candidate per turn, then a first look into the box of each, which ranks them by their value."""
     encounters = problem.encounters
-    window = shift_window(encounters, config.window)
-    coupled = coupled_window(encounters, config.window)
+    coupled = problem.window(config.window)
+    window = shift_window(encounters, coupled, config.window)
     yield WindowDetail(window, coupled, paper_window(encounters[0], replace(config.window, kind="origin")))
     candidates = []
     turns = shift_candidates(augmented.ref, augmented.mov, hough.match, window)
@@ -98,7 +92,7 @@ def objective_of(problem: PairProblem, augmented: AugmentDetail, config: Pipelin
         problem.encounters,
         config.augment,
         config.agreement,
-        coupled_window(problem.encounters, config.window),
+        problem.window(config.window),
         config.refine.lookup,
         config.verdict.robot_size,
     )
@@ -166,7 +160,7 @@ def prove_optimum(
     problem: PairProblem, found: CandidatesDetail, refined: AnswersDetail, config: PipelineConfig
 ) -> Iterator[Detail]:
     """The best of the whole circle, and whether the optimiser had found it."""
-    window = coupled_window(problem.encounters, config.window)
+    window = problem.window(config.window)
     # where nothing fits, the best of what does not fit is not worth the time to prove it
     for state in prove(found.objective, window, config.proof, RIVAL_FLOOR, worth=0.0):
         yield ProofDetail(state, window)

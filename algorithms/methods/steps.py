@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from algorithms.common.pose import FloatArray, Pose2
-from algorithms.maps.grid_map import BoolArray
+from algorithms.maps.grid_map import BoolArray, Float32Array
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import Answer, MergeResult
 from algorithms.observations.observation import Encounter
@@ -13,6 +13,7 @@ from algorithms.observations.search_window import CoupledWindow, Window
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.optimisation.objective import Objective
 from algorithms.optimisation.optimiser import SearchState
+from algorithms.optimisation.plane_correlation import TurnLook
 from algorithms.optimisation.search_box import SearchBox
 from algorithms.optimisation.subcell_peak import Peak
 from algorithms.spectra.augmented_map import AugmentedMap
@@ -31,6 +32,11 @@ class ObservationDetail:
     def encounter(self) -> Encounter:
         """The place of the first sighting."""
         return self.encounters[0]
+
+    @property
+    def pivot(self) -> FloatArray:
+        """(2,) where robot 2 was first seen; metres, mov frame."""
+        return self.encounters[0].x_mov
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,8 +133,29 @@ class TurnsDetail:
 
 
 @dataclass(frozen=True, eq=False)
+class PlaneDetail:
+    """Stage "correlate": some more turns of the plane are done.
+
+    done, total   : turns
+    look          : the best of the newest turns
+    cell          : edge of a cell of its surface; metres
+    poses, values : (P, 3), (P,) x, y, theta of T_ref_mov at the best places so far, best first, and how good
+                    they are; metres of wall
+    searched      : shifts that the knowledge leaves, averaged over the circle's turns so far; m²
+    """
+
+    done: int
+    total: int
+    look: TurnLook
+    cell: float
+    poses: FloatArray
+    values: Float32Array
+    searched: float
+
+
+@dataclass(frozen=True, eq=False)
 class AnswersDetail:
-    """End of stage "refine": what became of every candidate, best Γ first."""
+    """End of stage "refine", or "climb": what became of every candidate, best value first."""
 
     answers: tuple[Answer, ...]
 
@@ -199,6 +226,7 @@ Detail = (
     | RefineDetail
     | MatchesDetail
     | TurnsDetail
+    | PlaneDetail
     | AnswersDetail
     | ProofDetail
     | ProvenDetail
@@ -214,8 +242,8 @@ Detail = (
 class Step:
     """One thing a method has done.
 
-    stage   : "observe", "augment", "spectra", "match", "search", "refine", "prove", "weigh", "fuse",
-              "verdict" or, after a refusal, "explain"
+    stage   : "observe", "augment", "spectra", "match", "search", "refine", "prove", "correlate", "climb",
+              "weigh", "fuse", "verdict" or, after a refusal, "explain"
     detail  : what came out of it, for whoever draws or reports it
     seconds : spent on it, without what the caller did between two steps
     reused  : whether it comes from an earlier run with the same settings (``seconds`` are that run's)

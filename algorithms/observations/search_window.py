@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from math import hypot
+from math import hypot, inf, sqrt
 from typing import Annotated, Literal
 
 import numpy as np
 
-from algorithms.common.pose import FloatArray, Pose2
+from algorithms.common.pose import FloatArray, Pose2, chord
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import BoolArray
 from algorithms.observations.observation import Encounter
+from algorithms.observations.priors import Prior
+from algorithms.observations.sighted_ring import SightedRing
 
 LEAST_MARGIN = 1e-3  # metres; a robot on top of the other was seen with no lateral error at all
+
+WindowTerm = Prior | SightedRing
+"""What may keep a transform in the window besides sightings whose error is an ellipse."""
 
 
 @dataclass(frozen=True)
@@ -59,17 +64,27 @@ class CoupledWindow:
     x_ref, x_mov : (S, 2) where the S robots were seen, in the ref and the mov frame; metres
     covariances  : (S, 2, 2) of x_ref − T x_mov; m²
     k            : how many standard deviations are let pass
+    priors       : what else is known
+    middles      : (2, 2) of what the ref and the mov map show; metres, each in its own frame. Where nobody
+                   was seen they stand for the place where the maps meet
     """
 
     x_ref: FloatArray
     x_mov: FloatArray
     covariances: FloatArray
     k: float
+    priors: tuple[WindowTerm, ...] = ()
+    middles: FloatArray = field(default_factory=lambda: np.zeros((2, 2)))
 
     @property
     def pivot(self) -> FloatArray:
         """(2,) the first seen robot; metres, mov frame. The window is one for where T puts it."""
-        return np.asarray(self.x_mov[0], dtype=np.float64)
+        return np.asarray(self.x_mov[0] if len(self.x_mov) else self.middles[1], dtype=np.float64)
+
+    @property
+    def place(self) -> FloatArray:
+        """(2,) where the first robot was seen; metres, ref frame."""
+        return np.asarray(self.x_ref[0] if len(self.x_ref) else self.middles[0], dtype=np.float64)
 
     @property
     def low(self) -> FloatArray:
@@ -82,6 +97,13 @@ class CoupledWindow:
         return np.asarray(self.x_ref[0] + self._reach, dtype=np.float64)
 
     @property
+    def disc(self) -> float:
+        """How far the pivot may lie from where it was seen; metres; endless where nobody was seen."""
+        if not len(self.x_ref):
+            return inf
+        return float(self.k * sqrt(float(np.linalg.eigvalsh(self.covariances[0])[-1])))
+
+    @property
     def _reach(self) -> FloatArray:
         return np.asarray(self.k * np.sqrt(np.diag(self.covariances[0])), dtype=np.float64)
 
@@ -91,7 +113,9 @@ class CoupledWindow:
         return np.asarray(np.linalg.inv(np.linalg.cholesky(self.covariances)), dtype=np.float64)
 
     def deviations(self, poses: FloatArray) -> FloatArray:
-        """(P, S) standard deviations from every sighting, of (P, 3) x, y, theta of T_ref_mov."""
+        """(P, S + priors) standard deviations from every sighting and what else is known, of (P, 3) x, y,
+        theta of T_ref_mov.
+        """
         c, s = np.cos(poses[:, 2, None]), np.sin(poses[:, 2, None])
         x, y = self.x_mov.T
         off = np.stack(
@@ -101,9 +125,17 @@ class CoupledWindow:
             ],
             axis=-1,
         )
-        return np.asarray(
-            np.linalg.norm(np.einsum("sij,psj->psi", self.whitening, off), axis=-1), dtype=np.float64
-        )
+        seen = np.linalg.norm(np.einsum("sij,psj->psi", self.whitening, off), axis=-1)
+        return np.column_stack([seen, *(prior.deviations(poses) for prior in self.priors)])
+
+    def slack(self, shift: float, turn: float) -> FloatArray:
+        """(S + priors,) bound of how far each deviation changes where the pivot moves by up to ``shift``
+        metres and a transform turns by up to ``turn`` radians.
+        """
+        lever = np.linalg.norm(self.x_mov - self.pivot, axis=1)
+        sharpest = np.linalg.norm(self.whitening, ord=2, axis=(1, 2))
+        others = [prior.slack(shift, turn, self.pivot) for prior in self.priors]
+        return np.append((shift + lever * chord(turn)) * sharpest, others)
 
     def pulled_in(self, T_ref_mov: Pose2) -> Pose2:
         """The transform, shifted straight towards the first sighting until it is in its disc."""
@@ -131,19 +163,29 @@ def paper_window(at: Encounter, config: WindowConfig) -> Window:
     return Window(at.x_ref - reach, at.x_ref + reach, pivot)  # eqs. (7), (8)
 
 
-def coupled_window(encounters: Sequence[Encounter], config: WindowConfig) -> CoupledWindow:
-    """The window of all sightings; each counts with its own covariance and the margin's."""
+def coupled_window(
+    encounters: Sequence[Encounter],
+    config: WindowConfig,
+    priors: tuple[WindowTerm, ...] = (),
+    middles: FloatArray | None = None,
+) -> CoupledWindow:
+    """The window of all sightings; each counts with its own covariance and the margin's.
+
+    priors, middles : as in CoupledWindow
+    """
     margin = np.eye(2) * max(config.margin, LEAST_MARGIN) ** 2
     return CoupledWindow(
-        x_ref=np.array([at.x_ref for at in encounters]),
-        x_mov=np.array([at.x_mov for at in encounters]),
-        covariances=np.array([at.covariance + margin for at in encounters]),
+        x_ref=np.array([at.x_ref for at in encounters]).reshape(-1, 2),
+        x_mov=np.array([at.x_mov for at in encounters]).reshape(-1, 2),
+        covariances=np.array([at.covariance + margin for at in encounters]).reshape(-1, 2, 2),
         k=config.deviations,
+        priors=priors,
+        middles=np.zeros((2, 2)) if middles is None else middles,
     )
 
 
-def shift_window(encounters: Sequence[Encounter], config: WindowConfig) -> Window | CoupledWindow:
+def shift_window(
+    encounters: Sequence[Encounter], coupled: CoupledWindow, config: WindowConfig
+) -> Window | CoupledWindow:
     """The window that the settings ask for; the paper's knows the first sighting only."""
-    if config.kind == "coupled":
-        return coupled_window(encounters, config)
-    return paper_window(encounters[0], config)
+    return coupled if config.kind == "coupled" else paper_window(encounters[0], config)

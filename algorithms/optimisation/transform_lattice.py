@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from math import ceil, pi, sin, sqrt
+from math import ceil, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.common.errors import TooLargeError
-from algorithms.common.pose import FloatArray, rotation, wrap_angles
+from algorithms.common.pose import FloatArray, chord, rotation, wrap_angles
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.objective import Objective, Side
 from algorithms.optimisation.search_box import transforms_about
@@ -35,7 +35,7 @@ class TransformLattice:
             for side in objective.sides
         ]
         self.reach = max(self.cell, *reaches)
-        self.disc = window.k * sqrt(float(np.linalg.eigvalsh(window.covariances[0])[-1]))
+        self.disc = window.disc
         finest = min(side.grid.resolution for side in objective.sides)
         block = 2**LEVELS
         self.turns = block * ceil(2 * pi * self.reach / self.cell / block)
@@ -79,7 +79,7 @@ class TransformLattice:
 
     def poses(self, coordinates: FloatArray) -> FloatArray:
         """(P, 3) x, y, theta of T_ref_mov from ``coordinates``; the angle wrapped."""
-        goes_to = coordinates[:, :2] @ rotation(self.yaw).T + self.window.x_ref[0]
+        goes_to = coordinates[:, :2] @ rotation(self.yaw).T + self.window.place
         out = transforms_about(self.window.pivot, np.column_stack([goes_to, coordinates[:, 2]]))
         out[:, 2] = wrap_angles(out[:, 2])
         return out
@@ -104,13 +104,10 @@ class TransformLattice:
         return np.asarray(2 * nodes[:, None, :] + octants, dtype=np.int64).reshape(-1, 3)
 
     def nearest_deviations(self, middles: FloatArray, level: int) -> FloatArray:
-        """(P, S) lower bound of the deviations from the sightings anywhere in blocks; (P, 3) x, y, theta."""
-        window = self.window
-        lever = np.linalg.norm(window.x_mov - window.pivot, axis=1)
-        slack = self.half(level) * sqrt(2) + lever * chord(self.half_turn(level))
-        sharpest = np.linalg.norm(window.whitening, ord=2, axis=(1, 2))
-        middle = window.deviations(middles)
-        return np.asarray(np.maximum(0.0, middle - slack * sharpest * (1 + 1e-9)), dtype=np.float64)
+        """(P, S + priors) lower bound of the window's deviations anywhere in blocks; (P, 3) x, y, theta."""
+        slack = self.window.slack(self.half(level) * sqrt(2), self.half_turn(level))
+        middle = self.window.deviations(middles)
+        return np.asarray(np.maximum(0.0, middle - slack * (1 + 1e-9)), dtype=np.float64)
 
 
 def cluster_edge(level: int, cell: float) -> float:
@@ -120,10 +117,5 @@ def cluster_edge(level: int, cell: float) -> float:
 
 def from_pivot(side: Side, points: FloatArray, window: CoupledWindow) -> FloatArray:
     """(N, 2) points of a side relative to the place that a turn leaves as it is."""
-    pivot = window.x_ref[0] if side.backward else window.x_mov[0]
+    pivot = window.place if side.backward else window.pivot
     return np.asarray(points + (side.anchor - pivot), dtype=np.float64)
-
-
-def chord(angle: float) -> float:
-    """How far a turn by so many radians moves a point at a distance of one."""
-    return 2 * sin(min(angle, pi) / 2)

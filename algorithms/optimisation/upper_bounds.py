@@ -13,7 +13,7 @@ from math import sqrt
 import cv2
 import numpy as np
 
-from algorithms.common.pose import FloatArray
+from algorithms.common.pose import FloatArray, chord
 from algorithms.maps.grid_map import Float32Array
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.objective import PAD, Lookup, Objective, Side, nearest, sum_in_table
@@ -21,7 +21,6 @@ from algorithms.optimisation.transform_lattice import (
     RADII,
     IntArray,
     TransformLattice,
-    chord,
     cluster_edge,
     from_pivot,
 )
@@ -36,7 +35,7 @@ def _within_reach(side: Side, lattice: TransformLattice) -> tuple[Float32Array, 
     column and row: the encounter's surroundings, not the building.
     """
     window = lattice.window
-    pivot = window.x_mov[0] if side.backward else window.x_ref[0]
+    pivot = window.pivot if side.backward else window.place
     middle = side.grid.grid_coordinates(pivot) - side.corner + PAD
     reach = (lattice.reach + lattice.disc + lattice.spread(lattice.levels)) / side.grid.resolution + 2
     size = np.array(side.table.shape[::-1])

@@ -10,7 +10,7 @@ from pathlib import Path
 from algorithms.files.atomic_write import write_files
 from algorithms.files.case_folder import FIRST_MAP_FILE, SECOND_MAP_FILE
 from algorithms.files.map_file import map_to_bytes
-from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, observations_to_bytes
+from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, known_to_bytes
 from algorithms.files.truth_file import TRUTH_FILE, Truth, truth_to_bytes
 from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.robot import Conditions
@@ -85,8 +85,8 @@ def case_files(case: SimulatedCase) -> dict[str, bytes]:
     return {
         **map_to_bytes(case.ref, Path(FIRST_MAP_FILE).stem),
         **map_to_bytes(case.mov, Path(SECOND_MAP_FILE).stem),
-        OBSERVATION_FILE: observations_to_bytes(case.observations),
-        ROUGH_OBSERVATION_FILE: observations_to_bytes(case.rough),
+        OBSERVATION_FILE: known_to_bytes(case.observations),
+        ROUGH_OBSERVATION_FILE: known_to_bytes(case.rough),
         TRUTH_FILE: truth_to_bytes(truth),
     }
 

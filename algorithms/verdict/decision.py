@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from math import degrees, exp
+from math import degrees, exp, log
 from typing import Annotated
 
 from algorithms.common.pose import FloatArray, Pose2, pose_error
@@ -22,6 +22,7 @@ RIVAL_FROM = 0.05  # of the named answer's odds; another one below it is no riva
 ALIKE = 0.7  # log-odds, half as likely; nearer ones are said to fit almost equally well
 MOST_ODDS = 50.0  # log-odds of another answer over the named one that are given, at most
 LEAST_WALL = 0.5  # metres; less was seen by nobody
+WIDE = log(100.0)  # of the places searched, m²: less is no wide search
 NEXT_TO_NO_WALL = 1.0  # metres; so little that contradicts is a few cells here and there
 BENDS = 0.05  # share of the walls that slipping must mend for maps to be called bent
 
@@ -127,6 +128,7 @@ def judge(
     config: VerdictConfig,
     doubts: Sequence[str] = (),
     model: VerdictModel | None = None,
+    sighted: bool = True,
 ) -> Verdict:
     """Accept or refuse a merge; what speaks against it is named in the reason, the weightiest first.
 
@@ -134,6 +136,8 @@ def judge(
     others : other answers that may be the right one; None for a method that knows none
     pivot  : (2,) where answers are compared, x̂2; metres, mov frame
     doubts : what the method itself has against its answer, each a clause of a sentence
+    model  : that has weighed the answers; None: that of answers near a sighting
+    sighted : whether one robot saw the other
     """
     model = shipped_model() if model is None else model
     rivals = sorted(others or (), key=lambda other: -other.score)
@@ -156,7 +160,7 @@ def judge(
         reason = _accepted(outcome, likely, evidence)
     else:
         names = speaking_against(contributions)
-        clauses = [*doubts, *_clauses(names, named, rival, pivot)]
+        clauses = [*doubts, *_clauses(names, named, rival, pivot, sighted)]
         if not clauses:
             clauses = ["no single thing speaks much against it, but too little speaks for it"]
         though = "although " if likely >= config.accept_from else ""
@@ -236,7 +240,9 @@ def _bend(evidence: Evidence) -> str:
     return _sentence(where)
 
 
-def _clauses(names: Sequence[str], named: Weighed, rival: Weighed | None, pivot: FloatArray) -> list[str]:
+def _clauses(
+    names: Sequence[str], named: Weighed, rival: Weighed | None, pivot: FloatArray, sighted: bool
+) -> list[str]:
     """What speaks against a merge, each as a clause of a sentence, in the order given."""
     seen, clauses = named.evidence, []
     if seen.rigid_agreeing + seen.rigid_contradicting < LEAST_WALL:
@@ -264,16 +270,19 @@ def _clauses(names: Sequence[str], named: Weighed, rival: Weighed | None, pivot:
                 "the others, so little keeps map 2 in its place"
             )
         elif name == "misfit":
-            clauses.append(
-                f"robot 2 would stand {max(named.deviations):.1f} standard deviations from where it was seen"
-            )
+            who, where = ("robot 2", "where it was seen") if sighted else ("map 2", "where it was said to be")
+            off = max(named.deviations, default=0.0)
+            clauses.append(f"{who} would stand {off:.1f} standard deviations from {where}")
+        elif name == "searched" and named.quantities[name] > WIDE:
+            clauses.append("in so wide a search that much may fit by chance")
         elif name == OTHERS and rival is not None:
-            clauses.append(_rivalry(named, rival, pivot))
+            clauses.append(_rivalry(named, rival, pivot, sighted))
     return clauses
 
 
-def _rivalry(named: Weighed, rival: Weighed, pivot: FloatArray) -> str:
+def _rivalry(named: Weighed, rival: Weighed, pivot: FloatArray, sighted: bool) -> str:
     """What another answer means for this one."""
+    cure = "a second observation would decide" if sighted else "a sighting would decide"
     distance, turn = pose_error(rival.T_ref_mov, named.T_ref_mov, pivot)
     if rival.score > named.score:  # a search would have named the other one
         return f"the walls fit better {distance:.2f} m and {degrees(turn):.0f}° from there"
@@ -281,5 +290,5 @@ def _rivalry(named: Weighed, rival: Weighed, pivot: FloatArray) -> str:
     if distance > SAME_PLACE and degrees(turn) < 1:
         apart = f"{distance:.1f} m apart"
     if log_odds_over(rival.score, named.score) > -ALIKE:
-        return f"two answers fit almost equally well, {apart}: a second observation would decide"
-    return f"another answer, {apart}, fits too well to be ruled out: a second observation would decide"
+        return f"two answers fit almost equally well, {apart}: {cure}"
+    return f"another answer, {apart}, fits too well to be ruled out: {cure}"

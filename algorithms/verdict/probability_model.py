@@ -18,11 +18,14 @@ from dataclasses import dataclass
 from functools import cache
 from math import exp, log
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from algorithms.verdict.wall_evidence import Evidence
+
+ModelKind = Literal["sighting", "plane"]
+"""Answers near a sighting, or those of a search over all that any knowledge, or none, leaves of the plane."""
 
 MODEL_FILE = Path(__file__).with_name("probability_model.json")
 ENOUGH = 4.0  # log-odds, 98 %
@@ -35,10 +38,12 @@ class Fit:
 
     evidence : what the walls of the whole maps say
     misfit   : squared standard deviations by which it misses the sightings, as ``misfit_of`` adds them up
+    searched : shifts among which it was found, averaged over the whole circle of turns; m²
     """
 
     evidence: Evidence
     misfit: float
+    searched: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -88,8 +93,15 @@ QUANTITIES: dict[str, Quantity] = {
         False,
         lambda fit: fit.misfit,
     ),
+    "searched": Quantity(
+        "places searched",
+        "Shifts that what is known leaves open, averaged over the circle of turns: among more of them more "
+        "wrong ones fit by chance.",
+        False,
+        lambda fit: _log(fit.searched),
+    ),
 }
-"""Logarithms of metres and m², but for the last."""
+"""Logarithms of metres and m², but for the misfit."""
 
 OTHERS = "others"  # beside the quantities: what other answers take away
 
@@ -97,11 +109,12 @@ OTHERS = "others"  # beside the quantities: what other answers take away
 def misfit_of(deviations: Sequence[float], k: float) -> float:
     """Squared deviations of an answer from its sightings, added up.
 
-    Every sighting but one first gives k²: that an answer agrees with a second one at all, to k standard
-    deviations, is worth as much as lying right on the first instead of at the edge of its window.
+    Without any it is 0. Every sighting but one first gives k²: that an answer agrees with a second one at
+    all, to k standard deviations, is worth as much as lying right on the first instead of at the edge of its
+    window.
     """
     squares = sum(deviation**2 for deviation in deviations)
-    return squares - (len(deviations) - 1) * k**2
+    return squares - max(0, len(deviations) - 1) * k**2
 
 
 @dataclass(frozen=True)
@@ -165,15 +178,15 @@ def log_odds_over(score: float, other: float) -> float:
 
 def model_from(plain: Mapping[str, Any]) -> VerdictModel:
     return VerdictModel(
-        weights={name: float(plain["weights"][name]) for name in QUANTITIES},
+        weights={name: float(weight) for name, weight in plain["weights"].items()},
         bias=float(plain["bias"]),
-        typical={name: float(plain["typical"][name]) for name in QUANTITIES},
+        typical={name: float(value) for name, value in plain["typical"].items()},
         accept_from=float(plain["accept_from"]),
         made_of=plain["made_of"],
     )
 
 
 @cache
-def shipped_model() -> VerdictModel:
-    """The model that comes with mapmeld."""
-    return model_from(json.loads(MODEL_FILE.read_text(encoding="utf-8")))
+def shipped_model(kind: ModelKind = "sighting") -> VerdictModel:
+    """The model that comes with mapmeld for answers found so."""
+    return model_from(json.loads(MODEL_FILE.read_text(encoding="utf-8"))[kind])

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 
+from algorithms.common.parallel_kernels import each_on_a_core
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.verdict.probability_model import Fit, VerdictModel, misfit_of, probability, quantities_of
 from algorithms.verdict.wall_evidence import Evidence
@@ -43,7 +44,7 @@ def weigh(whole: WholeMaps, T_ref_mov: Pose2, model: VerdictModel, began: Pose2 
     """What the whole maps say of a transform; ``began`` is that itself unless given."""
     evidence = whole.weigh(T_ref_mov)
     deviations = tuple(whole.window.deviations(T_ref_mov.array()[None])[0].tolist())
-    quantities = quantities_of(Fit(evidence, misfit_of(deviations, WINDOW_EDGE)))
+    quantities = quantities_of(Fit(evidence, misfit_of(deviations, WINDOW_EDGE), whole.searched))
     began = T_ref_mov if began is None else began
     return Weighed(T_ref_mov, began, evidence, deviations, quantities, model.score(quantities))
 
@@ -57,11 +58,26 @@ def ranked(
     angle    : radians, from which on two transforms are two answers
     """
     kept: list[Weighed] = []
-    found = [weigh(whole, whole.climb(T), model, T) for T in answers]
+    found = each_on_a_core(lambda T: weigh(whole, whole.climb(T), model, T), tuple(answers))
     for each in sorted(found, key=lambda each: -each.score):
         if all(_apart(whole, each, other, distance, angle) for other in kept):
             kept.append(each)
     return tuple(kept)
+
+
+def likeliest(
+    whole: WholeMaps, answers: Sequence[Pose2], model: VerdictModel, most: int
+) -> tuple[Pose2, ...]:
+    """So many of the answers: those for which the maps as they are speak most."""
+    found = whole.rigid_evidence(answers)
+    scores = [
+        model.score(
+            quantities_of(Fit(replace(each, contradicting=each.rigid_contradicting), 0.0, whole.searched))
+        )
+        for each in found
+    ]
+    order = sorted(range(len(answers)), key=lambda k: -scores[k])
+    return tuple(answers[k] for k in order[:most])
 
 
 def better_beside(whole: WholeMaps, named: Weighed, model: VerdictModel) -> tuple[Weighed, ...]:

@@ -60,6 +60,17 @@ class Evidence:
         return self.agreeing + self.contradicting
 
 
+def middle_of(ref: WallMap, mov: WallMap, T_ref_mov: Pose2, robots: Robots) -> FloatArray:
+    """(2,) middle of all robots, or of the walls of both maps where none are known; metres, ref frame.
+
+    It is the same place whichever of the maps is called the first.
+    """
+    places = robots.places(T_ref_mov)
+    if not len(places):
+        places = np.stack([ref.middle, T_ref_mov.apply(mov.middle)])
+    return np.asarray(places.mean(axis=0), dtype=np.float64)
+
+
 def _share(against: float, agreeing: float) -> float:
     return against / (against + agreeing) if against + agreeing > 0 else 1.0
 
@@ -73,9 +84,10 @@ def evidence(
     slip   : whether patches may slip; without it only the walls as they are and the floor are counted
     """
     T_mov_ref, places = T_ref_mov.inverse(), robots.places(T_ref_mov)
+    middle = middle_of(ref, mov, T_ref_mov, robots)
     sides = (
-        _Side(mov, ref, T_ref_mov, T_mov_ref.apply(places), robots.size),
-        _Side(ref, mov, T_mov_ref, places, robots.size),
+        _Side(mov, ref, T_ref_mov, T_mov_ref.apply(places), robots.size, T_mov_ref.apply(middle)),
+        _Side(ref, mov, T_mov_ref, places, robots.size, middle),
     )
     slipped = []
     if slip:
@@ -103,12 +115,18 @@ class _Side:
     """
 
     def __init__(
-        self, source: WallMap, target: WallMap, T_target_source: Pose2, robots: FloatArray, size: float
+        self,
+        source: WallMap,
+        target: WallMap,
+        T_target_source: Pose2,
+        robots: FloatArray,
+        size: float,
+        anchor: FloatArray,
     ) -> None:
         self._source, self._target = source, target
         self._T = transform_between(target, source, T_target_source)
         robots = source.grid.origin.inverse().apply(robots)
-        self._anchor = robots.mean(axis=0) if len(robots) else np.zeros(2)  # the same for either map
+        self._anchor = source.grid.origin.inverse().apply(anchor)
         points, facing = source.points, source.facing
         if len(robots):
             away = np.ones(len(points), dtype=np.bool_)

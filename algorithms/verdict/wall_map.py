@@ -16,12 +16,11 @@ from numpy.typing import NDArray
 
 from algorithms.common.parallel_kernels import kernel
 from algorithms.common.pose import FloatArray, Pose2
+from algorithms.maps.coarse_grid import pooled
 from algorithms.maps.grid_map import (
     FREE,
     FREE_UP_TO,
-    OCCUPIED,
     OCCUPIED_FROM,
-    UNKNOWN,
     CellArray,
     GridMap,
     where,
@@ -75,6 +74,13 @@ class WallMap:
         at = np.stack([cols, rows], axis=-1) * self._stride + 0.5
         return np.asarray(at * self.grid.resolution, dtype=np.float64)
 
+    @cached_property
+    def middle(self) -> FloatArray:
+        """(2,) mean of its walls, of its grid where there are none; metres, the map's own frame."""
+        size = np.array([self.grid.width, self.grid.height]) * self.grid.resolution
+        middle = self.points.mean(axis=0) if len(self.points) else size / 2
+        return self.grid.origin.apply(middle)
+
     @property
     def floor_area(self) -> float:
         """Floor that a place of ``floor`` stands for; m²."""
@@ -104,19 +110,6 @@ def make_wall_map(grid: GridMap) -> WallMap:
     stride = max(1, ceil(len(rows) / MOST_POINTS))
     points = np.stack([cols[::stride] + 0.5, rows[::stride] + 0.5], axis=-1) * cell
     return WallMap(grid, points, turned[::stride], cell * stride, level, sides)
-
-
-def pooled(grid: GridMap, factor: int) -> GridMap:
-    """The map in cells ``factor`` times as wide; a cell is a wall where a part is, else free where one is.
-
-    With a factor of 1 it is the map itself.
-    """
-    if factor <= 1:
-        return grid
-    height, width = ceil(grid.height / factor), ceil(grid.width / factor)
-    cells = np.full((height, width), UNKNOWN, dtype=np.int8)
-    _pool(grid.cells, factor, cells)
-    return GridMap(cells, grid.resolution * factor, grid.origin, grid.name)
 
 
 def _disc(cell: float) -> tuple[IntArray, IntArray, ByteArray]:
@@ -209,19 +202,3 @@ def _mark(
                 level[i, j] = max(level[i, j], near[k])
                 if near[k] > NEAR:
                     sides[i, j] |= bits[n]
-
-
-@kernel
-def _pool(cells: CellArray, factor: int, out: CellArray) -> None:
-    height, width = cells.shape
-    for i in range(out.shape[0]):
-        for row in range(i * factor, min(height, (i + 1) * factor)):
-            for j in range(out.shape[1]):
-                best = out[i, j]
-                for col in range(j * factor, min(width, (j + 1) * factor)):
-                    value = cells[row, col]
-                    if value >= OCCUPIED_FROM:
-                        best = OCCUPIED
-                    elif FREE <= value <= FREE_UP_TO and best == UNKNOWN:
-                        best = FREE
-                out[i, j] = best

@@ -8,16 +8,16 @@ and then on crisp ones again, by which bent maps come to lie in the middle of th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil
-from typing import TypeVar
 
 import numpy as np
 
-from algorithms.common.parallel_kernels import run_in_threads
-from algorithms.common.pose import Pose2
+from algorithms.common.parallel_kernels import each_on_a_core
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.maps.coarse_grid import pooled
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.robots import Robots
 from algorithms.observations.search_window import CoupledWindow
@@ -25,11 +25,8 @@ from algorithms.optimisation.likelihood_field import clear, wall_field
 from algorithms.optimisation.objective import Objective, Side
 from algorithms.optimisation.search_box import pose_about, transforms_about
 from algorithms.optimisation.subcell_peak import STENCIL, paraboloid
-from algorithms.verdict.wall_evidence import Evidence, evidence
-from algorithms.verdict.wall_map import WallMap, make_wall_map, pooled
-
-Given = TypeVar("Given")
-Made = TypeVar("Made")
+from algorithms.verdict.wall_evidence import Evidence, evidence, middle_of
+from algorithms.verdict.wall_map import WallMap, make_wall_map
 
 CRISP, BLURRED = 0.1, 0.4  # metres; standard deviation of the distance between two drawings of one wall
 MOST_CELLS = 1_000_000  # of a table; a larger map is taken in coarser cells
@@ -54,6 +51,7 @@ class WholeMaps:
     robots : around them, within their size, there is no wall to weigh
     window : the sightings; what a transform deviates from them is taken off its value
     trust  : what half a squared standard deviation off a sighting costs; metres of wall
+    searched : shifts among which the answers were found, averaged over the whole circle of turns; m²
     """
 
     ref: WallMap
@@ -61,6 +59,7 @@ class WholeMaps:
     robots: Robots
     window: CoupledWindow
     trust: float
+    searched: float = 0.0
 
     def weigh(self, T_ref_mov: Pose2) -> Evidence:
         """What the walls say of a transform, or of the hilltop within a few centimetres: where cells end is
@@ -72,6 +71,14 @@ class WholeMaps:
     def crisp(self) -> Objective:
         """Metres of wall that agree less metres that contradict, over the whole maps."""
         return self._objective(CRISP, 0.0)
+
+    @cached_property
+    def _sparse(self) -> Objective:
+        """The crisp objective from every second point of the walls."""
+        sides = (
+            replace(side, points=side.points[::2], weights=2 * side.weights[::2]) for side in self.crisp.sides
+        )
+        return replace(self.crisp, sides=tuple(sides))
 
     @cached_property
     def _blurred(self) -> Objective:
@@ -87,6 +94,31 @@ class WholeMaps:
         value = self.crisp.value_at
         return best if value(best) > value(T_ref_mov) + WORTH_MOVING else T_ref_mov
 
+    def climb_all(self, poses: FloatArray) -> FloatArray:
+        """(P, 3) x, y, theta of T_ref_mov of the hilltops on crisp walls that lie near (P, 3) others; from
+        every second wall, for they are many.
+        """
+        pivot = self.window.pivot
+        at = np.array([pose_about(pivot, Pose2.from_array(pose)) for pose in poses]).reshape(-1, 3)
+        step = np.full(len(at), CRISP)
+        live = np.arange(len(at))
+        for _ in range(MOST_LOOKS if len(at) else 0):
+            around = at[live, None] + STENCIL * (step[live, None] * (1.0, 1.0, 1 / REACH))[:, None]
+            values = self._sparse(transforms_about(pivot, around.reshape(-1, 3))).reshape(
+                len(live), len(STENCIL)
+            )
+            best = values.argmax(axis=1)
+            at[live] = around[np.arange(len(live)), best]
+            step[live[best == len(STENCIL) // 2]] /= 2
+            live = live[step[live] >= 2 * LEAST_STEP]
+            if not len(live):
+                break
+        return transforms_about(pivot, at)
+
+    def rigid_evidence(self, answers: Sequence[Pose2]) -> list[Evidence]:
+        """What the walls say of each transform with the maps as they are."""
+        return each_on_a_core(lambda T: evidence(self.ref, self.mov, T, self.robots, slip=False), answers)
+
     def weigh_rigidly(self, T_ref_mov: Pose2) -> float:
         """Share of the walls that contradict with the maps as they are."""
         return evidence(self.ref, self.mov, T_ref_mov, self.robots, slip=False).rigid_contradiction
@@ -94,10 +126,10 @@ class WholeMaps:
     def _hilltop(self, T_ref_mov: Pose2) -> Pose2:
         """The top of the paraboloid that fits the crisp objective at the 27 places around, again and again.
 
-        It is fitted about the middle of all robots, so that swapping the maps or turning a frame, by which
-        other places are looked at, leaves it where it is to a millimetre or so.
+        It is fitted about the middle of all robots, or of all walls, so that swapping the maps or turning a
+        frame, by which other places are looked at, leaves it where it is to a millimetre or so.
         """
-        pivot = T_ref_mov.inverse().apply(self.robots.places(T_ref_mov).mean(axis=0))
+        pivot = T_ref_mov.inverse().apply(middle_of(self.ref, self.mov, T_ref_mov, self.robots))
         at = pose_about(pivot, T_ref_mov)
         for _ in range(MOST_FITS):
             slope, curvature = paraboloid(
@@ -129,14 +161,14 @@ class WholeMaps:
     def _objective(self, blur: float, least_cell: float) -> Objective:
         """Of walls in cells of at least that many metres, and in ``MOST_CELLS`` at most."""
         pairs = (self.ref, self.mov, False), (self.mov, self.ref, True)
-        sides = _each_on_a_core(lambda pair: self._side(*pair, blur, least_cell), pairs)
+        sides = each_on_a_core(lambda pair: self._side(*pair, blur, least_cell), pairs)
         return Objective(tuple(sides), window=self.window, trust=self.trust)
 
     def _side(self, target: WallMap, source: WallMap, backward: bool, blur: float, least_cell: float) -> Side:
         grid = target.grid
         coarser = int(least_cell / grid.resolution + 1e-9), ceil((grid.cells.size / MOST_CELLS) ** 0.5)
         grid = pooled(grid, max(coarser))
-        anchor = self.window.x_ref[0] if backward else self.window.x_mov[0]
+        anchor = self.window.place if backward else self.window.pivot
         stride = max(1, ceil(len(source.points) / MOST_POINTS))
         points = source.grid.origin.apply(source.points[::stride])
         table = wall_field(grid.occupied, grid.free, grid.resolution, blur)
@@ -154,18 +186,13 @@ class WholeMaps:
 
 
 def make_whole_maps(
-    ref: GridMap, mov: GridMap, robots: Robots, window: CoupledWindow, trust: float
+    ref: GridMap,
+    mov: GridMap,
+    robots: Robots,
+    window: CoupledWindow,
+    trust: float,
+    searched: float = 0.0,
 ) -> WholeMaps:
     """Make both maps ready, each on a core; the rest as in WholeMaps."""
-    first, second = _each_on_a_core(make_wall_map, (ref, mov))
-    return WholeMaps(first, second, robots, window, trust)
-
-
-def _each_on_a_core(make: Callable[[Given], Made], items: Sequence[Given]) -> list[Made]:
-    made: dict[int, Made] = {}
-
-    def work(start: int, stop: int) -> None:
-        made.update((n, make(items[n])) for n in range(start, stop))
-
-    run_in_threads(work, len(items))
-    return [made[n] for n in range(len(items))]
+    first, second = each_on_a_core(make_wall_map, (ref, mov))
+    return WholeMaps(first, second, robots, window, trust, searched)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import argparse
 import difflib
+import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from math import inf
 from typing import Any, NoReturn
+
+NEGATIVE_NUMBER = re.compile(r"-(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$", re.IGNORECASE)
 
 
 class Parser(argparse.ArgumentParser):
@@ -16,6 +19,7 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, strict: bool = True, **kwargs: Any) -> None:
         super().__init__(allow_abbrev=False, formatter_class=_Formatter, **kwargs)
+        self._negative_number_matcher = NEGATIVE_NUMBER  # "-1e-3" is a number, too
         self.strict = strict  # whether an option that is not known is an error
         self.hint = ""  # said after an error about one
         self.what_became_of: Callable[[str], str] = lambda flag: ""  # says it of an option that is gone

@@ -13,7 +13,7 @@ from app.system.data_paths import samples
 
 if TYPE_CHECKING:
     from algorithms.maps.grid_map import GridMap
-    from algorithms.observations.observation import Observation
+    from algorithms.observations.pair_problem import Known
 
 
 def add_reading(parser: Parser) -> None:
@@ -33,10 +33,55 @@ def add_reading(parser: Parser) -> None:
     )
 
 
-def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, tuple[Observation, ...]]:
-    """Both maps and the observations that the command line names."""
+def add_known(parser: Parser) -> None:
+    """Add what may be known of how the maps lie: a sighting, a pose, a turn, a place; all optional."""
+    group = parser.add_argument_group("what is known", "Nothing of it is needed; the more, the surer.")
+    group.add_argument("--observation", type=Path, metavar="FILE", help="what robot 1 saw")
+    about = "where map 2's frame lies in map 1's, roughly; metres, metres, radians"
+    group.add_argument("--initial", type=float, nargs=3, metavar=("X", "Y", "YAW"), help=about)
+    about = "standard deviations of --initial: of X and Y, and of YAW (default: 1 m and 0.175)"
+    group.add_argument("--sigma", type=float, nargs=2, metavar=("S_XY", "S_YAW"), help=about)
+    about = "how far map 2's frame is turned in map 1's, roughly; radians, counter-clockwise"
+    group.add_argument("--initial-yaw", type=float, metavar="YAW", help=about)
+    about = "standard deviation of --initial-yaw (default: 0.175, which is 10°)"
+    group.add_argument("--sigma-yaw", type=float, metavar="S", help=about)
+    about = "a place in map 1, X1 Y1, that is about the place X2 Y2 in map 2; metres"
+    group.add_argument("--near", type=float, nargs=4, metavar=("X1", "Y1", "X2", "Y2"), help=about)
+    about = "how far apart the two of --near may be (default: 2 m)"
+    group.add_argument("--near-radius", type=float, metavar="M", help=about)
+
+
+def known_from(args: argparse.Namespace) -> tuple[Known, ...]:
+    """All that the command line tells of how the maps lie."""
+    from algorithms.common.pose import Pose2
+    from algorithms.files.observation_file import read_known
+    from algorithms.observations.priors import (
+        NEAR_RADIUS,
+        SIGMA_XY,
+        SIGMA_YAW,
+        InitialPose,
+        NearPlace,
+        TurnPrior,
+    )
+
+    for given, needs in (("sigma", "initial"), ("sigma_yaw", "initial_yaw"), ("near_radius", "near")):
+        if getattr(args, given) is not None and getattr(args, needs) is None:
+            flag, other = (f"--{name.replace('_', '-')}" for name in (given, needs))
+            raise SettingError(f"{flag} is given without {other}; give both")
+    known: list[Known] = [] if args.observation is None else [*read_known(args.observation)]
+    if args.initial is not None:
+        xy, yaw = args.sigma or (SIGMA_XY, SIGMA_YAW)
+        known.append(InitialPose(Pose2(*args.initial), xy, xy, yaw))
+    if args.initial_yaw is not None:
+        known.append(TurnPrior(args.initial_yaw, SIGMA_YAW if args.sigma_yaw is None else args.sigma_yaw))
+    if args.near is not None:
+        known.append(NearPlace(*args.near, NEAR_RADIUS if args.near_radius is None else args.near_radius))
+    return tuple(known)
+
+
+def read_maps(args: argparse.Namespace) -> tuple[GridMap, GridMap]:
+    """Both maps that the command line names."""
     from algorithms.files.map_file import IMAGE_SUFFIXES, read_image, read_map
-    from algorithms.files.observation_file import read_observations
     from algorithms.files.thresholds import Shading
 
     paths, given = (args.map1, args.map2), args.resolution or ()
@@ -53,7 +98,7 @@ def read_inputs(args: argparse.Namespace) -> tuple[GridMap, GridMap, tuple[Obser
         else read_map(path, args.unknown_grey)
         for path, resolution, image in zip(paths, (*given, *given, None, None), plain, strict=False)
     )
-    return ref, mov, read_observations(args.observation)
+    return ref, mov
 
 
 def case_folder(name: str, parser: Parser, remedy: str = "") -> Path:

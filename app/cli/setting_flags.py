@@ -7,7 +7,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from algorithms.methods.registry import DEFAULT_METHOD, METHODS
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS, PLANE_METHOD, default_method
+from algorithms.observations.pair_problem import PairProblem
 from app.cli.argument_parser import Parser, did_you_mean, whole_number
 from app.model.settings import Setting, settings_of, value_at, what_became_of, with_value
 
@@ -15,13 +16,21 @@ SHORT = {("verdict", "accept_from"): ("--accept-from",), ("verdict", "refuse_ben
 """Settings that have a short flag, too."""
 
 
-def add_method(parser: Parser, words: Sequence[str], default: str = DEFAULT_METHOD) -> None:
-    """Add ``--method``, ``--seed`` and the settings of the method that ``words`` ask for."""
-    _method_flag(parser, default)
+def add_method(
+    parser: Parser, words: Sequence[str], default: str = DEFAULT_METHOD, suits: bool = False
+) -> None:
+    """Add ``--method``, ``--seed`` and the settings of the method that ``words`` ask for.
+
+    suits : whether a method that suits what is known is taken where none is named; ``method_for`` tells it
+    """
+    _method_flag(parser, default, suits)
     add_seed(parser)
     ahead = Parser(prog=parser.prog, add_help=False, strict=False)
-    _method_flag(ahead, default)
-    named = ahead.parse_known_args(words)[0].method
+    _method_flag(ahead, default, suits)
+    if suits and "--observation" not in [word.partition("=")[0] for word in words]:
+        default = PLANE_METHOD
+    named = ahead.parse_known_args(words)[0].method or default
+    parser.set_defaults(settings_of=named)
     defaults = METHODS[named].defaults
     groups: dict[str, Any] = {}
     for setting in settings_of(defaults):
@@ -41,14 +50,28 @@ def add_seed(parser: Parser) -> None:
     parser.add_argument("--seed", type=whole_number(0), default=0, help=hint)
 
 
-def config_from(args: argparse.Namespace) -> Any:
-    """The config of ``args.method`` with every setting that was given."""
-    config = METHODS[args.method].defaults
+def config_from(args: argparse.Namespace, method: str = "") -> Any:
+    """The config of a method, of ``args.method`` unless given, with every setting that was given."""
+    config = METHODS[method or args.method].defaults
     for setting in settings_of(config):
-        value = getattr(args, _flag(setting))
+        value = getattr(args, _flag(setting), None)
         if value is not None and value != value_at(config, setting.path):
             config = with_value(config, setting.path, value)
     return config
+
+
+def method_for(args: argparse.Namespace, problem: PairProblem) -> str:
+    """The method that is named, or else the one that suits what is known; not where a setting was given that
+    it does not have.
+    """
+    if args.method is not None:
+        return str(args.method)
+    suits = default_method(problem)
+    has = {setting.path for setting in settings_of(METHODS[suits].defaults)}
+    for setting in settings_of(METHODS[args.settings_of].defaults):
+        if getattr(args, _flag(setting)) is not None and setting.path not in has:
+            return str(args.settings_of)
+    return suits
 
 
 def method_name(name: str) -> str:
@@ -59,14 +82,15 @@ def method_name(name: str) -> str:
     return name
 
 
-def _method_flag(parser: argparse.ArgumentParser, default: str) -> None:
+def _method_flag(parser: argparse.ArgumentParser, default: str, suits: bool) -> None:
+    usual = f"{default} near a good sighting, else {PLANE_METHOD}" if suits else default
     titles = "\n".join(f"{name}: {method.title}" for name, method in METHODS.items())
     parser.add_argument(
         "--method",
         type=method_name,
-        default=default,
+        default=None if suits else default,
         metavar="NAME",
-        help=f"one of\n{titles}\n(default: {default})".replace("%", "%%"),
+        help=f"one of\n{titles}\n(default: {usual})".replace("%", "%%"),
     )
 
 

@@ -161,7 +161,7 @@ def judge_case(case: Case, result: MergeResult | None) -> Judgement | None:
     distance = angle = None
     right = fine = False
     if truth.T_ref_mov is not None and result is not None:
-        distance, angle = pose_error(result.T_ref_mov, truth.T_ref_mov, result.encounter.x_mov)
+        distance, angle = pose_error(result.T_ref_mov, truth.T_ref_mov, result.pivot)
         right, fine = truth.allows(distance, angle), distance <= FINE_M and angle <= FINE_RAD
     if truth.expected == "refuse":
         right, fine = result is None or not result.verdict.accepted, False

@@ -11,7 +11,7 @@ from threading import Event
 from typing import Any
 
 from algorithms.files.case_folder import Case
-from algorithms.files.observation_file import observations_to_bytes
+from algorithms.files.observation_file import known_to_bytes
 from algorithms.files.truth_file import truth_to_bytes
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import METHODS
@@ -234,7 +234,7 @@ def bases_of(case: Case, plan: SweepPlan) -> dict[tuple[Any, Any], dict[str, str
     codes = [code(METHODS[plan.method].search.__module__), code(merit.__name__)]
     common = {
         "maps": [_cells_digest(case.ref), _cells_digest(case.mov)],
-        "observations": observations_to_bytes(case.observations).decode(),
+        "observations": known_to_bytes(case.observations).decode(),
         "truth": None if case.truth is None else truth_to_bytes(case.truth).decode(),
         "method": plan.method,
         "seeds": plan.seeds,

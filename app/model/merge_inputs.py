@@ -9,6 +9,8 @@ from algorithms.files.case_folder import Case
 from algorithms.files.truth_file import Truth
 from algorithms.maps.grid_map import GridMap, remarks_on
 from algorithms.observations.observation import Encounter, Observation, encounters_of, name_of
+from algorithms.observations.pair_problem import Known
+from algorithms.observations.priors import Prior
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,7 @@ class MergeInputs:
 
     maps         : by the numbers of the robots, from 1
     observations : one sighting or several
+    priors       : what else is known
     name         : what to call the pair before a person
     truth        : the known answer of a sample
     """
@@ -56,6 +59,7 @@ class MergeInputs:
     observations: tuple[Observation, ...] = ()
     name: str = ""
     truth: Truth | None = None
+    priors: tuple[Prior, ...] = ()
 
     @staticmethod
     def pair(
@@ -64,9 +68,10 @@ class MergeInputs:
         observations: tuple[Observation, ...] = (),
         name: str = "",
         truth: Truth | None = None,
+        priors: tuple[Prior, ...] = (),
     ) -> MergeInputs:
         """The inputs of two maps."""
-        return MergeInputs((MapSlot(ref), MapSlot(mov)), observations, name, truth)
+        return MergeInputs((MapSlot(ref), MapSlot(mov)), observations, name, truth, priors)
 
     @property
     def ref(self) -> GridMap | None:
@@ -82,6 +87,11 @@ class MergeInputs:
     def grids(self) -> tuple[GridMap, ...]:
         """The maps that are there."""
         return tuple(slot.grid for slot in self.maps if slot.grid is not None)
+
+    @property
+    def known(self) -> tuple[Known, ...]:
+        """All that is known of how the maps lie."""
+        return (*self.observations, *self.priors)
 
     @property
     def encounters(self) -> tuple[Encounter, ...]:
@@ -102,7 +112,8 @@ class MergeInputs:
         """The same as a case; None where a merge lacks something."""
         if self.ref is None or self.mov is None or not self.observations:
             return None
-        return Case(self.name or "your maps", self.ref, self.mov, self.observations, "", self.truth)
+        name = self.name or "your maps"
+        return Case(name, self.ref, self.mov, self.observations, "", self.truth, self.priors)
 
     def same_pair(self, other: MergeInputs) -> bool:
         """Whether these are the very maps and sightings of others."""
@@ -154,4 +165,4 @@ class MergeInputs:
     @staticmethod
     def of(case: Case) -> MergeInputs:
         """The inputs of a case folder."""
-        return MergeInputs.pair(case.ref, case.mov, case.observations, case.name, case.truth)
+        return MergeInputs.pair(case.ref, case.mov, case.observations, case.name, case.truth, case.priors)

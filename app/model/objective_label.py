@@ -10,6 +10,7 @@ from algorithms.methods.baselines.carpin_spectra import CarpinConfig
 from algorithms.methods.baselines.feature_matching import FeatureConfig
 from algorithms.methods.baselines.mse_registration import MseConfig
 from algorithms.methods.baselines.phase_correlation import PhaseCorrelationConfig
+from algorithms.methods.plane_method import PlaneMethodConfig
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,7 @@ _OWN = {
     FeatureConfig: ObjectiveLabel("agreeing matches", "matches that agree", ""),
     MseConfig: _SIMILARITY,
     PhaseCorrelationConfig: _SIMILARITY,
+    PlaneMethodConfig: AGREEMENT,
     CarpinConfig: ObjectiveLabel("acceptance index", "acceptance index of the search", ""),
 }
 

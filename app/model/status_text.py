@@ -146,7 +146,7 @@ def found_it(run: RunState) -> str:
 
 def apart(a: Pose2, b: Pose2, seen: ObservationDetail | MergeResult) -> str:
     """How far two transforms lie apart, at the seen robot."""
-    return apart_by(*pose_error(a, b, seen.encounter.x_mov))
+    return apart_by(*pose_error(a, b, seen.pivot))
 
 
 def apart_by(distance: float, turn: float) -> str:

@@ -27,7 +27,7 @@ def rival(result: MergeResult) -> str:
     other = result.verdict.rival
     if other is None or likelihood_of_rival(result) < LEAST_LIKELY:
         return ""
-    distance, turn = pose_error(result.T_ref_mov, other, result.encounter.x_mov)
+    distance, turn = pose_error(result.T_ref_mov, other, result.pivot)
     shifted = distance > SAME_PLACE and degrees(turn) < 1
     how = f"{distance:.1f} m shifted" if shifted else f"{degrees(turn):.0f}° turned"
     return f"{how}, {likelihood_of_rival(result):.0%}"
@@ -105,7 +105,8 @@ def remedy(result: MergeResult) -> str:
     evidence = result.weighed[0].evidence
     if first in ("contradiction", "unbent") and evidence.rigid_contradicting < NEXT_TO_NO_WALL:
         first = "across"  # hardly anything contradicts: too little is shared
-    return REMEDIES.get(first, REMEDIES[""])
+    remedies = REMEDIES if result.encounters else WITHOUT_SIGHTING
+    return remedies.get(first, remedies[""])
 
 
 REMEDIES = {
@@ -121,3 +122,17 @@ REMEDIES = {
     "": "Let one of the robots drive on, so that the maps share more, or give a second observation.",
 }
 """What would help, by what speaks most against a merge."""
+
+WITHOUT_SIGHTING = {
+    OTHERS: "A sighting of one robot by the other, or a rough initial pose, would tell the places apart; so "
+    "would maps that share more.",
+    **dict.fromkeys(
+        ("contradiction", "unbent"),
+        "Are these maps of one building? A sighting of one robot by the other, or a rough initial pose, may "
+        "find a better place.",
+    ),
+    "misfit": "Check what was said to be known, or give it wider deviations.",
+    "": "Let one of the robots drive on, so that the maps share more; or give a sighting of one robot by the "
+    "other, or a rough initial pose.",
+}
+"""The same where no robot saw the other."""

@@ -7,7 +7,7 @@ from html import escape
 from math import degrees
 from typing import Any
 
-from algorithms.files.observation_file import observations_to_bytes
+from algorithms.files.observation_file import known_to_bytes
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
 from algorithms.verdict.contradictions import Contradictions, find_conflicts
@@ -61,7 +61,7 @@ def report_page(
         _section("Contradictions, place by place", *_places(found)),
         _section("The numbers", _table(numbers(result, inputs, config), "two")),
         _proof(result, config),
-        _section("What robot 1 saw", *_seen(inputs)),
+        _section("What was known", *_known(inputs)),
         _section("How it was merged", *_settings(result, config, report)),
         _section("How to use it", *_use(result)),
     ]
@@ -103,7 +103,8 @@ def _pictures(result: MergeResult, inputs: MergeInputs, found: Contradictions, c
     figures = []
     if inputs.ref is not None and inputs.mov is not None:
         drawn = outcome.sources(inputs.ref, inputs.mov, inputs.observations, result.encounters)
-        said = "The maps as they came, each in its own frame, and what robot 1 saw of robot 2."
+        said = "The maps as they came, each in its own frame"
+        said += ", and what robot 1 saw of robot 2." if inputs.observations else "."
         figures.append(_figure(drawn, said))
     check(0.45)
     said = (
@@ -162,10 +163,14 @@ def _proof(result: MergeResult, config: Any) -> str:
     return _section("Is there a better place?", *parts)
 
 
-def _seen(inputs: MergeInputs) -> list[str]:
-    count = len(inputs.observations)
-    said = "One sighting." if count == 1 else f"{count} sightings."
-    text = observations_to_bytes(inputs.observations).decode()
+def _known(inputs: MergeInputs) -> list[str]:
+    if not inputs.known:
+        return ["<p>Nothing but the maps: the place was found by their walls alone.</p>"]
+    count, more = len(inputs.observations), len(inputs.priors)
+    said = "One sighting." if count == 1 else f"{count} sightings." if count else ""
+    if more:
+        said = f"{said} A rough pose, turn or place.".strip()
+    text = known_to_bytes(inputs.known).decode()
     return [f"<p>{said} As it stands in observation.yaml:</p><pre>{escape(text.rstrip())}</pre>"]
 
 

@@ -39,13 +39,13 @@ def sources(ref: GridMap, mov: GridMap, seen: Sequence[Observation], met: Sequen
     high = max(high for _, high in views)
     sheet = SvgCanvas(high + 22, FULL)
     colours = (LIGHT.ref, LIGHT.mov)
-    names = ("map 1, of the robot that saw", "map 2, of the robot that was seen")
+    roles = (", of the robot that saw", ", of the robot that was seen") if seen else ("", "")
     for k, grid in enumerate((ref, mov)):
         x = k * (PAIR + BETWEEN)
         rect = _widened(views[k][0], PAIR / high)
         view = RasterView(rect, int(FINE * PAIR), int(FINE * high))
         plot = scene(sheet, x, 20, PAIR, high, view)
-        sheet.text(x, 12, names[k], 12, colour=colours[k], bold=True)
+        sheet.text(x, 12, f"map {k + 1}{roles[k]}", 12, colour=colours[k], bold=True)
         plot.image(draw_map(view, LIGHT, grid, colours[k]))
         for number, (o, at) in enumerate(zip(seen, met, strict=True), 1):
             label = "" if len(seen) == 1 else f" {number}"
@@ -63,6 +63,8 @@ def sources(ref: GridMap, mov: GridMap, seen: Sequence[Observation], met: Sequen
         scale_bar(plot)
     return sheet.svg(
         "Both maps as they came: robot 1 and the place where it saw robot 2, robot 2 in its own map"
+        if seen
+        else "Both maps as they came"
     )
 
 
@@ -71,13 +73,13 @@ def overlay(result: MergeResult, seen: Sequence[Observation]) -> str:
     ref, mov = result.fusion.ref_cells, result.fusion.mov_cells
     walls, free = (ref >= OCCUPIED_FROM, mov >= OCCUPIED_FROM), (is_free(ref), is_free(mov))
     plot = _merged_plot(result.fusion, *wall_masks(walls, free, LIGHT))
-    o = seen[0]
-    robot(plot, o.observer.xy, o.observer.theta, LIGHT.ref)
-    there = result.T_ref_mov.apply(result.encounter.x_mov)
-    heading = None if o.observed_heading is None else o.observed_heading + result.T_ref_mov.theta
-    robot(plot, there, heading, LIGHT.mov)
-    _name(plot, o.observer.xy, "robot 1", LIGHT.ref)
-    _name(plot, there, "robot 2", LIGHT.mov)
+    for o in seen[:1]:
+        robot(plot, o.observer.xy, o.observer.theta, LIGHT.ref)
+        there = result.T_ref_mov.apply(result.pivot)
+        heading = None if o.observed_heading is None else o.observed_heading + result.T_ref_mov.theta
+        robot(plot, there, heading, LIGHT.mov)
+        _name(plot, o.observer.xy, "robot 1", LIGHT.ref)
+        _name(plot, there, "robot 2", LIGHT.mov)
     chips = (("map 1", LIGHT.ref), ("map 2", LIGHT.mov), ("both", LIGHT.agreed))
     return _finish(plot, (*chips, ("contradiction", LIGHT.conflict)), "The merged map")
 

@@ -17,7 +17,7 @@ import numpy as np
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import Pose2
 from algorithms.files.map_file import map_to_bytes
-from algorithms.files.observation_file import OBSERVATION_FILE, observations_to_bytes
+from algorithms.files.observation_file import OBSERVATION_FILE, known_to_bytes
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.decision import Outcome
@@ -203,7 +203,7 @@ class ResultFiles:
 
     @property
     def files(self) -> Mapping[str, bytes]:
-        """Everything by name: what ``mapmeld merge`` leaves in a folder, and the observation as used."""
+        """Everything by name: what ``mapmeld merge`` leaves in a folder, and what was known."""
         return self.make()
 
     def make(self, check: Check = never_cancelled) -> Mapping[str, bytes]:
@@ -213,7 +213,8 @@ class ResultFiles:
             named = {"pair": i.name} | {key: grid.name if grid else "" for key, grid in maps.items()}
             report = report_of(self.result, self.config, inputs=named, warnings=i.readings())
             files = result_files(self.result, i, self.config, report, with_merged=True, check=check)
-            self._made.update({OBSERVATION_FILE: observations_to_bytes(i.observations)} | files)
+            known = {OBSERVATION_FILE: known_to_bytes(i.known)} if i.known else {}
+            self._made.update(known | files)
         return self._made
 
 

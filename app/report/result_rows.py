@@ -26,6 +26,8 @@ STAGES = {
     "search": "candidates",
     "refine": "swarm",
     "prove": "proof",
+    "correlate": "plane",
+    "climb": "hilltops",
     "weigh": "whole maps",
     "fuse": "merged cells",
     "verdict": "verdict",
@@ -42,7 +44,7 @@ def numbers(result: MergeResult, inputs: MergeInputs, config: Any = None) -> lis
         ("T: Δx", f"{T.x:.3f} m"),
         ("T: Δy", f"{T.y:.3f} m"),
         ("T: Δθ", f"{degrees(T.theta):.2f} ± {degrees(turn):.2f}°"),
-        ("robot 2 known to", f"± {at_robot:.3f} m"),
+        ("robot 2 known to" if result.encounters else "map 2's middle known to", f"± {at_robot:.3f} m"),
     ]
     if result.value is not None and isfinite(result.value):
         measure = measure_of(config)
@@ -56,7 +58,7 @@ def numbers(result: MergeResult, inputs: MergeInputs, config: Any = None) -> lis
         over, index = "at the estimated T", performance_index(result.fusion)
     rows.append((f"eq. (23), {over}", "–" if index is None else f"{index:.1%}"))
     if truth is not None and inputs.ref is not None and inputs.mov is not None:
-        apart, turned = pose_error(result.T_ref_mov, truth, result.encounter.x_mov)
+        apart, turned = pose_error(result.T_ref_mov, truth, result.pivot)
         wrong = "" if inputs.truth.allows(apart, turned) else "✗ WRONG: "
         rows.append((f"{wrong}error to the truth", f"{apart:.3f} m, {degrees(turned):.2f}°"))
     rows += [
@@ -68,12 +70,20 @@ def numbers(result: MergeResult, inputs: MergeInputs, config: Any = None) -> lis
         ("contradicted, as the maps are", f"{verdict.rigid_contradiction:.1%}"),
         ("agreeing wall across the others", f"{verdict.wall_across:.1f} m"),
         *_moved(result),
-        ("robot 2 off its sighting", f"{verdict.deviation:.1f} σ"),
+        *_deviation(result),
         *_rivals(result),
         *_proof(result),
         ("seed", f"{result.seed}"),
     ]
     return rows
+
+
+def _deviation(result: MergeResult) -> list[tuple[str, ...]]:
+    """How far the answer is from what is known, if anything is."""
+    if not result.weighed or not result.weighed[0].deviations:
+        return []
+    label = "robot 2 off its sighting" if result.encounters else "off what is known"
+    return [(label, f"{result.verdict.deviation:.1f} σ")]
 
 
 def _rivals(result: MergeResult) -> list[tuple[str, ...]]:
@@ -109,7 +119,7 @@ def _deviations(result: MergeResult) -> tuple[float, float]:
 
     Those of (Δx, Δy) alone say little: they are taken at map 2's origin, which may lie far away.
     """
-    x, y = (result.T_ref_mov.apply(result.encounter.x_mov) - result.T_ref_mov.xy).tolist()
+    x, y = (result.T_ref_mov.apply(result.pivot) - result.T_ref_mov.xy).tolist()
     jacobian = np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])
     at_robot = jacobian @ result.covariance @ jacobian.T
     return sqrt(max(0.0, float(np.linalg.eigvalsh(at_robot)[-1]))), sqrt(max(0.0, result.covariance[2, 2]))

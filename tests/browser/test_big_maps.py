@@ -12,7 +12,7 @@ from driver import Tab, settle
 
 from algorithms.common.pose import Pose2
 from algorithms.files.map_file import map_from_bytes, map_to_bytes
-from algorithms.files.observation_file import observations_to_bytes
+from algorithms.files.observation_file import known_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.observations.observation import Observation
 from app.drawing.palette import LIGHT
@@ -79,7 +79,7 @@ def test_large_maps_are_loaded_stopped_looked_at_and_dragged(tab, tmp_path, monk
     grid = many_rooms()
     content = {**map_to_bytes(grid, "map1"), **map_to_bytes(grid, "map2")}
     seen = Observation(Pose2(70.0, 70.0, 0.0), *SEEN_AT.tolist(), 3.0, 0.0)
-    content["observation.yaml"] = observations_to_bytes([seen])
+    content["observation.yaml"] = known_to_bytes([seen])
     tab.unfold("Upload your own")
     table = tab.page.locator("table").first
     for name, slot in SLOTS.items():

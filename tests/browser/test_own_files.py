@@ -12,7 +12,7 @@ from rooms import l_room, write_case
 from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import Case
 from algorithms.files.map_file import read_map
-from algorithms.files.observation_file import observations_to_bytes
+from algorithms.files.observation_file import known_to_bytes
 from algorithms.methods.registry import merge
 from algorithms.observations.observation import Observation
 from app.page.application import make_server
@@ -43,7 +43,7 @@ def test_a_broken_upload_is_told_by_name_and_the_page_lives_on(tab, tmp_path):
 
 
 def test_forgotten_uploads_are_gone_from_the_page(tab, tmp_path, sample: Case):
-    (tmp_path / "o.yaml").write_bytes(observations_to_bytes(sample.observations))
+    (tmp_path / "o.yaml").write_bytes(known_to_bytes(sample.observations))
     tab.unfold("Upload your own")
     tab.upload(4, tmp_path / "o.yaml")
     settle(lambda: "load the two maps" in tab.state, "what to load next")
@@ -106,12 +106,12 @@ def test_several_sightings_are_all_shown_and_counted(tab, tmp_path):
     for slot, path in enumerate(maps):
         tab.upload(slot, path)
         settle(lambda path=path: path.name in tab.text, f"the name {path.name}")
-    seen.write_bytes(observations_to_bytes([first, second]).replace(b"- observer", b"- obsever"))
+    seen.write_bytes(known_to_bytes([first, second]).replace(b"- observer", b"- obsever"))
     tab.upload(4, seen)
     tab.wait_for("failed")
     assert "observation 1: obsever is not a known key" in tab.state
     seen = tmp_path / "both.yaml"
-    seen.write_bytes(observations_to_bytes([first, second]))
+    seen.write_bytes(known_to_bytes([first, second]))
     tab.upload(4, seen)
     settle(lambda: tab.state == "Ready. Press Merge.", "all five files")
     assert "Observation 1 of 2" in tab.text

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from algorithms.files.map_file import map_to_bytes
-from algorithms.files.observation_file import observations_to_bytes
+from algorithms.files.observation_file import known_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.observations.observation import Observation
 
@@ -29,5 +29,5 @@ def write_case(folder: Path, ref: GridMap, mov: GridMap, observation: Observatio
         for name in (f"{stem}.yaml", f"{stem}.pgm"):
             (folder / name).write_bytes(files[name])
             paths.append(folder / name)
-    (folder / "observation.yaml").write_bytes(observations_to_bytes([observation]))
+    (folder / "observation.yaml").write_bytes(known_to_bytes([observation]))
     return [*paths, folder / "observation.yaml"]

@@ -11,10 +11,14 @@ import scipy  # its parts are loaded where they are first used
 
 from algorithms.common.pose import FloatArray
 from algorithms.maps.grid_map import BoolArray
-from algorithms.verdict.probability_model import QUANTITIES, VerdictModel, probability
+from algorithms.verdict.probability_model import QUANTITIES, ModelKind, VerdictModel, probability
 
 RIDGE = 1e-3  # keeps weights finite where right and wrong can be told apart without error
 FOLDS = 10
+QUANTITIES_OF: dict[ModelKind, tuple[str, ...]] = {
+    "sighting": ("contradiction", "unbent", "across", "misfit"),
+    "plane": ("contradiction", "unbent", "across", "misfit", "searched"),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,14 +48,18 @@ class Forecast:
 
 
 def fit(
-    examples: Sequence[Example], accept_from: float = 0.5, made_of: Mapping[str, Any] | None = None
+    examples: Sequence[Example],
+    kind: ModelKind = "sighting",
+    accept_from: float = 0.5,
+    made_of: Mapping[str, Any] | None = None,
 ) -> VerdictModel:
     """The weights of greatest likelihood, none of them against the meaning of its quantity.
 
     In each example one answer is right, or none is: a choice among them with a way out (McFadden's
     conditional logit). Right answers beside the best of them are left out.
     """
-    names, size = list(QUANTITIES), len(QUANTITIES)
+    names = list(QUANTITIES_OF[kind])
+    size, columns = len(names), [list(QUANTITIES).index(name) for name in names]
     rows: list[FloatArray] = []
     owner: list[int] = []
     chosen: list[int] = []
@@ -61,7 +69,7 @@ def fit(
             if answer == first:
                 chosen.append(len(rows))
             if answer == first or not example.right[answer]:
-                rows.append(quantities)
+                rows.append(quantities[columns])
                 owner.append(number)
     table, whose, right = np.array(rows), np.array(owner), np.array(chosen, dtype=np.intp)
     middle, spread = table.mean(axis=0), table.std(axis=0) + 1e-9
@@ -96,7 +104,7 @@ def fit(
 
 
 def predict(model: VerdictModel, examples: Sequence[Example]) -> Forecast:
-    weights = np.array([model.weights[name] for name in QUANTITIES])
+    weights = np.array([model.weights.get(name, 0.0) for name in QUANTITIES])
     probabilities, right = [], []
     for example in examples:
         scores = example.quantities @ weights + model.bias
@@ -108,7 +116,9 @@ def predict(model: VerdictModel, examples: Sequence[Example]) -> Forecast:
     return Forecast(np.array(probabilities), np.array(right, dtype=np.bool_))
 
 
-def cross_validated(examples: Sequence[Example], folds: int = FOLDS) -> Forecast:
+def cross_validated(
+    examples: Sequence[Example], kind: ModelKind = "sighting", folds: int = FOLDS
+) -> Forecast:
     """What models say of examples from buildings that they have not seen, a fold of buildings at a time; of a
     wrong pair neither building is known.
     """
@@ -120,7 +130,7 @@ def cross_validated(examples: Sequence[Example], folds: int = FOLDS) -> Forecast
     for out in sorted(set(left_out), key=sorted):
         mine = [n for n, theirs in enumerate(left_out) if theirs == out]
         rest = [example for example, theirs in zip(examples, left_out, strict=True) if not theirs & out]
-        forecast = predict(fit(rest), [examples[n] for n in mine])
+        forecast = predict(fit(rest, kind), [examples[n] for n in mine])
         probabilities[mine], right[mine] = forecast.probabilities, forecast.right
     return Forecast(probabilities, right)
 

@@ -11,7 +11,7 @@ from algorithms.methods.shared_stages import Found
 from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import AnswersDetail, Step, WeighedDetail
 from algorithms.observations.pair_problem import PairProblem
-from algorithms.observations.search_window import WindowConfig, coupled_window
+from algorithms.observations.search_window import WindowConfig
 from algorithms.optimisation.likelihood_field import AgreementConfig
 from algorithms.verdict.decision import VerdictConfig
 from algorithms.verdict.probability_model import shipped_model
@@ -57,5 +57,5 @@ def _weigh(problem: PairProblem, T_ref_mov: Pose2, robot_size: float) -> Weighed
 
 def whole_maps(problem: PairProblem, robot_size: float) -> WholeMaps:
     """Both maps as a whole, for a method that has no settings for it; metres."""
-    window, robots = coupled_window(problem.encounters, WindowConfig()), problem.robots(robot_size)
+    window, robots = problem.window(WindowConfig()), problem.robots(robot_size)
     return make_whole_maps(problem.ref, problem.mov, robots, window, AgreementConfig().evidence)

@@ -1,4 +1,4 @@
-"""``mapmeld merge``: two maps and a sighting in, a folder of files out."""
+"""``mapmeld merge``: two maps and what is known of them in, a folder of files out."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ from algorithms.files.map_file import YAML_SUFFIXES, parse_meta, read_bytes
 from algorithms.maps.grid_map import remarks_on
 from algorithms.methods import registry as methods
 from algorithms.methods.merge_result import MergeResult
+from algorithms.observations.pair_problem import PairProblem
 from app.cli.argument_parser import Parser
-from app.cli.map_arguments import add_reading, read_inputs
+from app.cli.map_arguments import add_known, add_reading, known_from, read_maps
 from app.cli.progress_bar import result_of
-from app.cli.setting_flags import add_method, config_from
+from app.cli.setting_flags import add_method, config_from, method_for
 from app.model import verdict_text
 from app.model.merge_inputs import MergeInputs
 from app.model.objective_label import measure_of
@@ -38,12 +39,18 @@ from app.report.result_files import (
 
 FILES = (*MERGED_FILES, TRANSFORM_FILE, OVERLAY_FILE, PAGE_FILE, REPORT_FILE)
 
-USAGE = "MAP1 MAP2 --observation FILE --out DIR [--json] [--force] [--strict] [options]"
+USAGE = (
+    "MAP1 MAP2 [--observation FILE | what else is known] --out DIR [--json] [--force] [--strict] [options]"
+)
 DESCRIPTION = """\
-Merge two maps from one sighting of robot 2 by robot 1, or from several in one file.
+Merge two maps: from one sighting of robot 2 by robot 1 or several in one file, from a rough initial
+pose, a rough turn, a place that both maps show, any of these together, or from the walls alone.
 
 Examples:
   mapmeld merge map1.yaml map2.yaml --observation observation.yaml --out result
+  mapmeld merge map1.yaml map2.yaml --initial 10.5 -54.8 -0.47 --sigma 1 0.17 --out result
+  mapmeld merge map1.yaml map2.yaml --initial-yaw 1.57 --out result
+  mapmeld merge map1.yaml map2.yaml --out result
   mapmeld merge left.pgm right.pgm --resolution 0.05 --observation o.yaml --out result
   mapmeld merge map1.yaml map2.yaml --observation observation.yaml --out result \\
           --augment.spread 4 --swarm.particles 800 --seed 7 --json | jq .T_ref_mov
@@ -71,37 +78,40 @@ Exit status: 0 merged, bent or not, 1 refused (with --force too), or bent with -
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("map1", type=Path, metavar="MAP1", help="map of robot 1, the observer: YAML or image")
     parser.add_argument("map2", type=Path, metavar="MAP2", help="map of robot 2, the observed")
-    parser.add_argument("--observation", type=Path, required=True, metavar="FILE", help="what robot 1 saw")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the files")
+    add_known(parser)
     add_reading(parser)
     parser.add_argument("--json", action="store_true", help="print report.json and nothing else")
     parser.add_argument("--force", action="store_true", help="write the merged map of a refused merge, too")
-    add_method(parser, words)
+    add_method(parser, words, suits=True)
 
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, write and tell; the exit status."""
-    config = config_from(args)
     began = perf_counter()
-    ref, mov, observations = read_inputs(args)
+    (ref, mov), known = read_maps(args), known_from(args)
     load_s = perf_counter() - began
+    problem = PairProblem.of(ref, mov, known)
+    method = method_for(args, problem)
+    config = config_from(args, method)
     warnings = remarks_on((ref, mov))
     for warning in warnings:
         print(f"warning: {warning}", file=sys.stderr)
     _check_folder(args)
     given = {"map1": args.map1, "map2": args.map2, "observation": args.observation}
-    named = {key: str(path) for key, path in given.items()}
+    named = {key: str(path) for key, path in given.items() if path is not None}
     end, status = "", 1
     try:
-        result = result_of(methods.run_explained(args.method, ref, mov, observations, config, args.seed))
+        result = result_of(methods.run_explained(method, ref, mov, known, config, args.seed))
     except NoAnswerError as refusal:
-        report = report_of_no_answer(refusal, args.method, args.seed, config, load_s, named, warnings)
+        report = report_of_no_answer(refusal, method, args.seed, config, load_s, named, warnings)
         files, lines = {REPORT_FILE: report_json(report)}, [str(refusal)]
         if args.force:
             end = "--force: there is no transform to write a merged map with"
     else:
         report = report_of(result, config, load_s, named, warnings)
-        inputs = MergeInputs.pair(ref, mov, observations, f"{args.map1.stem} and {args.map2.stem}")
+        name = f"{args.map1.stem} and {args.map2.stem}"
+        inputs = MergeInputs.pair(ref, mov, problem.observations, name, priors=problem.priors)
         accepted = result.verdict.accepted
         files = result_files(result, inputs, config, report, with_merged=accepted or args.force)
         lines, status = _summary(result, config), 0 if accepted else 1
@@ -144,7 +154,7 @@ def _leave(folder: Path, files: Mapping[str, bytes]) -> list[str]:
 def _check_folder(args: argparse.Namespace) -> None:
     """Raise OutputError where the result could not be left, or would take the place of an input."""
     check_folder(args.out)
-    inputs = [args.map1, args.map2, args.observation]
+    inputs = [args.map1, args.map2, *([args.observation] if args.observation is not None else [])]
     for path in (args.map1, args.map2):
         if path.suffix.lower() in YAML_SUFFIXES:
             inputs.append(path.parent / parse_meta(str(path), read_bytes(path, "a map")).image)

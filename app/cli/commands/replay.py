@@ -13,7 +13,7 @@ from algorithms.files.case_folder import read_case
 from algorithms.files.observation_file import read_observations
 from algorithms.methods import registry as methods
 from app.cli.argument_parser import Parser
-from app.cli.map_arguments import add_reading, case_folder, read_inputs
+from app.cli.map_arguments import add_reading, case_folder, read_maps
 from app.cli.progress_bar import with_bar
 from app.cli.setting_flags import add_method, config_from
 from app.model.merge_inputs import MergeInputs
@@ -78,7 +78,7 @@ def _inputs(args: argparse.Namespace, parser: Parser) -> MergeInputs:
     """What the command line names: two maps, a sample by its name, or the folder of a case."""
     if args.map2 is not None:
         args.map1 = Path(args.first)
-        ref, mov, observations = read_inputs(args)
+        (ref, mov), observations = read_maps(args), read_observations(args.observation)
         return MergeInputs.pair(ref, mov, observations, f"{args.map1.stem} + {args.map2.stem}")
     folder = case_folder(args.first, parser, "; for two maps give MAP1, MAP2 and --observation FILE")
     inputs = MergeInputs.of(read_case(folder))

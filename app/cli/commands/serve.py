@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.argument_parser import Parser, whole_number
-from app.cli.map_arguments import add_reading, read_inputs
+from app.cli.map_arguments import add_reading, read_maps
 from app.web.security.access_control import TOKEN_VARIABLE, Access, access_for, is_local, numeric
 
 if TYPE_CHECKING:
@@ -142,10 +142,11 @@ def _check_lesson(folder: Path) -> None:
 def _case(args: argparse.Namespace) -> Case | None:
     """What the page opens with: the maps that were named, else a sample; None if none is installed."""
     from algorithms.files.case_folder import Case, read_case
+    from algorithms.files.observation_file import read_observations
     from app.system.data_paths import samples
 
     if args.map1 is not None:
-        ref, mov, observations = read_inputs(args)
+        (ref, mov), observations = read_maps(args), read_observations(args.observation)
         return Case(f"{ref.name} + {mov.name}", ref, mov, observations, args.observation.name, None)
     known = samples()
     return read_case(known.get(FIRST_SAMPLE) or next(iter(known.values()))) if known else None

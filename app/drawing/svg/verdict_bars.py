@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from math import exp
+
 from algorithms.verdict.decision import Outcome, Verdict
-from algorithms.verdict.probability_model import OTHERS, QUANTITIES
+from algorithms.verdict.probability_model import LITTLE, OTHERS, QUANTITIES
 from app.drawing.palette import LIGHT, Palette, Rgb, css
 from app.drawing.svg.svg_canvas import INK, WIDE, SvgCanvas, worded
 from app.model import verdict_text as words
@@ -21,22 +23,27 @@ ROW, TOP = 40.0, 44.0
 def values(verdict: Verdict) -> dict[str, str]:
     """Each quantity of a verdict in words."""
     left = verdict.contradiction * verdict.shared_wall
-    return {
+    searched = exp(verdict.quantities.get("searched", 0.0)) - LITTLE
+    said = {
         "contradiction": f"{verdict.rigid_contradiction:.1%}",
         "unbent": f"{left:.1f} m on {verdict.shared_floor:.0f} m²",
         "across": f"{verdict.wall_across:.1f} m",
-        "misfit": f"{verdict.deviation:.1f} σ",
+        "misfit": f"{verdict.deviation:.1f} σ" if verdict.deviation > 0 else "–",
+        "searched": f"{searched:,.0f} m²",
         OTHERS: words.odds_of_rival(verdict) if verdict.rival is not None else "none",
     }
+    return {name: text for name, text in said.items() if name in verdict.contributions}
 
 
-def titles() -> dict[str, str]:
-    return {**{name: quantity.title for name, quantity in QUANTITIES.items()}, OTHERS: "other answers"}
+def titles(verdict: Verdict) -> dict[str, str]:
+    """What is written beside each bar of a verdict."""
+    weighed = {name: quantity.title for name, quantity in QUANTITIES.items() if name in verdict.contributions}
+    return {**weighed, OTHERS: "other answers"}
 
 
 def bars(verdict: Verdict, palette: Palette) -> str:
     """A bar per quantity: by how much it moves the log-odds from those of a typical right merge."""
-    named = titles()
+    named = titles(verdict)
     sheet = SvgCanvas(TOP + ROW * len(named) + 26)
     head = worded(COLOURS[verdict.outcome], palette)
     sheet.text(0, 13, f"{verdict.outcome.value.capitalize()}: {words.likelihood(verdict.probability)}", 15,

@@ -9,7 +9,7 @@ import numpy as np
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
-from algorithms.files.observation_file import OBSERVATION_FILE, observations_to_bytes
+from algorithms.files.observation_file import OBSERVATION_FILE, known_to_bytes
 from algorithms.observations.observation import Observation
 from app.drawing.legend import legend
 from app.drawing.scene import robot_symbols as signs
@@ -172,7 +172,7 @@ class PlacementController:
         with self._locks.action:
             made = self._made() if self.active else self._state.inputs.observations
             if made:
-                self._panels.send(OBSERVATION_FILE, observations_to_bytes(made))
+                self._panels.send(OBSERVATION_FILE, known_to_bytes(made))
 
     # --- what comes of it -------------------------------------------------------------------------
 

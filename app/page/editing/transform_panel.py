@@ -103,6 +103,6 @@ def weighed_html(result: MergeResult, config: Any, method: Pose2 | None) -> str:
         ("robot 2 off its sighting", f"{verdict.deviation:.1f} σ"),
     ]
     if method is not None:
-        apart, turn = pose_error(result.T_ref_mov, method, result.encounter.x_mov)
+        apart, turn = pose_error(result.T_ref_mov, method, result.pivot)
         rows.append(("off the method's answer", f"{apart:.2f} m, {degrees(turn):.1f}°"))
     return box(words.of_hand(result), words.mood(verdict)) + table(rows)

@@ -41,7 +41,7 @@ class LessonController:
         self._index = 0
         self._text: StepText | None = None
         self._steps: list[Step] = []
-        self._study = LessonRun(MergeInputs(), None)
+        self._lesson = LessonRun(MergeInputs(), None)
         self._done = False  # whether the run has come to its end
         self._tried: tuple[int, Any] | None = None  # which thing to try, and the settings before it
         self._answered: set[int] = set()  # whose answers are shown
@@ -176,9 +176,9 @@ class LessonController:
         state = self._state
         self._thread.stop()
         self._done = False
-        self._study = LessonRun(state.inputs, state.config, state.seed)
+        self._lesson = LessonRun(state.inputs, state.config, state.seed)
         job = state.job()
-        if self._study.possible and job is not None:
+        if self._lesson.possible and job is not None:
             self._thread.request(job)
 
     def _record(self, run: Iterator[Step]) -> Iterator[Step]:
@@ -192,12 +192,12 @@ class LessonController:
 
     def show(self, job: MergeJob, run: RunState) -> None:
         """The run goes on: what a picture waits for may be there."""
-        text, had = self._text, self._study
+        text, had = self._text, self._lesson
         if text is None or text.picture not in PICTURES or had.reached(*PICTURES[text.picture].needs):
             return
         early = LessonRun(had.inputs, job.config, job.seed, tuple(self._steps))
         if early.reached(*PICTURES[text.picture].needs):
-            self._study = early
+            self._lesson = early
             self._show(fresh=True)
 
     def ending(self, job: MergeJob, run: RunState) -> None:
@@ -207,8 +207,8 @@ class LessonController:
         """Other tabs' runs are at work; the picture says that it is being worked out."""
 
     def ended(self, job: MergeJob, run: RunState) -> None:
-        had = bool(self._study.steps)
-        self._study = LessonRun(self._study.inputs, job.config, job.seed, tuple(self._steps))
+        had = bool(self._lesson.steps)
+        self._lesson = LessonRun(self._lesson.inputs, job.config, job.seed, tuple(self._steps))
         self._done = True
         self._show(fresh=not had)
 
@@ -234,13 +234,13 @@ class LessonController:
         moved : only a dial was: the words stay
         """
         with self._locks.drawing:
-            text, study = self._text, self._study
+            text, lesson = self._text, self._lesson
             if text is None or not self.open:
                 return
             if not moved:
-                self._display.words(self._index, text, study, self._answered)
+                self._display.words(self._index, text, lesson, self._answered)
             says = f"Lesson, step {self._index + 1} of {len(self._files)}: {text.title}"
-            self._show_on_map(self._display.picture(text, study, self._done), says, fresh)
+            self._show_on_map(self._display.picture(text, lesson, self._done), says, fresh)
 
     def _show_on_map(self, step: OnMap, says: str, look: bool) -> None:
         self._state.update(run=step.run)

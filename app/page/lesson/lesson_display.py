@@ -55,31 +55,31 @@ class LessonDisplay:
             self._display.show_view()
         self._display.show_buttons()
 
-    def words(self, index: int, text: StepText, study: LessonRun, answered: Collection[int]) -> None:
+    def words(self, index: int, text: StepText, lesson: LessonRun, answered: Collection[int]) -> None:
         """Show what a step says; ``answered``: numbers of the things to try whose answers are shown."""
-        numbers = numbers_of(study) if study.possible else {}
+        numbers = numbers_of(lesson) if lesson.possible else {}
         self._panel.text(index, text.title, filled(text.body, numbers), text.equations, OWN)
         answers = enumerate(filled(trial.answer, numbers) for trial in text.trials)
         self._panel.trials(text.trials, [answer if k in answered else "" for k, answer in answers])
 
-    def picture(self, text: StepText, study: LessonRun, done: bool) -> OnMap:
+    def picture(self, text: StepText, lesson: LessonRun, done: bool) -> OnMap:
         """Draw a step's picture, or say why there is none yet; what belongs to it on the map.
 
         done : the run has come to its end
         """
         palette, picture = self._state.palette, PICTURES.get(text.picture)
-        if picture is None or not study.possible or not study.reached(*picture.needs):
-            waiting = "" if picture is None else NO_MAPS if not study.inputs.complete else WAIT
-            over = done or not study.possible
+        if picture is None or not lesson.possible or not lesson.reached(*picture.needs):
+            waiting = "" if picture is None else NO_MAPS if not lesson.inputs.complete else WAIT
+            over = done or not lesson.possible
             self._panel.picture(NOT_HERE if waiting == WAIT and over else waiting)
             self._panel.dials((), ())
-            return OnMap(RunState(study.config), busy=waiting == WAIT and not over)
-        dials = picture.dials(study)
+            return OnMap(RunState(lesson.config), busy=waiting == WAIT and not over)
+        dials = picture.dials(lesson)
         places = self._placed(dials)
         self._panel.dials(dials, places)
-        self._panel.picture(picture.draw(study, places, palette))
-        ink = picture.ink(study, places, self._display.views.map.layout, palette)
-        return OnMap(picture.run(study, places), ink, picture.turn(study, places) if picture.turn else None)
+        self._panel.picture(picture.draw(lesson, places, palette))
+        ink = picture.ink(lesson, places, self._display.views.map.layout, palette)
+        return OnMap(picture.run(lesson, places), ink, picture.turn(lesson, places) if picture.turn else None)
 
     def on_map(self, step: OnMap, says: str, look: bool) -> None:
         """Draw the state's run on the map, and what the lesson draws over it.

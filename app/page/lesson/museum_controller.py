@@ -119,7 +119,7 @@ class MuseumController:
             return
         if truth is None or truth.T_ref_mov is None:
             return
-        distance, angle = pose_error(result.T_ref_mov, truth.T_ref_mov, result.encounter.x_mov)
+        distance, angle = pose_error(result.T_ref_mov, truth.T_ref_mov, result.pivot)
         right = truth.allows(distance, angle)
         verdict = "accepted" if result.verdict.accepted else "refused"
         ran = result.method, self._state.result_config

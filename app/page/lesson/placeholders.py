@@ -42,21 +42,21 @@ def _angle(turn: float) -> str:
     return f"{_n(degrees(turn), 1)}°"
 
 
-def _seen(study: LessonRun) -> Observation:
-    return study.inputs.observations[0]
+def _seen(lesson: LessonRun) -> Observation:
+    return lesson.inputs.observations[0]
 
 
-def _met(study: LessonRun) -> Encounter:
-    return study.get(ObservationDetail).encounter
+def _met(lesson: LessonRun) -> Encounter:
+    return lesson.get(ObservationDetail).encounter
 
 
 def _walls(grid: GridMap) -> int:
     return int(grid.occupied.sum())
 
 
-def _twin(study: LessonRun) -> str:
+def _twin(lesson: LessonRun) -> str:
     """How near the runner-up comes to the strongest turn, its own twin left out."""
-    match = study.get(HoughDetail).match
+    match = lesson.get(HoughDetail).match
     others = [s for s, twin in zip(match.strengths, match.twins, strict=True) if not twin][1:]
     return f"{max(others):.0%}" if others else "–"
 
@@ -71,36 +71,36 @@ def _disc(window: CoupledWindow) -> float:
     return float(pi * window.k**2 * np.sqrt(np.linalg.det(window.covariances[0])))
 
 
-def _ratio(study: LessonRun) -> str:
-    windows = study.get(WindowDetail)
+def _ratio(lesson: LessonRun) -> str:
+    windows = lesson.get(WindowDetail)
     return f"{float(np.prod(windows.paper.high - windows.paper.low)) / _disc(windows.coupled):,.0f}"
 
 
-def _transforms(study: LessonRun) -> str:
+def _transforms(lesson: LessonRun) -> str:
     """How many transforms of the lattice the coupled window holds: a cell, and the turn that moves a
     wall at 2 σ_aug by a cell."""
-    cell, spread = study.get(CandidatesDetail).objective.cell, study.config.augment.spread
+    cell, spread = lesson.get(CandidatesDetail).objective.cell, lesson.config.augment.spread
     turns = 2 * pi / (cell / (2 * spread))
-    return f"{turns * _disc(study.get(WindowDetail).coupled) / cell**2:,.0f}"
+    return f"{turns * _disc(lesson.get(WindowDetail).coupled) / cell**2:,.0f}"
 
 
-def _proof(study: LessonRun) -> ProofState:
-    return study.get(ProvenDetail).state
+def _proof(lesson: LessonRun) -> ProofState:
+    return lesson.get(ProvenDetail).state
 
 
-def _value(study: LessonRun, value: float) -> str:
-    return measure_of(study.config).text(value)
+def _value(lesson: LessonRun, value: float) -> str:
+    return measure_of(lesson.config).text(value)
 
 
-def _rival(study: LessonRun) -> str:
-    state = _proof(study)
+def _rival(lesson: LessonRun) -> str:
+    state = _proof(lesson)
     if not len(state.rivals) or state.best_value <= 0:
         return "no rival above half of it"
     return f"a rival with {state.rival_value / state.best_value:.0%} of it"
 
 
-def _verdict(study: LessonRun) -> Verdict:
-    return study.get(MergeResult).verdict
+def _verdict(lesson: LessonRun) -> Verdict:
+    return lesson.get(MergeResult).verdict
 
 
 _RESULT, _HOUGH, _WINDOW = (MergeResult,), (HoughDetail,), (WindowDetail,)
@@ -172,6 +172,6 @@ NUMBERS: dict[str, Number] = {
 }
 
 
-def numbers_of(study: LessonRun) -> dict[str, str]:
+def numbers_of(lesson: LessonRun) -> dict[str, str]:
     """The words for every number that the run has come to."""
-    return {name: words(study) for name, (needs, words) in NUMBERS.items() if study.reached(*needs)}
+    return {name: words(lesson) for name, (needs, words) in NUMBERS.items() if lesson.reached(*needs)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from math import log, pi
+from math import exp, log, pi
 from threading import RLock, get_ident
 from typing import Any, NamedTuple
 
@@ -13,7 +13,14 @@ import viser
 from algorithms.common.pose import Pose2
 from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.decision import Verdict, VerdictConfig, judge
-from algorithms.verdict.probability_model import Fit, misfit_of, probability, quantities_of, shipped_model
+from algorithms.verdict.probability_model import (
+    LITTLE,
+    Fit,
+    misfit_of,
+    probability,
+    quantities_of,
+    shipped_model,
+)
 from algorithms.verdict.ranking import WINDOW_EDGE, Weighed
 from app.drawing.palette import LIGHT, QUIET
 from app.drawing.svg.verdict_bars import bars
@@ -81,12 +88,13 @@ def supposed(result: MergeResult, rules: VerdictConfig, changed: Mapping[str, fl
     deviations = list(named.deviations)
     if DEVIATION in changed and deviations:
         deviations[deviations.index(max(deviations))] = changed[DEVIATION]
-    quantities = quantities_of(Fit(evidence, misfit_of(deviations, WINDOW_EDGE)))
-    score = shipped_model().score(quantities)
+    model, searched = shipped_model(result.kind), exp(named.quantities["searched"]) - LITTLE
+    quantities = quantities_of(Fit(evidence, misfit_of(deviations, WINDOW_EDGE), searched))
+    score = model.score(quantities)
     found = {"evidence": evidence, "deviations": tuple(deviations), "quantities": quantities, "score": score}
     if OTHER in changed:
         others = _with_best(others, named, changed[OTHER] / 100)
-    return judge(result.fusion, replace(named, **found), others, result.encounter.x_mov, rules)
+    return judge(result.fusion, replace(named, **found), others, result.pivot, rules, model=model)
 
 
 def _with_best(others: list[Weighed], named: Weighed, likely: float) -> list[Weighed]:

@@ -106,7 +106,9 @@ def test_every_format_of_the_same_pixels_loads_to_the_same_cells(grey, mode, neg
 
 @given(grey=greys)
 def test_negate_undoes_an_inverted_image(grey):
-    # Thresholds that no grey meets exactly: 1 − v/255 and (255 − v)/255 differ in the last bit.
+    # Thresholds that no grey meets exactly: 1 − v/255 and (255 − v)/255 differ in the last bit. And without
+    # the savers' own grey for unknown, which is told by itself, whatever the thresholds say.
+    grey = np.where((grey == 205) | (grey == 50), 100, grey).astype(np.uint8)
     thresholds = {"occupied_thresh": 0.6512, "free_thresh": 0.1987}
     assert cells(pgm(255 - grey), negate=1, **thresholds) == cells(pgm(grey), **thresholds)
 

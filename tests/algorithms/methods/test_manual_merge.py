@@ -46,7 +46,7 @@ def test_the_methods_own_answer_weighs_the_same_by_hand(scales, result):
 
 
 def test_a_wrong_hand_is_refused_and_told_that_another_answer_fits_better(scales, result):
-    wrong = about(result.T_ref_mov, result.encounter.x_mov, 0.3, 0.0, radians(90))
+    wrong = about(result.T_ref_mov, result.pivot, 0.3, 0.0, radians(90))
     verdict = scales.weigh(wrong).verdict
     assert not verdict.accepted
     assert verdict.reason.startswith("Refused: ")
@@ -60,7 +60,7 @@ def test_a_wrong_hand_is_refused_and_told_that_another_answer_fits_better(scales
 def test_a_hand_beside_the_right_place_is_refused_although_bent_maps_may_slip_so_far(
     small_case, result, method, dx, dy, turn
 ):
-    beside = about(result.T_ref_mov, result.encounter.x_mov, dx, dy, radians(turn))
+    beside = about(result.T_ref_mov, result.pivot, dx, dy, radians(turn))
     config = METHODS[method].defaults
     verdict = ManualMerge(problem_of(small_case), config).weigh(beside).verdict
     assert not verdict.accepted
@@ -68,33 +68,33 @@ def test_a_hand_beside_the_right_place_is_refused_although_bent_maps_may_slip_so
 
 
 def test_a_hand_far_off_the_sighting_is_told_so(scales, result):
-    away = about(result.T_ref_mov, result.encounter.x_mov, 3.0, 0.0, 0.0)
+    away = about(result.T_ref_mov, result.pivot, 3.0, 0.0, 0.0)
     assert "standard deviations from where it was seen" in scales.weigh(away).verdict.reason
 
 
 @settings(max_examples=6, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 @given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(-3, 3), st.integers(0, 9))
 def test_refining_ends_no_lower_than_it_began_and_near_the_best(scales, result, dx, dy, degrees, seed):
-    begun = about(result.T_ref_mov, result.encounter.x_mov, dx, dy, radians(degrees))
+    begun = about(result.T_ref_mov, result.pivot, dx, dy, radians(degrees))
     last = [step.detail for step in refine(scales, begun, seed)][-1]
     assert isinstance(last, MergeResult)
     assert last.method == BY_HAND
     assert last.value >= scales.value(begun)
     assert last.value >= 0.98 * result.value
-    distance, turn = pose_error(last.T_ref_mov, result.T_ref_mov, result.encounter.x_mov)
+    distance, turn = pose_error(last.T_ref_mov, result.T_ref_mov, result.pivot)
     assert distance < 0.1
     assert turn < radians(1)
 
 
 def test_refining_tells_the_swarm_and_the_same_seed_gives_the_same_answer(scales, result):
-    begun = about(result.T_ref_mov, result.encounter.x_mov, 0.3, -0.2, radians(2))
+    begun = about(result.T_ref_mov, result.pivot, 0.3, -0.2, radians(2))
     first, second = ([step.detail for step in refine(scales, begun, 5)] for _ in range(2))
     assert sum(isinstance(detail, RefineDetail) for detail in first) > 3
     assert first[-1].T_ref_mov == second[-1].T_ref_mov
 
 
 def test_a_hand_outside_of_the_window_can_be_refined_too(scales, result):
-    away = about(result.T_ref_mov, result.encounter.x_mov, 6.0, 6.0, 0.0)
+    away = about(result.T_ref_mov, result.pivot, 6.0, 6.0, 0.0)
     *_, last = refine(scales, away, 0)
     assert last.detail.value >= scales.value(away)
 

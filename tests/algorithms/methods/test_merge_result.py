@@ -48,7 +48,7 @@ def test_its_verdict_is_the_one_that_judging_the_same_answer_gives(result, finis
     named = result.weighed[0]
     turned = replace(named, T_ref_mov=named.T_ref_mov @ Pose2(theta=0.4))
     for beside in (None, (), (turned,)):
-        alone = judge(result.fusion, named, beside, result.encounter.x_mov, VerdictConfig())
+        alone = judge(result.fusion, named, beside, result.pivot, VerdictConfig())
         assert finished(beside).verdict == alone
     assert finished().verdict.accepted
     assert not finished(doubts=["it was stopped"]).verdict.accepted

@@ -29,7 +29,7 @@ NO_SWARM = SwarmConfig(particles=10, iterations=1)  # what the swarm finds has n
 
 
 def off(result, truth=T):
-    return pose_error(result.T_ref_mov, truth, result.encounter.x_mov)
+    return pose_error(result.T_ref_mov, truth, result.pivot)
 
 
 def building(name: str) -> str:
@@ -125,11 +125,11 @@ def test_every_shipped_pair_is_merged_right_or_refused(folder, rough):
     if building(folder.name) != "corridor" and not rough:  # the corridors are made to mislead
         assert result.verdict.accepted
         assert off(result, case.truth.T_ref_mov)[0] < 0.15
-        x, y = (result.T_ref_mov.apply(result.encounter.x_mov) - result.T_ref_mov.xy).tolist()
+        x, y = (result.T_ref_mov.apply(result.pivot) - result.T_ref_mov.xy).tolist()
         at_robot = np.array([[1, 0, -y], [0, 1, x], [0, 0, 1]])
         covariance = at_robot @ result.covariance @ at_robot.T
         T_true = case.truth.T_ref_mov
-        miss = result.T_ref_mov.apply(result.encounter.x_mov) - T_true.apply(result.encounter.x_mov)
+        miss = result.T_ref_mov.apply(result.pivot) - T_true.apply(result.pivot)
         error = np.append(miss, result.T_ref_mov.theta - T_true.theta)
         assert error @ np.linalg.solve(covariance, error) < 16.3  # 99.9 % of three dimensions
 

@@ -72,7 +72,7 @@ def empty(like):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_method_finds_an_easy_pose(method):
-    distance, angle = pose_error(there(method).T_ref_mov, T_REF_MOV, there(method).encounter.x_mov)
+    distance, angle = pose_error(there(method).T_ref_mov, T_REF_MOV, there(method).pivot)
     assert distance <= WITHIN[method][0]
     assert degrees(angle) <= WITHIN[method][1]
     assert there(method).verdict.accepted
@@ -81,7 +81,7 @@ def test_every_method_finds_an_easy_pose(method):
 @pytest.mark.parametrize("method", METHODS)
 def test_swapping_the_two_maps_inverts_the_answer_of_every_method(method):
     back = merge(MOV, REF, SEEN_BACK, method).T_ref_mov.inverse()
-    distance, angle = pose_error(back, there(method).T_ref_mov, there(method).encounter.x_mov)
+    distance, angle = pose_error(back, there(method).T_ref_mov, there(method).pivot)
     if method == "paper-argmax":
         # looks for turns from 0° to 180° alone: of a turn and its inverse it can find only one
         assert degrees(np.pi - angle) <= 2 * WITHIN[method][1]
@@ -190,7 +190,7 @@ def test_the_seed_chooses_the_luck_of_ransac_alone(method):
     again = merge(REF, MOV, SEEN, method)
     assert again.T_ref_mov == there(method).T_ref_mov
     other = merge(REF, MOV, SEEN, method, seed=7)
-    assert pose_error(other.T_ref_mov, T_REF_MOV, other.encounter.x_mov)[0] <= WITHIN[method][0]
+    assert pose_error(other.T_ref_mov, T_REF_MOV, other.pivot)[0] <= WITHIN[method][0]
 
 
 def test_the_threads_of_opencv_do_not_change_an_answer():

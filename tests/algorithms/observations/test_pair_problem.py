@@ -17,12 +17,11 @@ SEEN = sighting(T_REF_WORLD, T_MOV_WORLD, OBSERVER, OBSERVED)
 REF, MOV = drawn_map(T_REF_WORLD), drawn_map(T_MOV_WORLD)
 
 
-def test_one_sighting_or_a_list_of_them_make_a_problem_but_none_makes_none():
+def test_one_sighting_a_list_of_them_or_none_make_a_problem():
     assert (
         PairProblem.of(REF, MOV, SEEN) == PairProblem(REF, MOV, (SEEN,)) == PairProblem.of(REF, MOV, [SEEN])
     )
-    with pytest.raises(SettingError, match="give at least one"):
-        PairProblem.of(REF, MOV, ())
+    assert PairProblem.of(REF, MOV, ()) == PairProblem(REF, MOV)
 
 
 def test_problems_are_equal_where_maps_are_the_same_and_sightings_equal():

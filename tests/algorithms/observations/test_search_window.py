@@ -205,6 +205,7 @@ def test_what_is_pulled_in_lies_in_the_disc_turns_as_before_and_moves_no_farther
 @pytest.mark.parametrize("kind", ["coupled", "encounter", "origin"])
 def test_the_settings_say_which_window_and_the_papers_knows_the_first_sighting_only(kind):
     pairs = [(OBSERVER, OBSERVED), (OBSERVER, Pose2(5.5, 1.0, 0.0))]
-    one, two = (shift_window(met(T_REF_WORLD, T_MOV_WORLD, pairs[:n]), WindowConfig(kind)) for n in (1, 2))
+    config, both = WindowConfig(kind), met(T_REF_WORLD, T_MOV_WORLD, pairs)
+    one, two = (shift_window(both[:n], coupled_window(both[:n], config), config) for n in (1, 2))
     assert isinstance(one, CoupledWindow if kind == "coupled" else Window)
     assert np.array_equal([one.low, one.high, one.pivot], [two.low, two.high, two.pivot])

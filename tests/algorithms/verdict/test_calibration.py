@@ -13,7 +13,8 @@ from algorithms.verdict.probability_model import QUANTITIES
 
 NAMES = list(QUANTITIES)
 SIGNS = np.array([1.0 if quantity.rises else -1.0 for quantity in QUANTITIES.values()])
-WEIGHTS = SIGNS * np.array([0.9, 2.0, 1.2, 0.3])
+WEIGHTS = SIGNS * np.array([0.9, 2.0, 1.2, 0.3, 0.6])
+NEAR = len(NAMES) - 1  # quantities of answers near a sighting: all but the places searched
 BIAS = -1.0
 
 
@@ -30,19 +31,29 @@ def made_up(count: int, seed: int = 0, answers: int = 3) -> list[Example]:
 
 
 def test_the_weights_that_made_the_answers_are_found_again():
-    model = fit(made_up(4000))
+    model = fit(made_up(4000), "plane")
     assert np.array([model.weights[name] for name in NAMES]) == pytest.approx(WEIGHTS, rel=0.15)
     assert model.bias == pytest.approx(BIAS, abs=0.15)
 
 
+def test_a_model_of_answers_near_a_sighting_knows_nothing_of_the_places_searched():
+    examples = made_up(400)
+    model = fit(examples)
+    assert list(model.weights) == NAMES[:NEAR]
+    wider = [
+        Example(each.quantities + np.eye(len(NAMES))[NEAR], each.right, each.buildings) for each in examples
+    ]
+    assert np.array_equal(predict(model, wider).probabilities, predict(model, examples).probabilities)
+
+
 def test_what_is_told_of_buildings_left_out_is_calibrated():
-    told = cross_validated(made_up(3000))
+    told = cross_validated(made_up(3000), "plane")
     assert calibration_error(told.probabilities, told.right) < 0.04
 
 
 def test_no_weight_goes_against_its_meaning_even_where_the_examples_do():
     backwards = [Example(-each.quantities, each.right, each.buildings) for each in made_up(400)]
-    weights = np.array([fit(backwards).weights[name] for name in NAMES])
+    weights = np.array([fit(backwards, "plane").weights[name] for name in NAMES])
     assert (weights * SIGNS >= 0).all()
 
 
@@ -61,7 +72,7 @@ def test_buildings_of_a_wrong_pair_are_both_left_out():
 
 
 def test_right_answers_beside_each_other_do_not_compete():
-    twice = np.array([[1.0, 1.0, 1.0, 1.0], [1.0, 1.0, 1.0, 1.0]]) * SIGNS * 3
+    twice = np.ones((2, len(NAMES))) * SIGNS * 3
     model = fit(made_up(500))
     both = predict(model, [Example(twice, np.array([True, True]), ("a",))])
     one = predict(model, [Example(twice[:1], np.array([True]), ("a",))])

@@ -96,7 +96,7 @@ def test_without_others_it_is_the_logistic_function(score):
 def test_the_contributions_add_up_to_the_log_odds(fit, others):
     quantities = quantities_of(fit)
     parts = MODEL.contributions(quantities, others)
-    assert set(parts) == {*QUANTITIES, OTHERS}
+    assert set(parts) == {*MODEL.weights, OTHERS}
     total = MODEL.typical_score + sum(parts.values())
     assert total == pytest.approx(log_odds(MODEL.score(quantities), others), abs=1e-6)
 
@@ -117,9 +117,10 @@ def test_a_further_sighting_within_its_window_never_counts_against(deviations, a
     assert misfit_of([*deviations, another], 3.5) <= misfit_of(deviations, 3.5) + 1e-9
 
 
-def test_no_weight_goes_against_the_meaning_of_its_quantity():
-    for name, quantity in QUANTITIES.items():
-        assert MODEL.weights[name] * (1 if quantity.rises else -1) >= 0, name
+@pytest.mark.parametrize("kind", ["sighting", "plane"])
+def test_no_weight_goes_against_the_meaning_of_its_quantity(kind):
+    for name, weight in shipped_model(kind).weights.items():
+        assert weight * (1 if QUANTITIES[name].rises else -1) >= 0, name
 
 
 def test_the_shipped_model_says_what_made_it_and_accepts_none_of_enough_wrong_pairs():
@@ -146,5 +147,6 @@ def test_a_metre_is_added_before_logarithms_so_that_a_few_cells_say_next_to_noth
     bare = dict.fromkeys(QUANTITIES, 0.0)
     assert quantities_of(Fit(Evidence(0.0, 0.0, 0.0, 0.0), 0.0)) == bare
     found = Evidence(0.0, e**3 - 1, e - 1, e**2 - 1, across=e**4 - 1, floor=e - 1)
-    told = quantities_of(Fit(found, 5.0))
-    assert told == pytest.approx({"contradiction": 1.0, "unbent": 2.0, "across": 4.0, "misfit": 5.0})
+    told = quantities_of(Fit(found, 5.0, e**6 - 1))
+    wanted = {"contradiction": 1.0, "unbent": 2.0, "across": 4.0, "misfit": 5.0, "searched": 6.0}
+    assert told == pytest.approx(wanted)

@@ -119,7 +119,7 @@ def test_the_whole_maps_bring_a_bent_map_nearer_to_the_truth_than_the_search_alo
     alone = merge(case.ref, case.mov, case.observations, config=replace(DEFAULT, whole_maps=False))
     whole = merge(case.ref, case.mov, case.observations, config=DEFAULT)
     assert whole.weighed[0].moved
-    off = [sum(pose_error(each.T_ref_mov, case.T_ref_mov, each.encounter.x_mov)) for each in (alone, whole)]
+    off = [sum(pose_error(each.T_ref_mov, case.T_ref_mov, each.pivot)) for each in (alone, whole)]
     assert off[1] < off[0]
     assert whole.verdict.rigid_contradiction < alone.verdict.rigid_contradiction
 

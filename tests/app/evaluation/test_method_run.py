@@ -12,7 +12,7 @@ from app.evaluation.method_run import judge_case
 
 def off_by(case, result, metres=0.0, angle=0.0, **truth):
     """The case with a truth so far from the result, at the seen robot."""
-    at = result.encounter.x_mov
+    at = result.pivot
     x, y = result.T_ref_mov.apply(at).tolist()
     turn = Pose2(theta=result.T_ref_mov.theta + angle)
     dx, dy = turn.apply(at).tolist()

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from algorithms.common.pose import Pose2
-from algorithms.files.observation_file import observations_from_bytes, observations_to_bytes
+from algorithms.files.observation_file import known_to_bytes, observations_from_bytes
 from algorithms.observations.observation import Observation, encounter
 from app.model.observation_draft import ObservationDraft
 
@@ -62,4 +62,4 @@ def test_robot_1_moves_and_what_it_saw_stays(observation, elsewhere):
 @given(st.lists(observations, min_size=1, max_size=4), poses)
 def test_what_is_saved_loads_back_to_the_same(several, elsewhere):
     made = [ObservationDraft.of(o).stood(elsewhere).observation for o in several]
-    assert observations_from_bytes("observation.yaml", observations_to_bytes(made)) == tuple(made)
+    assert observations_from_bytes("observation.yaml", known_to_bytes(made)) == tuple(made)

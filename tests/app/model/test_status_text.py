@@ -72,7 +72,7 @@ def test_the_page_says_whether_the_swarm_found_the_proven_optimum(told):
 
 
 def test_a_swarm_that_got_stuck_is_told_with_how_far_off(told, small_case):
-    best, at = told.swarm.box.transform(told.swarm.state.best), told.get(MergeResult).encounter.x_mov
+    best, at = told.swarm.box.transform(told.swarm.state.best), told.get(MergeResult).pivot
     turned = Pose2(theta=best.theta + radians(178))
     x, y = (best.apply(at) + (1.2, 0.0) - turned.apply(at)).tolist()
     said = ended(told, False, Pose2(x, y, turned.theta))

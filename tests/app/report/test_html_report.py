@@ -100,7 +100,7 @@ def test_the_verdict_comes_first_then_pictures_then_numbers(page, result):
         "<h2>The numbers",
         "Is there a better place?",
     ]
-    order += ["What robot 1 saw", "How it was merged", publish_command(result), "Made with mapmeld"]
+    order += ["What was known", "How it was merged", publish_command(result), "Made with mapmeld"]
     assert sorted(order, key=page.index) == order
     assert "REFUSED" not in page
 

@@ -74,11 +74,11 @@ class LessonFigure:
 
 
 def _up_to(kind: type) -> Callable[[LessonRun, At], RunState]:
-    return lambda study, at: study.run_until(kind)
+    return lambda lesson, at: lesson.run_until(kind)
 
 
 def _nth(kind: type) -> Callable[[LessonRun, At], RunState]:
-    return lambda study, at: study.run_until(kind, min(at[0], len(study.all(kind)) - 1))
+    return lambda lesson, at: lesson.run_until(kind, min(at[0], len(lesson.all(kind)) - 1))
 
 
 def _searching(
@@ -86,26 +86,26 @@ def _searching(
 ) -> Callable[[LessonRun, At], RunState]:
     """The run up to the candidates, and then this search in the best one's box."""
 
-    def run_until(study: LessonRun, at: At) -> RunState:
-        states, run = states_of(study), study.run_until(CandidatesDetail)
+    def run_until(lesson: LessonRun, at: At) -> RunState:
+        states, run = states_of(lesson), lesson.run_until(CandidatesDetail)
         state = states[min(at[0] + ahead, len(states) - 1)]
-        run.add(Step("refine", RefineDetail(0, 1, study.box, state), 0.0))
+        run.add(Step("refine", RefineDetail(0, 1, lesson.box, state), 0.0))
         return run
 
     return run_until
 
 
-def _looking(study: LessonRun, at: At) -> RunState:
+def _looking(lesson: LessonRun, at: At) -> RunState:
     """The run up to a look at the proof."""
-    chosen = search.looks(study)
-    return study.run_until(ProofDetail, chosen[min(at[0], len(chosen) - 1)])
+    chosen = search.looks(lesson)
+    return lesson.run_until(ProofDetail, chosen[min(at[0], len(chosen) - 1)])
 
 
-def _lines(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
+def _lines(lesson: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
     """The strongest lines of both maps, the chosen one of each with its number."""
-    detail, items = study.get(AugmentDetail), []
-    reach = 2.0 * study.config.augment.spread
-    first, second, step = study.votes
+    detail, items = lesson.get(AugmentDetail), []
+    reach = 2.0 * lesson.config.augment.spread
+    first, second, step = lesson.votes
     for votes, lifted, anchor, frame in (
         (first, detail.ref, layout.anchor_ref, "scene"),
         (second, detail.mov, layout.anchor_mov, "map2"),
@@ -119,9 +119,9 @@ def _lines(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> l
     return items
 
 
-def _moves(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
+def _moves(lesson: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
     """Every particle's last step, and the three pulls on the chosen one, end to end."""
-    states, j = study.few, min(at[1], FEW - 1)
+    states, j = lesson.few, min(at[1], FEW - 1)
     k = min(at[0] + 1, len(states) - 1)
     before, after = states[max(0, k - 1)], states[k]
     items = [
@@ -136,8 +136,8 @@ def _moves(study: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> l
     return items
 
 
-def _swarm_dials(study: LessonRun) -> tuple[FigureSlider, ...]:
-    few = study.few
+def _swarm_dials(lesson: LessonRun) -> tuple[FigureSlider, ...]:
+    few = lesson.few
     # at first the particle with the longest way to go
     far = int(np.hypot(*(few[0].poses - few[0].best)[:, :2].T).argmax())
     return (FigureSlider("move", max(1, len(few) - 1), 1), FigureSlider("particle", FEW, far))
@@ -156,32 +156,32 @@ PICTURES: dict[str, LessonFigure] = {
     "spectrum": LessonFigure((HoughDetail,), spectra.spectrum, _up_to(AugmentDetail)),
     "correlation": LessonFigure(
         (HoughDetail,), spectra.correlation, _up_to(HoughDetail),
-        lambda study: (FigureSlider("slid by (°)", 180, spectra.first_turn(study), first=0),),
-        turn=lambda study, at: radians(at[0]),
+        lambda lesson: (FigureSlider("slid by (°)", 180, spectra.first_turn(lesson), first=0),),
+        turn=lambda lesson, at: radians(at[0]),
     ),
     "turned": LessonFigure(
         (HoughDetail,), maps.turned, _up_to(HoughDetail),
-        lambda study: (FigureSlider("candidate", len(study.get(HoughDetail).match.turns)),),
-        turn=lambda study, at: study.get(HoughDetail).match.turns[at[0]],
+        lambda lesson: (FigureSlider("candidate", len(lesson.get(HoughDetail).match.turns)),),
+        turn=lambda lesson, at: lesson.get(HoughDetail).match.turns[at[0]],
     ),
     "shift": LessonFigure(
         (CandidatesDetail,), spectra.shift, _nth(ShiftDetail),
-        lambda study: (FigureSlider("candidate", len(study.all(ShiftDetail))),),
+        lambda lesson: (FigureSlider("candidate", len(lesson.all(ShiftDetail))),),
     ),
     "window": LessonFigure((CandidatesDetail,), spectra.window, _up_to(CandidatesDetail)),
     "objective": LessonFigure(
         (CandidatesDetail,), search.objective, _up_to(CandidatesDetail), lambda _: (_OFF,)
     ),
     "samples": LessonFigure(
-        (CandidatesDetail,), search.samples, _searching(lambda study: study.samples, 0),
-        lambda study: (FigureSlider("throws", len(study.samples), 1),),
+        (CandidatesDetail,), search.samples, _searching(lambda lesson: lesson.samples, 0),
+        lambda lesson: (FigureSlider("throws", len(lesson.samples), 1),),
     ),
     "swarm": LessonFigure(
-        (CandidatesDetail,), search.swarm, _searching(lambda study: study.few, 1), _swarm_dials, _moves
+        (CandidatesDetail,), search.swarm, _searching(lambda lesson: lesson.few, 1), _swarm_dials, _moves
     ),
     "proof": LessonFigure(
         (ProvenDetail,), search.proof, _looking,
-        lambda study: (FigureSlider("look", (count := len(search.looks(study))), count - 1),),
+        lambda lesson: (FigureSlider("look", (count := len(search.looks(lesson))), count - 1),),
     ),
     "answers": LessonFigure((MergeResult,), verdict_figure.answers, _up_to(WeighedDetail)),
     "merged": LessonFigure((MergeResult,), maps.merged, _up_to(Fusion)),

@@ -24,9 +24,9 @@ from app.page.lesson.lesson_run import LessonRun
 HALF = 184.0  # width of one of two pictures side by side
 
 
-def observation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def observation(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The sighting in map 1, and the same place in map 2."""
-    i, o, met = study.inputs, study.inputs.observations[0], study.inputs.encounters[0]
+    i, o, met = lesson.inputs, lesson.inputs.observations[0], lesson.inputs.encounters[0]
     here, heading, sheet = o.observer.xy, o.observer.theta, SvgCanvas(226)
     half, reach = max(3.0, 0.75 * o.range + 1.5), 0.55 * o.range
     red, rim = palette.conflict, palette.free
@@ -74,9 +74,9 @@ def level_scale(sheet: SvgCanvas, x: float, y: float, wide: float, peak: float, 
     sheet.text(x + wide + 8, y + 9, words, 10.5)
 
 
-def augmentation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def augmentation(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both maps with their levels, the rings of Σ_aug around x̂, and the scale."""
-    detail, config = study.get(AugmentDetail), study.config.augment
+    detail, config = lesson.get(AugmentDetail), lesson.config.augment
     sheet = SvgCanvas(240)
     half = 2.35 * config.spread * max(config.aspect, 1 / config.aspect) ** 0.5
     for x, lifted, title in ((0.0, detail.ref, "map 1"), (196.0, detail.mov, "map 2")):
@@ -94,9 +94,9 @@ def augmentation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Both maps, their walls coloured by level around the meeting place")
 
 
-def dual(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def dual(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Some cells of map 1 from near by, their centres, and the first columns of the list."""
-    grid, met = study.inputs.ref, study.inputs.encounters[0]
+    grid, met = lesson.inputs.ref, lesson.inputs.encounters[0]
     sheet, side, across, points = SvgCanvas(226), 200.0, 13, grid.points
     if not len(points):
         sheet.text(0, 20, "Map 1 has no wall at all.")
@@ -134,12 +134,12 @@ def dual(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Cells of map 1 and the list of their centres")
 
 
-def turned(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def turned(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Map 1 around x̂₁ beside map 2 around x̂₂, turned by the chosen candidate."""
-    match, detail = study.get(HoughDetail).match, study.get(AugmentDetail)
+    match, detail = lesson.get(HoughDetail).match, lesson.get(AugmentDetail)
     k = min(at[0], len(match.turns) - 1)
     sheet = SvgCanvas(232)
-    half = 2.0 * study.config.augment.spread
+    half = 2.0 * lesson.config.augment.spread
     about = Pose2(0.0, 0.0, match.turns[k]) @ Pose2(*(-detail.mov.x_hat).tolist())
     how = f"map 2, turned by {turn_label(match.turns[k])}"
     places = (
@@ -161,13 +161,13 @@ def _class(cells: CellArray) -> np.ndarray:
     return np.where(cells >= OCCUPIED_FROM, 0, np.where(is_free(cells), 1, 2))
 
 
-def merged(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def merged(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The merged map around the meeting, and what became of every cell."""
-    fusion, result = study.get(Fusion), study.get(MergeResult)
+    fusion, result = lesson.get(Fusion), lesson.get(MergeResult)
     first, second = _class(fusion.ref_cells), _class(fusion.mov_cells)
     counts = np.bincount((3 * first + second).ravel(), minlength=9).reshape(3, 3)
     sheet = SvgCanvas(218)
-    view = view_of(result.encounter.x_ref, 2.0 * study.config.augment.spread, HALF, HALF)
+    view = view_of(result.encounters[0].x_ref, 2.0 * lesson.config.augment.spread, HALF, HALF)
     pixels = view.blank(palette)
     a, b = (under(part, fusion.merged, view, None, 2) for part in (first, second))
     pixels[(a == 1) | (b == 1)] = palette.free

@@ -35,10 +35,10 @@ def transforms(x: FloatArray, y: FloatArray, turn: FloatArray | float, pivot: Fl
     return np.column_stack([x - c * px + s * py, y - s * px - c * py, turn])
 
 
-def best_of(study: LessonRun) -> Pose2:
+def best_of(lesson: LessonRun) -> Pose2:
     """The best transform that the run has come to."""
-    answer = study.run_until(type(study.steps[-1].detail)).answer if study.steps else None
-    return study.box.transform(study.box.centre) if answer is None else answer
+    answer = lesson.run_until(type(lesson.steps[-1].detail)).answer if lesson.steps else None
+    return lesson.box.transform(lesson.box.centre) if answer is None else answer
 
 
 def _landscape(
@@ -51,9 +51,9 @@ def _landscape(
     return value(transforms(x.ravel(), y.ravel(), turn, pivot)).reshape(SIDE, SIDE)
 
 
-def objective(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def objective(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Γ and the agreement over the shift at a turn, and over the turn at the best shift."""
-    best, coupled = best_of(study), study.get(WindowDetail).coupled
+    best, coupled = best_of(lesson), lesson.get(WindowDetail).coupled
     half = max(1.0, 0.75 * float((coupled.high - coupled.low).max()))
     off = np.radians(TURN_STEP) * (at[0] - TURN_STEPS // 2)
     turn = best.theta + off
@@ -66,8 +66,8 @@ def objective(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     below = SvgPlot(sheet, 42, 226, 324, 68, (-180, 180), (-0.35, 1.1))
     sheet.text(0, 219, "both over the turn (each of its highest)", 11, bold=True)
     rows: tuple[tuple[float, Objective, ObjectiveLabel, str], ...] = (
-        (42.0, study.gamma, GAMMA, css(palette.best)),
-        (226.0, study.agreement, AGREEMENT, css(palette.particle)),
+        (42.0, lesson.gamma, GAMMA, css(palette.best)),
+        (226.0, lesson.agreement, AGREEMENT, css(palette.particle)),
     )
     for x, value, measure, colour in rows:
         grid = _landscape(value, coupled.x_ref[0], half, turn, coupled.pivot)
@@ -107,28 +107,28 @@ def _few(middle: float, half: float) -> list[float]:
     return [round(middle - half / 2, 1), round(middle + half / 2, 1)]
 
 
-def _box_plot(study: LessonRun, sheet: SvgCanvas, x: float, y: float, side: float) -> SvgPlot:
+def _box_plot(lesson: LessonRun, sheet: SvgCanvas, x: float, y: float, side: float) -> SvgPlot:
     """The box over x and y, a landscape of what is maximised behind it, its longer edge filling the plot."""
-    box = study.box
+    box = lesson.box
     half = 0.5 * float((box.high - box.low)[:2].max()) * 1.02
     cx, cy = box.centre[:2].tolist()
     plot = SvgPlot(sheet, x, y, side, side, (cx - half, cx + half), (cy - half, cy + half))
-    value = study.agreement if study.config.refine.objective == "agreement" else study.gamma
-    grid = _landscape(value, box.centre[:2], half, best_of(study).theta, box.pivot)
+    value = lesson.agreement if lesson.config.refine.objective == "agreement" else lesson.gamma
+    grid = _landscape(value, box.centre[:2], half, best_of(lesson).theta, box.pivot)
     share = np.clip(grid / max(float(grid.max()), 1e-12), 0, 1)
     plot.image(np.asarray(0.55 * viridis(share) + 0.45 * np.array(PALED), dtype=np.uint8))
     sheet.path(plot.at(rectangle(box.low[:2], box.high[:2])), "#fff", 1.5, dash="6 4", close=True)
-    coupled = study.get(WindowDetail).coupled
+    coupled = lesson.get(WindowDetail).coupled
     sheet.path(plot.at(ellipse(coupled.x_ref[0], coupled.covariances[0], coupled.k)), "#fff", 1.2, close=True)
     plot.axes(PLACES, "y (m)", _few(cx, 0.5), _few(cy, 0.5))
     return plot
 
 
-def samples(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def samples(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The darts so far in the box, the best of them, and how the best value climbed."""
-    states, sheet = study.samples, SvgCanvas(232)
+    states, sheet = lesson.samples, SvgCanvas(232)
     k = min(at[0], len(states) - 1)
-    plot = _box_plot(study, sheet, 42, 18, 160)
+    plot = _box_plot(lesson, sheet, 42, 18, 160)
     shown = states[max(0, k - 3) : k + 1]  # the newest ones; all of them would be a blot
     count = (k + 1) * len(states[0].poses)
     sheet.text(0, 11, f"{count:,} darts", 11, bold=True)
@@ -136,7 +136,7 @@ def samples(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         for px, py in plot.at(state.poses[:120, :2]).tolist():
             sheet.dot(px, py, 1.7, palette.particle, None, 0.9 - 0.22 * age)
     sheet.star(*plot.one(*states[k].best[:2].tolist()), 7, palette.answer, palette.rim)
-    measure, best = measure_of(study.config), np.array([state.best_value for state in states])
+    measure, best = measure_of(lesson.config), np.array([state.best_value for state in states])
     known = np.where(np.isfinite(best), best, 0.0)
     low, high = float(known.min()), max(float(known.max()), 1e-12)
     low = min(low, 0.9 * high)
@@ -148,13 +148,13 @@ def samples(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Samples in the box and the best of them")
 
 
-def swarm(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def swarm(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """One move of the swarm: all particles in the box, and the pulls on the chosen one from near by."""
-    states = study.few
+    states = lesson.few
     k, j = min(at[0] + 1, len(states) - 1), min(at[1], FEW - 1)
     before, after = states[max(0, k - 1)], states[k]
     sheet = SvgCanvas(284)
-    plot = _box_plot(study, sheet, 42, 18, 160)
+    plot = _box_plot(lesson, sheet, 42, 18, 160)
     sheet.text(0, 11, f"move {k} of {len(states) - 1}: all {FEW} particles", 11, bold=True)
     ends = (plot.at(state.poses[:, :2]).tolist() for state in (before, after))
     for n, (start, end) in enumerate(zip(*ends, strict=True)):
@@ -212,20 +212,20 @@ def _length(metres: float) -> str:
     return f"{100 * metres:.1f} cm" if metres >= 0.01 else f"{1000 * metres:.1f} mm"
 
 
-def looks(study: LessonRun) -> list[int]:
+def looks(lesson: LessonRun) -> list[int]:
     """Numbers of the steps of the proof that are looked at, from its beginning to its end."""
-    count = len(study.all(ProofDetail))
+    count = len(lesson.all(ProofDetail))
     return np.unique(np.linspace(0, count - 1, LOOKS).round().astype(int)).tolist() if count else []
 
 
-def proof(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def proof(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Map 1 pooled coarser and coarser, and what is left of every turn."""
-    chosen, sheet = looks(study), SvgCanvas(318)
-    state = study.all(ProofDetail)[chosen[min(at[0], len(chosen) - 1)]].state
-    table = study.gamma.sides[0].table[PAD:-PAD, PAD:-PAD]
-    lifted = study.get(AugmentDetail).ref
+    chosen, sheet = looks(lesson), SvgCanvas(318)
+    state = lesson.all(ProofDetail)[chosen[min(at[0], len(chosen) - 1)]].state
+    table = lesson.gamma.sides[0].table[PAD:-PAD, PAD:-PAD]
+    lifted = lesson.get(AugmentDetail).ref
     reach = min(64, max(table.shape) // 2)
-    centre = lifted.grid.grid_coordinates(lifted.x_hat) - study.gamma.sides[0].corner
+    centre = lifted.grid.grid_coordinates(lifted.x_hat) - lesson.gamma.sides[0].corner
     col, row = centre.astype(int).tolist()
     part = cut_out(table, (row - reach, col - reach), 2 * reach, np.float32(0))
     top = max(float(part.max()), 1e-12)
@@ -234,8 +234,8 @@ def proof(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         pooled = skimage.measure.block_reduce(part, (size, size), np.max)
         sheet.image(upright(viridis(pooled / top)), 96.0 * k, 18, 90, 90)
         sheet.text(96.0 * k + 45, 121, f"{size} cell{'s' if size > 1 else ''}", 10, "middle")
-    measure = measure_of(study.config)
-    chart = charts.proof(state, study.run_until(ProofDetail).ceiling, measure)
+    measure = measure_of(lesson.config)
+    chart = charts.proof(state, lesson.run_until(ProofDetail).ceiling, measure)
     plot = SvgPlot(sheet, 42, 150, 324, 118, (-180, 180), chart.up)
     left = "proven" if state.proven else f"nothing above {measure.text(state.ceiling)} is left"
     sheet.text(0, 143, f"{state.nodes:,} blocks looked at: {left}", 11, bold=True)

@@ -61,10 +61,10 @@ def _votes(plot: SvgPlot, votes: FloatArray, step: float) -> None:
     plot.image(viridis(np.sqrt(columns / top if top > 0 else columns)))
 
 
-def hough(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def hough(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both accumulators, their strongest lines marked."""
-    first, second, step = study.votes
-    reach, sheet = 2.5 * float(study.config.augment.spread), SvgCanvas(308)
+    first, second, step = lesson.votes
+    reach, sheet = 2.5 * float(lesson.config.augment.spread), SvgCanvas(308)
     rows = ((18.0, first, palette.ref, "map 1"), (164.0, second, palette.mov, "map 2"))
     for y, votes, colour, name in rows:
         plot = SvgPlot(sheet, 42, y, 324, 100, (0, 180), (-reach, reach))
@@ -81,11 +81,11 @@ def hough(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Hough accumulators of both maps over θ and ρ")
 
 
-def spectrum(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def spectrum(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The votes of each map, and below them what is left when each column is squared and summed."""
-    match, sheet = study.get(HoughDetail).match, SvgCanvas(286)
-    reach = 2.5 * float(study.config.augment.spread)
-    first, second, step = study.votes
+    match, sheet = lesson.get(HoughDetail).match, SvgCanvas(286)
+    reach = 2.5 * float(lesson.config.augment.spread)
+    first, second, step = lesson.votes
     x = np.degrees(match.angles)
     for y, votes, name in ((14.0, first, "map 1"), (80.0, second, "map 2")):
         plot = SvgPlot(sheet, 42, y, 324, 54, (0, 180), (-reach, reach))
@@ -103,9 +103,9 @@ def spectrum(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Hough spectra of both maps")
 
 
-def correlation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def correlation(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Map 2's spectrum slid over map 1's by the chosen turn, and the correlation at every turn."""
-    match, sheet = study.get(HoughDetail).match, SvgCanvas(282)
+    match, sheet = lesson.get(HoughDetail).match, SvgCanvas(282)
     size = len(match.angles)
     x, turn = np.degrees(match.angles), float(at[0])
     k = round(turn / 180 * size) % size
@@ -139,12 +139,12 @@ def correlation(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Correlation of the two Hough spectra")
 
 
-def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def shift(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both maps at a candidate's turn and shift with their sums beside them, and the correlations."""
-    tried, lifted = study.all(ShiftDetail), study.get(AugmentDetail)
+    tried, lifted = lesson.all(ShiftDetail), lesson.get(AugmentDetail)
     candidate = tried[min(at[0], len(tried) - 1)].candidate
     sheet, wide, high = SvgCanvas(320), 210.0, 120.0
-    half = 2.2 * study.config.augment.spread
+    half = 2.2 * lesson.config.augment.spread
     view = view_of(lifted.ref.x_hat, half, wide, high)
     pixels = draw_map(view, palette, lifted.ref.grid, palette.ref)
     pixels = draw_map(view, palette, lifted.mov.grid, palette.mov, candidate.T_ref_mov, pixels)
@@ -185,10 +185,10 @@ def shift(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("X and Y spectra of map 1 and of the turned map 2, and their correlations")
 
 
-def window(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def window(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both windows to scale over map 1, and the coupled one from near by."""
-    windows, grid = study.get(WindowDetail), study.inputs.ref
-    found = study.all(ShiftDetail)
+    windows, grid = lesson.get(WindowDetail), lesson.inputs.ref
+    found = lesson.all(ShiftDetail)
     turn = found[0].candidate.T_ref_mov.theta if found else 0.0
     coupled, paper = windows.coupled, windows.paper
     off = rotation(turn) @ (coupled.pivot - paper.pivot)
@@ -213,7 +213,7 @@ def window(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
         sheet.path(ring, palette.best, 2 if strong else 1, dash="" if strong else "3 3", close=True)
         top = ring[int(ring[:, 1].argmin())]
         sheet.text(top[0], top[1] - 3, name, 10, "middle", palette.best, True, halo=palette.free)
-    away = study.inputs.observations[0].observer.xy - x_hat
+    away = lesson.inputs.observations[0].observer.xy - x_hat
     end = x_hat + away * min(1.0, 0.98 * near / max(float(np.hypot(*away)), 1e-12))
     sheet.path(inset.at([end, x_hat]), palette.text, 1.5, dash="5 4")
     sheet.dot(*inset.one(*x_hat.tolist()), 4, None, palette.conflict, width=2)
@@ -223,9 +223,9 @@ def window(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("The paper's window and the coupled window, to scale")
 
 
-def first_turn(study: LessonRun) -> int:
+def first_turn(lesson: LessonRun) -> int:
     """The turn that the correlation prefers; whole degrees in 0 … 179."""
-    turn = study.get(HoughDetail).match.turns[0]
+    turn = lesson.get(HoughDetail).match.turns[0]
     return round(degrees(wrap_angle(turn))) % 180
 
 

@@ -17,13 +17,13 @@ ANSWER = 54.0  # height of an answer's row
 MOST_ANSWERS = 5
 
 
-def verdict(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
-    return bars(study.get(MergeResult).verdict, palette)
+def verdict(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
+    return bars(lesson.get(MergeResult).verdict, palette)
 
 
-def answers(study: LessonRun, at: Sequence[int], palette: Palette) -> str:
+def answers(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """The best few answers: what agrees with each on the whole maps, and what contradicts it."""
-    result = study.get(MergeResult)
+    result = lesson.get(MergeResult)
     answers = result.weighed[:MOST_ANSWERS]
     most = max(each.evidence.shared_wall for each in answers) or 1.0
     sheet = SvgCanvas(30 + ANSWER * len(answers) + 22)

@@ -120,7 +120,7 @@ def test_the_walls_are_told_in_the_numbers_of_the_verdict(result):
 
 def test_how_far_the_hand_is_from_what_the_method_found_is_measured_at_the_seen_robot(result):
     """Turned on the spot by 5° and put 0.3 m beside it: not what the frames' origins say."""
-    at = Pose2(*result.encounter.x_mov.tolist())
+    at = Pose2(*result.pivot.tolist())
     turn = radians(5.0)
     moved = Pose2(0.3, 0.0) @ result.T_ref_mov @ at @ Pose2(theta=turn) @ at.inverse()
     told = weighed_html(result, DEFAULTS, moved)

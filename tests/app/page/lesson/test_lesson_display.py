@@ -60,18 +60,18 @@ def display(inputs, panel, messages) -> LessonDisplay:
     return LessonDisplay(PageState(), page, panel)
 
 
-def drawn(display: LessonDisplay, panel: Mock, text: StepText, study: LessonRun, done: bool = False) -> str:
-    display.on_map(display.picture(text, study, done), "Lesson", look=True)
+def drawn(display: LessonDisplay, panel: Mock, text: StepText, lesson: LessonRun, done: bool = False) -> str:
+    display.on_map(display.picture(text, lesson, done), "Lesson", look=True)
     return panel.picture.call_args.args[0]
 
 
 def test_what_the_run_has_not_come_to_is_waited_for_and_once_it_is_over_no_more(
     display, messages, panel, hough, inputs
 ):
-    study = LessonRun(inputs, CONFIG)
-    assert drawn(display, panel, hough, study) == WAIT
+    lesson = LessonRun(inputs, CONFIG)
+    assert drawn(display, panel, hough, lesson) == WAIT
     assert messages.hud.call_args.kwargs["mood"] == "running"
-    assert drawn(display, panel, hough, study, done=True) == NOT_HERE
+    assert drawn(display, panel, hough, lesson, done=True) == NOT_HERE
     assert messages.hud.call_args.kwargs["mood"] == "idle"
 
 
@@ -83,12 +83,12 @@ def test_without_maps_or_with_a_method_of_other_stages_nothing_is_waited_for(dis
 def test_a_picture_is_drawn_once_its_stage_is_there_with_its_dials_where_they_begin(
     display, panel, hough, inputs, until_hough
 ):
-    study = LessonRun(inputs, CONFIG, 0, until_hough)
-    assert drawn(display, panel, hough, study).startswith("<svg")
+    lesson = LessonRun(inputs, CONFIG, 0, until_hough)
+    assert drawn(display, panel, hough, lesson).startswith("<svg")
     dials, places = panel.dials.call_args.args
     assert places == tuple(dial.start for dial in dials)
     display.places = tuple(10**6 for _ in dials)  # of maps that had more to show
-    drawn(display, panel, hough, study)
+    drawn(display, panel, hough, lesson)
     assert panel.dials.call_args.args[1] == tuple(dial.count - 1 for dial in dials)
 
 

@@ -45,7 +45,7 @@ def off(exhibit: Exhibit, method: str, settings) -> tuple[bool, MergeResult]:
     case = exhibit_case(exhibit)
     config = with_settings(METHODS[method].defaults, settings)
     result = merge(case.ref, case.mov, case.observations, method, config)
-    distance, angle = pose_error(result.T_ref_mov, case.truth.T_ref_mov, result.encounter.x_mov)
+    distance, angle = pose_error(result.T_ref_mov, case.truth.T_ref_mov, result.pivot)
     return distance > case.truth.tolerance_m or angle > case.truth.tolerance_rad, result
 
 

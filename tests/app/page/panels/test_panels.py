@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from algorithms.common.errors import InputFileError
 from algorithms.common.pose import Pose2
 from algorithms.files.map_file import map_to_bytes
-from algorithms.files.observation_file import observations_to_bytes
+from algorithms.files.observation_file import known_to_bytes
 from algorithms.files.truth_file import Truth
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge, run
 from algorithms.methods.steps import CandidatesDetail, HoughDetail
@@ -77,7 +77,7 @@ def test_uploads_become_inputs_as_far_as_they_go(inputs):
     assert inputs_from(uploads).ref is None
     uploads["image1"] = Upload("m.pgm", files["m.pgm"])
     assert np.array_equal(inputs_from(uploads).ref.cells, inputs.ref.cells)
-    uploads["observation"] = Upload("o.yaml", observations_to_bytes(inputs.observations))
+    uploads["observation"] = Upload("o.yaml", known_to_bytes(inputs.observations))
     assert inputs_from(uploads).observations == inputs.observations
 
 
@@ -208,7 +208,7 @@ def test_a_map_that_was_read_is_not_read_again_when_another_file_comes(inputs):
     uploads["observation"] = Upload("o.yaml", b"range: 3")
     with pytest.raises(InputFileError):
         inputs_from(uploads, known)
-    uploads["observation"] = Upload("o.yaml", observations_to_bytes(inputs.observations))
+    uploads["observation"] = Upload("o.yaml", known_to_bytes(inputs.observations))
     assert inputs_from(uploads, known).ref is first
     uploads["yaml1"] = Upload("m.yaml", files["m.yaml"].replace(b"0.05", b"0.1"))
     assert inputs_from(uploads, known).ref.resolution == 0.1

@@ -43,7 +43,7 @@ def study_of(case: Case) -> LessonRun:
 
 
 @pytest.fixture(scope="module")
-def study(small_case) -> LessonRun:
+def lesson(small_case) -> LessonRun:
     return study_of(small_case)
 
 
@@ -58,15 +58,15 @@ def corners(dials: tuple[FigureSlider, ...]) -> list[tuple[int, ...]]:
     return list(product(*(sorted({dial.start, 0, dial.count - 1}) for dial in dials)))
 
 
-@pytest.mark.parametrize("which", ["study", "refused"])
+@pytest.mark.parametrize("which", ["lesson", "refused"])
 @pytest.mark.parametrize("palette", [LIGHT, DARK], ids=["light", "dark"])
 @pytest.mark.parametrize("name", PICTURES)
 def test_every_picture_is_whole_wherever_its_dials_stand(request, which, name, palette):
-    study = request.getfixturevalue(which)
+    lesson = request.getfixturevalue(which)
     picture = PICTURES[name]
-    layout = lay_out(study.inputs.ref, study.inputs.mov, study.inputs.at)
-    for at in corners(picture.dials(study)):
-        drawn = picture.draw(study, at, palette)
+    layout = lay_out(lesson.inputs.ref, lesson.inputs.mov, lesson.inputs.at)
+    for at in corners(picture.dials(lesson)):
+        drawn = picture.draw(lesson, at, palette)
         root = ElementTree.fromstring(drawn)
         assert root.attrib["aria-label"]
         words = [e.text for e in root.iter(f"{SVG}text")]
@@ -74,20 +74,20 @@ def test_every_picture_is_whole_wherever_its_dials_stand(request, which, name, p
         for bad in ("nan", "inf", "None"):
             assert not [text for text in words if bad in text]
             assert f'"{bad}' not in drawn
-        assert picture.run(study, at).last is not None
-        for item in picture.ink(study, at, layout, palette):
+        assert picture.run(lesson, at).last is not None
+        for item in picture.ink(lesson, at, layout, palette):
             assert np.isfinite(item["p"]).all()
 
 
 @pytest.mark.parametrize("path", files(lesson_folder()), ids=lambda path: path.stem)
-def test_every_text_that_comes_along_names_pictures_equations_and_numbers_that_are_there(path, study):
+def test_every_text_that_comes_along_names_pictures_equations_and_numbers_that_are_there(path, lesson):
     step = read_step(path, PICTURES, NUMBERS)
     assert step.picture
     assert step.equations
     assert step.trials
     for trial in step.trials:
         assert trial.answer
-    numbers = numbers_of(study)
+    numbers = numbers_of(lesson)
     for text in (step.body, *(trial.answer for trial in step.trials)):
         assert not PLACEHOLDER.search(filled(text, numbers))
         assert "…" not in filled(text, numbers).replace(text, "")
@@ -100,8 +100,8 @@ def test_every_picture_and_every_equation_is_in_the_lesson():
     assert {name for step in steps for name in step.equations} == set(equations.names())
 
 
-def test_every_number_is_known_at_the_end_of_a_run_and_none_before_its_stage(study, small_case):
-    numbers = numbers_of(study)
+def test_every_number_is_known_at_the_end_of_a_run_and_none_before_its_stage(lesson, small_case):
+    numbers = numbers_of(lesson)
     assert set(numbers) == set(NUMBERS)
     assert not [words for words in numbers.values() if "nan" in words]
     early = numbers_of(LessonRun(MergeInputs.of(small_case), CONFIG))
@@ -109,9 +109,9 @@ def test_every_number_is_known_at_the_end_of_a_run_and_none_before_its_stage(stu
     assert "verdict" not in early
 
 
-def test_the_accumulator_that_is_shown_is_what_the_spectrum_is_summed_from(study):
-    first, second, _ = study.votes
-    match = study.get(HoughDetail).match
+def test_the_accumulator_that_is_shown_is_what_the_spectrum_is_summed_from(lesson):
+    first, second, _ = lesson.votes
+    match = lesson.get(HoughDetail).match
     for votes, spectrum in ((first, match.ref), (second, match.mov)):
         energy = (votes**2).sum(axis=1)  # eq. (11)
         assert np.allclose(energy / energy.sum(), spectrum)
@@ -145,8 +145,8 @@ def test_the_same_line_is_not_found_twice_across_the_end_of_the_circle():
 
 
 @pytest.mark.parametrize("pixels", [20, 90, 800])
-def test_no_wall_is_lost_however_small_the_picture(pixels, study):
-    grid = study.inputs.ref
+def test_no_wall_is_lost_however_small_the_picture(pixels, lesson):
+    grid = lesson.inputs.ref
     low, high = grid.corners().min(axis=0), grid.corners().max(axis=0)
     view = RasterView(around((low + high) / 2, float((high - low).max()) / 2), pixels, pixels)
     mask = walls(grid, view)
@@ -162,20 +162,20 @@ def test_up_is_up_in_a_picture():
     assert np.argwhere(mask).tolist() == [[1, 2]]
 
 
-def test_the_swarm_of_the_lesson_is_small_and_tells_its_pulls(study):
-    assert len(study.few[0].poses) == FEW
-    assert all(state.pulls is not None for state in study.few[1:])
-    assert study.few[-1].stopped
+def test_the_swarm_of_the_lesson_is_small_and_tells_its_pulls(lesson):
+    assert len(lesson.few[0].poses) == FEW
+    assert all(state.pulls is not None for state in lesson.few[1:])
+    assert lesson.few[-1].stopped
 
 
-def test_the_map_shows_the_candidate_that_the_dial_stands_at(study):
-    told = study.all(ShiftDetail)
+def test_the_map_shows_the_candidate_that_the_dial_stands_at(lesson):
+    told = lesson.all(ShiftDetail)
     for k in range(len(told)):
-        story = PICTURES["shift"].run(study, (k,))
+        story = PICTURES["shift"].run(lesson, (k,))
         assert story.shifts[-1] is told[k]
 
 
-@pytest.mark.parametrize("of", ["study", "refused"])
+@pytest.mark.parametrize("of", ["lesson", "refused"])
 def test_what_speaks_against_a_merge_points_to_the_left_and_what_speaks_for_it_to_the_right(of, request):
     verdict = request.getfixturevalue(of).get(MergeResult).verdict
     drawn = [
@@ -192,8 +192,8 @@ def test_what_speaks_against_a_merge_points_to_the_left_and_what_speaks_for_it_t
         )
 
 
-def test_every_bar_of_the_verdict_says_its_value_and_all_add_up(study, refused):
-    for verdict in (study.get(MergeResult).verdict, refused.get(MergeResult).verdict):
+def test_every_bar_of_the_verdict_says_its_value_and_all_add_up(lesson, refused):
+    for verdict in (lesson.get(MergeResult).verdict, refused.get(MergeResult).verdict):
         texts = [text.text for text in ElementTree.fromstring(bars(verdict, LIGHT)).iter(f"{SVG}text")]
         assert set(values(verdict)) == set(verdict.contributions)
         assert set(values(verdict).values()) <= set(texts)
@@ -233,10 +233,10 @@ def test_the_readme_for_teachers_names_every_picture_and_every_number():
     assert {name for name in NUMBERS if f"`{{{name}}}`" not in told} == set()
 
 
-def test_of_each_search_one_snapshot_is_kept_and_nothing_else_is_left_out(study, small_case):
+def test_of_each_search_one_snapshot_is_kept_and_nothing_else_is_left_out(lesson, small_case):
     told = run("spectra-proven", small_case.ref, small_case.mov, small_case.observations, CONFIG)
     every = [step.detail for step in told]
-    kept = [step.detail for step in study.steps]
+    kept = [step.detail for step in lesson.steps]
     searches = [detail for detail in kept if isinstance(detail, RefineDetail)]
     assert [detail.index for detail in searches] == list(range(CONFIG.refine.candidates))[: len(searches)]
     assert all(detail.state.stopped for detail in searches)
