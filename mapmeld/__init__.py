@@ -1,6 +1,6 @@
 """Merge two robots' grid maps: the names for programs of your own.
 
-``read_case``, or ``read_map`` and ``read_observations``, give what ``merge`` takes; ``merge`` gives a
+``read_case``, or ``read_map`` and ``read_known``, give what ``merge`` takes; ``merge`` gives a
 MergeResult, and ``run`` the same step by step. Metres and radians throughout, counter-clockwise; row 0 of a
 grid is the bottom. What a user can mend is raised as a MapMergeError.
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:  # type checkers and editors see the names here; at run time e
     from algorithms.files.case_folder import read_case as read_case
     from algorithms.files.map_file import read_map as read_map
     from algorithms.files.map_file import write_map as write_map
+    from algorithms.files.observation_file import read_known as read_known
     from algorithms.files.observation_file import read_observations as read_observations
     from algorithms.files.observation_file import write_observations as write_observations
     from algorithms.maps.grid_map import GridMap as GridMap
@@ -39,6 +40,9 @@ if TYPE_CHECKING:  # type checkers and editors see the names here; at run time e
     from algorithms.methods.registry import run as run
     from algorithms.methods.steps import Step as Step
     from algorithms.observations.observation import Observation as Observation
+    from algorithms.observations.priors import InitialPose as InitialPose
+    from algorithms.observations.priors import NearPlace as NearPlace
+    from algorithms.observations.priors import TurnPrior as TurnPrior
     from algorithms.verdict.decision import Outcome as Outcome
     from algorithms.verdict.decision import Verdict as Verdict
 
@@ -55,7 +59,7 @@ _MODULES = {
     ),
     "algorithms.common.pose": ("Pose2",),
     "algorithms.files.case_folder": ("Case", "read_case"),
-    "algorithms.files.observation_file": ("read_observations", "write_observations"),
+    "algorithms.files.observation_file": ("read_known", "read_observations", "write_observations"),
     "algorithms.files.map_file": ("read_map", "write_map"),
     "algorithms.maps.grid_map": ("GridMap",),
     "algorithms.maps.map_fusion": ("Fusion",),
@@ -63,6 +67,7 @@ _MODULES = {
     "algorithms.methods.merge_result": ("MergeResult",),
     "algorithms.methods.steps": ("Step",),
     "algorithms.observations.observation": ("Observation",),
+    "algorithms.observations.priors": ("InitialPose", "NearPlace", "TurnPrior"),
     "algorithms.verdict.decision": ("Outcome", "Verdict"),
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}

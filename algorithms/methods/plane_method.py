@@ -14,12 +14,13 @@ import numpy as np
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.parallel_kernels import each_on_a_core
-from algorithms.common.pose import FloatArray, Pose2
+from algorithms.common.pose import Pose2
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.coarse_grid import trimmed
 from algorithms.maps.map_fusion import ConflictRule
 from algorithms.methods.merge_result import Answer
 from algorithms.methods.shared_stages import Found
+from algorithms.methods.spectra_answer import least_deviations
 from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import AnswersDetail, PlaneDetail, Step, WeighedDetail
 from algorithms.observations.pair_problem import PairProblem
@@ -27,11 +28,10 @@ from algorithms.observations.search_window import WindowConfig
 from algorithms.optimisation.covariance import covariance_of
 from algorithms.optimisation.likelihood_field import AgreementConfig
 from algorithms.optimisation.plane_correlation import PlaneConfig, PlaneCorrelation, places
-from algorithms.optimisation.subcell_peak import Peak, peak_at
-from algorithms.verdict.decision import VerdictConfig, is_bent
+from algorithms.optimisation.subcell_peak import peak_at
+from algorithms.verdict.decision import VerdictConfig
 from algorithms.verdict.probability_model import ModelKind, shipped_model
-from algorithms.verdict.ranking import WINDOW_EDGE, Weighed, likeliest, ranked
-from algorithms.verdict.slipping_patches import PATCH
+from algorithms.verdict.ranking import WINDOW_EDGE, likeliest, ranked
 from algorithms.verdict.whole_maps import WholeMaps, make_whole_maps
 
 TOGETHER = 8  # turns between two steps: enough for every core, and soon stopped
@@ -41,7 +41,6 @@ ONE_TOP = 0.15, radians(1.5)  # likewise hilltops
 ELSEWHERE = 0.7, radians(10)  # answers farther apart are two
 PLANE: ModelKind = "plane"
 TURN_REACH = 4.0  # metres at which a turn moves a wall by a cell
-LEAST_DEVIATION = 0.01  # metres; no pair of rasters is known to fit better
 WIDEST = np.array([1.0, 1.0, radians(10)])  # of x, y, theta where the walls say nothing; metres, radians
 
 
@@ -79,9 +78,10 @@ def search(
     )
     weighed: WeighedDetail = yield from runner.stage("weigh", (climbed,), lambda: [weigh(whole(), climbed)])
     named, *others = weighed.answers
-    covariance = covariance_at(named, weighed.peak, problem, config)
-    value = weighed.peak.value if weighed.peak is not None else None
-    return Found(named, others, covariance, climbed.answers, value, kind=PLANE)
+    peak = peak_at(whole().crisp, named.T_ref_mov, problem.pivot, TURN_REACH)
+    least = least_deviations(named, config.verdict)
+    covariance = covariance_of(peak, problem.pivot, config.evidence, WIDEST, least)
+    return Found(named, others, covariance, climbed.answers, peak.value, kind=PLANE)
 
 
 def correlate(problem: PairProblem, config: PlaneMethodConfig) -> Iterator[PlaneDetail]:
@@ -118,34 +118,16 @@ def climb(whole: WholeMaps, plane: PlaneDetail, config: PlaneMethodConfig) -> An
         )
     by_pose = {Pose2.from_array(tops[k]): float(values[k]) for k in kept}
     best = likeliest(whole, list(by_pose), shipped_model(PLANE), config.answers)
-    return AnswersDetail(tuple(Answer(T, by_pose[T], "climbed") for T in best))
+    return AnswersDetail(tuple(Answer(T, by_pose[T], "the best places were climbed") for T in best))
 
 
 def weigh(whole: WholeMaps, climbed: AnswersDetail) -> WeighedDetail:
     """The hilltops by the whole maps, patches slipped; the likeliest first."""
-    answers = ranked(
-        whole, [answer.T_ref_mov for answer in climbed.answers], shipped_model(PLANE), *ELSEWHERE
-    )
-    peak = peak_at(whole.crisp, answers[0].T_ref_mov, whole.window.pivot, TURN_REACH)
-    return WeighedDetail(answers, peak)
+    tops = [answer.T_ref_mov for answer in climbed.answers]
+    return WeighedDetail(ranked(whole, tops, shipped_model(PLANE), *ELSEWHERE))
 
 
 def whole_maps_of(problem: PairProblem, searched: float, config: PlaneMethodConfig) -> WholeMaps:
     """Both maps as a whole; ``searched`` as in PlaneDetail."""
     window, robots = problem.window(config.window, curved=True), problem.robots(config.verdict.robot_size)
-    evidence = config.evidence
-    return make_whole_maps(problem.ref, problem.mov, robots, window, evidence, searched)
-
-
-def covariance_at(
-    named: Weighed, peak: Peak | None, problem: PairProblem, config: PlaneMethodConfig
-) -> FloatArray:
-    """(3, 3) of x, y, theta; m and rad: from the curvature of the whole maps' agreement.
-
-    Bent maps have no one transform: it differs from patch to patch by as much as patches slip.
-    """
-    assert peak is not None
-    bend = named.evidence.slip if is_bent(named.evidence, config.verdict) else 0.0
-    least = np.hypot(LEAST_DEVIATION, bend) * np.array([1.0, 1.0, 1 / PATCH])
-    pivot = problem.pivot
-    return covariance_of(peak, pivot, config.evidence, WIDEST, least)
+    return make_whole_maps(problem.ref, problem.mov, robots, window, config.evidence, searched)

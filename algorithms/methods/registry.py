@@ -90,7 +90,7 @@ METHODS: dict[str, Method] = {
     ),
     PLANE_METHOD: Method(
         plane_method.search,
-        "Whole plane, any knowledge or none",
+        "Whole plane, any knowledge",
         plane_method.PlaneMethodConfig(verdict=VerdictConfig(accept_from=shipped_model("plane").accept_from)),
         needs_sighting=False,
     ),
@@ -157,6 +157,14 @@ def default_method(problem: PairProblem) -> str:
     return DEFAULT_METHOD if sharp else PLANE_METHOD
 
 
+def method_of(config: Any) -> str:
+    """The first method of the table with settings of this kind; raises SettingError where there is none."""
+    for name, method in METHODS.items():
+        if type(method.defaults) is type(config):
+            return name
+    raise SettingError(f"no method has settings of the kind {type(config).__name__}; give those of METHODS")
+
+
 def run(
     name: str | None,
     ref: GridMap,
@@ -168,7 +176,7 @@ def run(
 ) -> Iterator[Step]:
     """Yield the steps of one method of the table; the last one's detail is the MergeResult.
 
-    name     : a key of METHODS; None: ``default_method``
+    name     : a key of METHODS; None: ``default_method``, or with a config ``method_of`` that
     ref, mov : the observer's map, and that of the robot it saw; without a sighting, any two
     known    : sightings between the makers of these two maps, initial poses, rough turns, near places: one,
                several or none
@@ -183,7 +191,8 @@ def run(
     if name is not None and name not in METHODS:
         raise SettingError(f"there is no method {name!r}; known are {', '.join(METHODS)}")
     problem = PairProblem.of(ref, mov, known)
-    name = default_method(problem) if name is None else name
+    if name is None:
+        name = default_method(problem) if config is None else method_of(config)
     method = METHODS[name]
     if method.needs_sighting and not problem.observations:
         raise SettingError(

@@ -19,7 +19,7 @@ from algorithms.optimisation.covariance import covariance_of, peak_covariance
 from algorithms.optimisation.objective import Objective
 from algorithms.optimisation.search_box import box_around
 from algorithms.optimisation.subcell_peak import Peak, peak_at
-from algorithms.verdict.decision import is_bent
+from algorithms.verdict.decision import VerdictConfig, is_bent
 from algorithms.verdict.probability_model import shipped_model
 from algorithms.verdict.ranking import Weighed, better_beside, elsewhere, ranked, weigh
 from algorithms.verdict.slipping_patches import PATCH
@@ -121,8 +121,6 @@ def covariance_at(
     """(3, 3) of x, y, theta; m and rad. Calibrated for the agreement where its peak is known; of Γ, which
     is no likelihood, the width of its peak.
 
-    Bent maps have no one transform: it differs from patch to patch by as much as patches slip.
-
     window : of the search, which cuts the optimiser's box around the answer
     """
     T = named.T_ref_mov
@@ -130,6 +128,14 @@ def covariance_at(
         return peak_covariance(objective, T, box_around(T, window, config.box), config.augment.spread)
     coupled = problem.window(config.window)
     widest = np.append(np.sqrt(np.diag(coupled.covariances[0])), radians(config.proof.angle))
-    bend = named.evidence.slip if is_bent(named.evidence, config.verdict) else 0.0
-    least = np.hypot(LEAST_DEVIATION, bend) * np.array([1.0, 1.0, 1 / PATCH])
+    least = least_deviations(named, config.verdict)
     return covariance_of(peak, coupled.pivot, config.agreement.evidence, widest, least)
+
+
+def least_deviations(named: Weighed, rules: VerdictConfig) -> FloatArray:
+    """(3,) standard deviations of x, y, theta that no answer is without; metres, metres, radians.
+
+    Bent maps have no one transform: it differs from patch to patch by as much as patches slip.
+    """
+    bend = named.evidence.slip if is_bent(named.evidence, rules) else 0.0
+    return np.asarray(np.hypot(LEAST_DEVIATION, bend) * np.array([1.0, 1.0, 1 / PATCH]), dtype=np.float64)

@@ -139,7 +139,7 @@ def merge_or_reason(
 ) -> MergeResult | NoAnswerError | str:
     """The result of a method, its refusal, or why it could not be run: a bug in one must not cost others."""
     try:
-        *_, last = methods.run(method, case.ref, case.mov, case.observations, config, seed, memo)
+        *_, last = methods.run(method, case.ref, case.mov, case.known, config, seed, memo)
     except NoAnswerError as refusal:
         return refusal
     except Exception as error:

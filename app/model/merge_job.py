@@ -10,7 +10,7 @@ from algorithms.maps.grid_map import GridMap
 from algorithms.methods import registry as methods
 from algorithms.methods.stage_runner import StageCache
 from algorithms.methods.steps import Step
-from algorithms.observations.observation import Observation
+from algorithms.observations.pair_problem import Known
 
 Goal = Literal["merge", "candidates", "cause"]
 
@@ -28,7 +28,7 @@ class MergeJob:
 
     ref: GridMap
     mov: GridMap
-    observations: tuple[Observation, ...]
+    known: tuple[Known, ...]
     config: Any
     method: str = methods.DEFAULT_METHOD
     seed: int = 0
@@ -41,5 +41,5 @@ class MergeJob:
         """Do it, up to its last step; ``memo`` knows the stages of the method's runs before."""
         if self.steps is not None:
             return self.steps()
-        how = (self.method, self.ref, self.mov, self.observations, self.config, self.seed)
+        how = (self.method, self.ref, self.mov, self.known, self.config, self.seed)
         return methods.run(*how, memo)

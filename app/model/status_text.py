@@ -81,6 +81,11 @@ def _turning(detail: steps.TurnsDetail, _: RunState) -> str:
     return f"Turning: {tried} of {len(detail.turns)} turns tried."
 
 
+def _correlating(detail: steps.PlaneDetail, run: RunState) -> str:
+    best = run.measure.text(float(detail.values[0])) if len(detail.values) else "none yet"
+    return f"Turning: {detail.done} of {detail.total} turns, at every shift. Best so far {best}."
+
+
 def _weighing(detail: steps.WeighedDetail, _: RunState) -> str:
     best, places = detail.answers[0], len(detail.answers)
     named = (
@@ -168,6 +173,7 @@ _SAYS: dict[type, Callable[[Any, RunState], str]] = {
     steps.RefineDetail: _searching,
     steps.MatchesDetail: _matching,
     steps.TurnsDetail: _turning,
+    steps.PlaneDetail: _correlating,
     steps.AnswersDetail: lambda detail, _: f"The search is done: {detail.answers[0].stopped}.",
     steps.ProofDetail: _proving,
     steps.ProvenDetail: lambda _, run: found_it(run),
@@ -190,6 +196,8 @@ def progress(run: RunState) -> float:
         share += 0.4 * detail.index / max(1, detail.total)
     if isinstance(detail, steps.TurnsDetail):
         share += 0.7 * float(np.isfinite(detail.scores).mean())
+    if isinstance(detail, steps.PlaneDetail):
+        share += 0.7 * detail.done / detail.total
     if isinstance(detail, steps.ProofDetail):
         share += 0.15 * detail.state.nodes / (detail.state.nodes + _MANY_BLOCKS)
     return share

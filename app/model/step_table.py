@@ -35,6 +35,7 @@ STEPS: dict[type, StepRow] = {
     steps.RefineDetail: StepRow(0.4, page=SWARM),
     steps.MatchesDetail: StepRow(0.4, 1.4, RESULT),
     steps.TurnsDetail: StepRow(0.1, 0.15, TURN),
+    steps.PlaneDetail: StepRow(0.1, 0.15),
     steps.AnswersDetail: StepRow(0.8, 0.4, SWARM),
     steps.ProofDetail: StepRow(0.8, page=PROOF),
     steps.ProvenDetail: StepRow(0.95, 0.9, PROOF),

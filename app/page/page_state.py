@@ -107,7 +107,7 @@ class PageState:
         i = self.inputs
         if i.ref is None or i.mov is None or not i.observations:
             return None
-        return MergeJob(i.ref, i.mov, i.observations, self.config, self.method, self.seed, **how)
+        return MergeJob(i.ref, i.mov, i.known, self.config, self.method, self.seed, **how)
 
     def config_for(self, method: str) -> Any:
         """The settings that a method would run with: of the chosen one as set, of others the defaults."""

@@ -178,7 +178,7 @@ class RunController:
                 self._history.amend(run)
             self._display.show_buttons()
         if result is not None and job.steps is None and not result.verdict.accepted:
-            cause = partial(methods.find_cause, job.ref, job.mov, job.observations)
+            cause = partial(methods.find_cause, job.ref, job.mov, job.known)
             self.thread.request(replace(job, goal="cause", steps=cause, pace=0.0))
 
     def stopped(self, job: MergeJob, run: RunState) -> None:

@@ -65,7 +65,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     check_file(args.out)
     assert inputs.ref is not None
     assert inputs.mov is not None
-    steps = methods.run(args.method, inputs.ref, inputs.mov, inputs.observations, config, args.seed)
+    steps = methods.run(args.method, inputs.ref, inputs.mov, inputs.known, config, args.seed)
     recording = record(with_bar(steps), inputs, config)
     page = replay_html(recording, ReplayMetadata(inputs, args.method, config, args.seed))
     write_file(args.out, page)

@@ -15,6 +15,7 @@ from algorithms.methods.steps import (
     CandidatesDetail,
     HoughDetail,
     MatchesDetail,
+    PlaneDetail,
     ProofDetail,
     ProvenDetail,
     RefineDetail,
@@ -68,6 +69,8 @@ class RunView:
             look = self._matches(detail)
         elif isinstance(detail, TurnsDetail):
             look = self._turned_best(detail, glide)
+        elif isinstance(detail, PlaneDetail):
+            look = self._best_places(detail, glide)
         elif isinstance(detail, (AnswersDetail, ProvenDetail, Fusion, MergeResult)):
             look = self._answer(run, glide)
         if camera and look is not None:
@@ -127,6 +130,20 @@ class RunView:
             tried = np.where(np.isfinite(detail.scores), detail.scores, -np.inf)
             turn = float(detail.turns[tried.argmax()])
         return self._beside(turn, glide * SLIDE_MS)
+
+    def _best_places(self, detail: PlaneDetail, glide: float) -> Rect:
+        """Map 2 at the best place so far, and where its anchor goes at all of them."""
+        colours, layout = self._maps.palette, self._maps.layout
+        self._maps.ground.show("sources")
+        self._maps.clear(*OF_A_RUN)
+        places = [layout.placed(Pose2.from_array(pose)) for pose in detail.poses]
+        marks = [mark("diamond", place.xy, colours.particle, r=4) for place in places]
+        if places:
+            marks[0] = mark("diamond", places[0].xy, colours.best, r=6)
+            self._maps.place(places[0], glide * SLIDE_MS)
+        self._messages.layer("box", marks[::-1])  # the best on top
+        self._maps.draw_robots(together=bool(places))
+        return layout.swept()
 
     def _beside(self, turn: float, milliseconds: float, which: Which = "sources") -> Rect:
         turned = Pose2(self._maps.layout.apart.x, self._maps.layout.apart.y, turn)

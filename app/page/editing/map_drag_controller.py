@@ -86,7 +86,7 @@ class MapDragController:
         search = self._known_search
         known = known_answers(search.get(MergeResult)) if search is not None else ()
         try:
-            return ManualMerge(PairProblem(i.ref, i.mov, i.observations), state.config, known)
+            return ManualMerge(PairProblem(i.ref, i.mov, i.observations, i.priors), state.config, known)
         except MapMergeError as error:
             self._notices.report(error)
             return None

@@ -48,6 +48,8 @@ FRONT: tuple[Path, ...] = (
 def idle(config: Any, path: Path) -> bool:
     """Whether a setting does nothing beside the others as they stand."""
     refine, proof = getattr(config, "refine", None), getattr(config, "proof", None)
+    if path == ("window", "kind"):  # the plane's window is a coupled one
+        return refine is None
     if path[0] == "agreement":
         return refine is not None and refine.objective != "agreement"
     if path[0] == "proof" and path[-1] != "whole_circle":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi
+from math import pi, radians
 
 import pytest
 
@@ -11,7 +11,7 @@ from algorithms.common.errors import SettingError
 from algorithms.common.parallel_kernels import use_threads
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.methods.merge_result import MergeResult
-from algorithms.methods.registry import PLANE_METHOD, default_method, merge, run
+from algorithms.methods.registry import METHODS, PLANE_METHOD, default_method, merge, run
 from algorithms.methods.steps import PlaneDetail
 from algorithms.observations.pair_problem import PairProblem
 from algorithms.observations.priors import InitialPose, NearPlace, TurnPrior
@@ -23,14 +23,16 @@ def alone(small_case) -> MergeResult:
     return merge(small_case.ref, small_case.mov)
 
 
-def error(result: MergeResult, T: Pose2) -> tuple[float, float]:
-    return pose_error(result.T_ref_mov, T, result.pivot)
+def is_at(result: MergeResult, T: Pose2) -> bool:
+    """Whether an answer is a transform, within 0.1 m and a degree."""
+    distance, angle = pose_error(result.T_ref_mov, T, result.pivot)
+    return distance < 0.1 and angle < radians(1)
 
 
 def test_without_a_sighting_the_true_place_is_found(small_case, alone):
     assert alone.method == PLANE_METHOD
     assert alone.encounters == ()
-    assert error(alone, small_case.truth.T_ref_mov) < (0.1, 0.02)
+    assert is_at(alone, small_case.truth.T_ref_mov)
 
 
 @pytest.mark.parametrize("kind", ["initial", "turn", "near", "ring"])
@@ -44,13 +46,13 @@ def test_whatever_is_known_the_same_place_is_found(small_case, alone, kind):
         "ring": replace(o, range=o.range + 0.5, bearing=0.0, sigma_range=1.0, sigma_bearing=pi),
     }[kind]
     found = merge(small_case.ref, small_case.mov, known, PLANE_METHOD)
-    assert error(found, alone.T_ref_mov) < (0.1, 0.02)
+    assert is_at(found, alone.T_ref_mov)
     assert len(found.weighed[0].deviations) == 1
 
 
 def test_swapping_the_maps_inverts_the_answer(small_case, alone):
     back = merge(small_case.mov, small_case.ref)
-    assert error(alone, back.T_ref_mov.inverse()) < (0.1, 0.02)
+    assert is_at(alone, back.T_ref_mov.inverse())
 
 
 def test_one_thread_and_several_give_the_same_answer(small_case, alone):
@@ -80,6 +82,16 @@ def test_the_method_suits_what_is_known(small_case):
     for known, plane in (((), True), ((o,), False), ((vague,), True)):
         problem = PairProblem.of(small_case.ref, small_case.mov, known)
         assert (default_method(problem) == PLANE_METHOD) is plane
+
+
+def test_settings_without_a_name_are_run_with_the_method_they_belong_to(small_case):
+    o = replace(small_case.observations[0], sigma_range=1.0, sigma_bearing=pi)
+    settings = METHODS[PLANE_METHOD].defaults
+    assert (
+        merge(small_case.ref, small_case.mov, small_case.observations, config=settings).method == PLANE_METHOD
+    )
+    with pytest.raises(SettingError, match="settings of the kind int"):
+        merge(small_case.ref, small_case.mov, o, config=3)
 
 
 def test_a_method_that_needs_a_sighting_says_so(small_case):

@@ -166,7 +166,7 @@ def test_a_run_aside_leaves_the_next_one_what_it_knew(bench, job):
 
 def test_a_refinement_by_hand_runs_there_too(bench, job):
     at = end(told(bench, job)).T_ref_mov
-    scales = ManualMerge(PairProblem(job.ref, job.mov, job.observations), METHODS[job.method].defaults)
+    scales = ManualMerge(PairProblem(job.ref, job.mov, job.known), METHODS[job.method].defaults)
     steps = told(bench, replace(job, steps=partial(refine, scales, at, 0)))
     assert end(steps).T_ref_mov == end(list(refine(scales, at, 0))).T_ref_mov
 

@@ -83,6 +83,10 @@ def test_no_method_shows_a_setting_that_does_nothing_in_it(name):
     usual = ["whole_circle"] if isinstance(config, PipelineConfig) else []
     whole = {"spectra-proven": ["whole_circle", "angle", "distance", "patience"]}
     assert proofs == whole.get(name, usual)
+    windows = [s.path for s in settings_of(config) if s.path == ("window", "kind")]
+    assert [path for path in windows if not idle(config, path)] == windows * isinstance(
+        config, PipelineConfig
+    )
     assert ("swarm" in shown) == ("box" in shown) == (bool(usual) and name != "smm-window")
 
 

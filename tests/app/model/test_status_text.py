@@ -11,7 +11,7 @@ from proofs import NO_ROBOTS, proof_state
 
 from algorithms.common.pose import Pose2
 from algorithms.methods.merge_result import MergeResult
-from algorithms.methods.registry import METHODS, run
+from algorithms.methods.registry import METHODS, PLANE_METHOD, run
 from algorithms.methods.steps import ProofDetail, ProvenDetail, Step
 from app.model import status_text as words
 from app.model.objective_label import AGREEMENT, GAMMA, measure_of
@@ -134,3 +134,16 @@ def test_each_objective_has_its_name():
 def test_the_swarm_that_is_shown_in_the_end_is_the_one_that_got_highest(told):
     assert told.swarm.state.best_value == max(course[-1] for course in told.courses)
     assert told.answer == told.get(MergeResult).T_ref_mov
+
+
+def test_a_search_of_the_plane_says_how_many_turns_are_done_and_gets_ahead(small_case):
+    story, said, share = RunState(METHODS[PLANE_METHOD].defaults), [], [0.0]
+    for step in run(PLANE_METHOD, small_case.ref, small_case.mov):
+        story.add(step)
+        share.append(words.progress(story))
+        if step.stage == "correlate":
+            said.append(words.sentence(story))
+    assert share == sorted(share)
+    assert share[-1] == 1
+    assert said[0].startswith("Turning: 8 of 120 turns")
+    assert "m." in said[-1]

@@ -28,7 +28,7 @@ def test_there_is_no_job_while_an_input_is_missing(inputs, lacking):
     held = MergeInputs.pair(inputs.ref, inputs.mov) if lacking == "observation" else MergeInputs()
     assert PageState(held).job() is None
     job = PageState(inputs, seed=5).job(pace=2.0)
-    assert (job.ref, job.mov, job.observations) == (inputs.ref, inputs.mov, inputs.observations)
+    assert (job.ref, job.mov, job.known) == (inputs.ref, inputs.mov, inputs.observations)
     assert (job.seed, job.pace) == (5, 2.0)
 
 
