@@ -182,6 +182,16 @@ EXERCISED_BY = {
         "app.model.merge_inputs",
         "app.report.result_rows",
     },
+    "app/report/test_suggestion_files.py": {
+        "app.page.panels.suggestions_html",
+        "app.report.suggestion_text",
+    },
+    "browser/test_hand.py": {
+        "app.page.editing.knowledge_panel",
+    },
+    "browser/test_outcomes.py": {
+        "app.page.editing.suggestion_controller",
+    },
     "app/page/panels/test_threads.py": {
         "app.page.panels.files_panel",
         "app.page.panels.settings_panel",

@@ -22,7 +22,15 @@ from algorithms.observations.observation import (
     Observation,
 )
 from algorithms.observations.pair_problem import Known
-from algorithms.observations.priors import NEAR_RADIUS, InitialPose, NearPlace, Prior, TurnPrior
+from algorithms.observations.priors import (
+    NEAR_RADIUS,
+    SIGMA_XY,
+    SIGMA_YAW,
+    InitialPose,
+    NearPlace,
+    Prior,
+    TurnPrior,
+)
 
 OBSERVATION_FILE = "observation.yaml"
 ROUGH_OBSERVATION_FILE = "observation_rough.yaml"
@@ -81,11 +89,14 @@ def _known(f: Fields) -> Iterator[Known]:
 
 
 def _initial(f: Fields) -> InitialPose:
-    f.refuse_unknown("pose", "sigma")
-    pose = f.pose("pose", (3,), "give [x, y, yaw] of map 2's frame in map 1's; m, m, rad")
-    if "sigma" not in f.values:
-        return InitialPose(Pose2(*pose))
-    return InitialPose(Pose2(*pose), *f.pose("sigma", (3,), "give [m, m, rad], or leave it out"))
+    f.refuse_unknown("pose", "sigma", "about")
+    pose = Pose2(*f.pose("pose", (3,), "give [x, y, yaw] of map 2's frame in map 1's; m, m, rad"))
+    sigma, about = [SIGMA_XY, SIGMA_XY, SIGMA_YAW], [0.0, 0.0]
+    if "sigma" in f.values:
+        sigma = f.pose("sigma", (3,), "give [m, m, rad], or leave it out")
+    if "about" in f.values:
+        about = f.pose("about", (2,), "give [x, y] of a point of map 2; m; or leave it out")
+    return InitialPose(pose, *sigma, *about)
 
 
 def _turn(f: Fields) -> TurnPrior:
@@ -170,7 +181,8 @@ def known_to_bytes(known: Sequence[Known]) -> bytes:
 def _prior(prior: Prior) -> str:
     if isinstance(prior, InitialPose):
         pose, sigma = _list(prior.pose.array().tolist()), _list(prior.sigmas.tolist())
-        return f"initial: {{pose: {pose}, sigma: {sigma}}}  # map 2's frame in map 1's: m, m, rad"
+        about = f", about: {_list(prior.about.tolist())}" if prior.about.any() else ""
+        return f"initial: {{pose: {pose}, sigma: {sigma}{about}}}  # map 2's frame in map 1's: m, m, rad"
     if isinstance(prior, TurnPrior):
         yaw, sigma = number_text(prior.yaw), number_text(prior.sigma)
         return f"turn: {{yaw: {yaw}, sigma: {sigma}}}  # of map 2's frame in map 1's: rad"

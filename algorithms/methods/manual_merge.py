@@ -13,8 +13,10 @@ import numpy as np
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.map_fusion import Fusion
-from algorithms.methods.baselines.base import whole_maps
-from algorithms.methods.merge_result import Answer, MergeResult
+from algorithms.methods import plane_method
+from algorithms.methods.baselines.base import model_kind, whole_maps
+from algorithms.methods.merge_result import BY_HAND, Answer, MergeResult
+from algorithms.methods.plane_method import PlaneMethodConfig
 from algorithms.methods.shared_stages import Found, finish_merge, fuse_pair
 from algorithms.methods.spectra_answer import covariance_at, whole_maps_of
 from algorithms.methods.spectra_config import PipelineConfig
@@ -25,13 +27,13 @@ from algorithms.observations.pair_problem import PairProblem
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.objective import Lookup, Objective
 from algorithms.optimisation.particle_swarm import settled_within
+from algorithms.optimisation.plane_correlation import searched_area
 from algorithms.optimisation.search_box import SearchBox, pose_about
 from algorithms.optimisation.subcell_peak import climb_to_peak, peak_at
-from algorithms.verdict.probability_model import shipped_model
+from algorithms.verdict.probability_model import ModelKind, shipped_model
 from algorithms.verdict.ranking import Weighed, better_beside, elsewhere, weigh
 from algorithms.verdict.whole_maps import WholeMaps
 
-BY_HAND = "by hand"
 ELSEWHERE = 0.5, radians(3)  # metres, radians: from here on another answer is another one
 UNSURE = np.diag([1.0, 1.0, radians(5)]) ** 2  # (3, 3) of a method without an objective; m², rad²
 
@@ -55,6 +57,8 @@ class ManualMerge:
     @cached_property
     def objective(self) -> Objective | None:
         """What the method maximises; None for one that maximises nothing."""
+        if isinstance(self.config, PlaneMethodConfig):
+            return self.whole.crisp
         if not isinstance(self.config, PipelineConfig):
             return None
         return objective_of(self.problem, augment_both(self.problem, self.config.augment), self.config)
@@ -63,13 +67,13 @@ class ManualMerge:
         """What the method's objective says of a transform."""
         return None if self.objective is None else self.objective.value_at(T_ref_mov)
 
-    def weigh(self, T_ref_mov: Pose2, answers: tuple[Answer, ...] = (), seed: int = 0) -> MergeResult:
-        """The result that a transform makes; its method is "by hand".
+    def weigh(self, T_ref_mov: Pose2, seed: int = 0, method: str = BY_HAND) -> MergeResult:
+        """The result that a transform makes, by what a person did: BY_HAND or CHOSEN.
 
         raises : TooLargeError where the merged map would be over the bound
         """
         fusion = fuse_pair(self.problem, T_ref_mov, self.config)
-        return self.finish(T_ref_mov, fusion, answers, seed, {})
+        return self.finish(T_ref_mov, fusion, (), seed, {}, method)
 
     def finish(
         self,
@@ -78,23 +82,36 @@ class ManualMerge:
         answers: tuple[Answer, ...],
         seed: int,
         timings_s: Mapping[str, float],
+        method: str = BY_HAND,
     ) -> MergeResult:
         """The same of a transform under which the maps are merged already."""
-        value, model = self.value(T), shipped_model()
+        value, model = self.value(T), shipped_model(self.kind)
         named = weigh(self.whole, T, model)
         rivals = elsewhere(self.whole, named, self.others, *ELSEWHERE)
         answers = answers or (Answer(T, -inf if value is None else value, BY_HAND),)
         others = (*better_beside(self.whole, named, model), *rivals)
-        found = Found(named, others, self._covariance(named), answers, value)
-        return finish_merge(self.problem, found, fusion, self.config, BY_HAND, seed, timings_s)
+        found = Found(named, others, self._covariance(named), answers, value, kind=self.kind)
+        return finish_merge(self.problem, found, fusion, self.config, method, seed, timings_s)
 
     @cached_property
     def whole(self) -> WholeMaps:
-        if isinstance(self.config, PipelineConfig):
-            return whole_maps_of(self.problem, self.config)
-        return whole_maps(self.problem, self.config.verdict.robot_size)
+        problem, config = self.problem, self.config
+        if isinstance(config, PipelineConfig):
+            return whole_maps_of(problem, config)
+        if isinstance(config, PlaneMethodConfig):
+            window = problem.window(config.window, curved=True)
+            searched = searched_area(problem.ref, problem.mov, config.plane, window)
+            return plane_method.whole_maps_of(problem, searched, config)
+        return whole_maps(problem, config.verdict.robot_size)
+
+    @property
+    def kind(self) -> ModelKind:
+        """Of the model that weighs: a transform may come from anywhere where nothing is known near it."""
+        return "plane" if isinstance(self.config, PlaneMethodConfig) else model_kind(self.problem)
 
     def _covariance(self, named: Weighed) -> FloatArray:
+        if isinstance(self.config, PlaneMethodConfig):
+            return plane_method.covariance_at(self.whole, named, self.problem.pivot, self.config)
         if self.objective is None:
             return np.asarray(UNSURE, dtype=np.float64)
         config, smooth = self.config, replace(self.objective, lookup=Lookup.BILINEAR)
@@ -116,12 +133,13 @@ class ManualMerge:
 
 
 def known_answers(result: MergeResult | None) -> tuple[Weighed, ...]:
-    """What a method has found, as the whole maps weigh it; () without a result, or for one made by hand."""
-    return () if result is None or result.method == BY_HAND else result.weighed
+    """What a method has found, as the whole maps weigh it; () without a result, or for a person's."""
+    return () if result is None or result.by_person else result.weighed
 
 
 def refine(manual: ManualMerge, T_ref_mov: Pose2, seed: int = 0) -> Iterator[Step]:
-    """Yield the steps of the method's own optimiser in a box around a transform, then climb to the peak.
+    """Yield the steps of the method's own optimiser in a box around a transform, then climb to the peak;
+    of the search over the plane of the climb alone.
 
     The last step's detail is the MergeResult; its answer is worth no less than ``T_ref_mov``.
 
@@ -131,8 +149,11 @@ def refine(manual: ManualMerge, T_ref_mov: Pose2, seed: int = 0) -> Iterator[Ste
     if objective is None:
         raise SettingError("this method maximises nothing; choose one that does, then refine")
     yield from runner.stage("observe", (), lambda: [ObservationDetail(manual.problem.encounters)])
+    climbs = isinstance(manual.config, PlaneMethodConfig)
     found: AnswersDetail = yield from runner.stage(
-        "refine", (), lambda: _search(manual, objective, T_ref_mov, seed)
+        "climb" if climbs else "refine",
+        (),
+        lambda: _climb(manual, T_ref_mov) if climbs else _search(manual, objective, T_ref_mov, seed),
     )
     best = found.answers[0].T_ref_mov
     fusion: Fusion = yield from runner.stage(
@@ -141,6 +162,14 @@ def refine(manual: ManualMerge, T_ref_mov: Pose2, seed: int = 0) -> Iterator[Ste
     yield from runner.stage(
         "verdict", (), lambda: [manual.finish(best, fusion, found.answers, seed, runner.timings_s)]
     )
+
+
+def _climb(manual: ManualMerge, T: Pose2) -> Iterator[Detail]:
+    """To the top of the hill that a transform lies on, as the whole maps see it."""
+    value = manual.whole.crisp.value_at
+    begun, top = Answer(T, value(T), BY_HAND), manual.whole.climb(T)
+    climbed = Answer(top, value(top), "climbed to the top")
+    yield AnswersDetail(tuple(sorted((climbed, begun), key=lambda answer: -answer.value)))
 
 
 def _search(manual: ManualMerge, objective: Objective, T: Pose2, seed: int) -> Iterator[Detail]:

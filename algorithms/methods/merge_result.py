@@ -13,6 +13,10 @@ from algorithms.verdict.decision import Verdict
 from algorithms.verdict.probability_model import ModelKind
 from algorithms.verdict.ranking import Weighed
 
+BY_HAND = "by hand"
+CHOSEN = "chosen by you"
+"""Methods of a result that a person has made: laid by hand, or taken from what was suggested."""
+
 
 @dataclass(frozen=True, eq=False)
 class Answer:
@@ -64,6 +68,11 @@ class MergeResult:
     def encounter(self) -> Encounter:
         """The first sighting's place."""
         return self.encounters[0]
+
+    @property
+    def by_person(self) -> bool:
+        """Whether no method names this transform, but a person."""
+        return self.method in (BY_HAND, CHOSEN)
 
     def with_hint(self, hint: str) -> MergeResult:
         return replace(self, verdict=replace(self.verdict, hint=hint))

@@ -14,7 +14,7 @@ import numpy as np
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.parallel_kernels import each_on_a_core
-from algorithms.common.pose import Pose2
+from algorithms.common.pose import FloatArray, Pose2
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.coarse_grid import trimmed
 from algorithms.maps.map_fusion import ConflictRule
@@ -31,7 +31,7 @@ from algorithms.optimisation.plane_correlation import PlaneConfig, PlaneCorrelat
 from algorithms.optimisation.subcell_peak import peak_at
 from algorithms.verdict.decision import VerdictConfig
 from algorithms.verdict.probability_model import ModelKind, shipped_model
-from algorithms.verdict.ranking import WINDOW_EDGE, likeliest, ranked
+from algorithms.verdict.ranking import WINDOW_EDGE, Weighed, likeliest, ranked
 from algorithms.verdict.whole_maps import WholeMaps, make_whole_maps
 
 TOGETHER = 8  # turns between two steps: enough for every core, and soon stopped
@@ -78,10 +78,9 @@ def search(
     )
     weighed: WeighedDetail = yield from runner.stage("weigh", (climbed,), lambda: [weigh(whole(), climbed)])
     named, *others = weighed.answers
-    peak = peak_at(whole().crisp, named.T_ref_mov, problem.pivot, TURN_REACH)
-    least = least_deviations(named, config.verdict)
-    covariance = covariance_of(peak, problem.pivot, config.evidence, WIDEST, least)
-    return Found(named, others, covariance, climbed.answers, peak.value, kind=PLANE)
+    value = whole().crisp.value_at(named.T_ref_mov)
+    covariance = covariance_at(whole(), named, problem.pivot, config)
+    return Found(named, others, covariance, climbed.answers, value, kind=PLANE)
 
 
 def correlate(problem: PairProblem, config: PlaneMethodConfig) -> Iterator[PlaneDetail]:
@@ -125,6 +124,18 @@ def weigh(whole: WholeMaps, climbed: AnswersDetail) -> WeighedDetail:
     """The hilltops by the whole maps, patches slipped; the likeliest first."""
     tops = [answer.T_ref_mov for answer in climbed.answers]
     return WeighedDetail(ranked(whole, tops, shipped_model(PLANE), *ELSEWHERE))
+
+
+def covariance_at(
+    whole: WholeMaps, named: Weighed, pivot: FloatArray, config: PlaneMethodConfig
+) -> FloatArray:
+    """(3, 3) of x, y, theta of an answer, by how sharp its hilltop is; metres and radians.
+
+    pivot : (2,) about which map 2 is turned; metres, mov frame
+    """
+    peak = peak_at(whole.crisp, named.T_ref_mov, pivot, TURN_REACH)
+    least = least_deviations(named, config.verdict)
+    return covariance_of(peak, pivot, config.evidence, WIDEST, least)
 
 
 def whole_maps_of(problem: PairProblem, searched: float, config: PlaneMethodConfig) -> WholeMaps:

@@ -77,7 +77,7 @@ class PairProblem:
             T = prior.pose
             for number, at in enumerate(self.encounters, 1):
                 off = T.apply(at.x_mov) - at.x_ref
-                lever = rotation(T.theta + pi / 2) @ at.x_mov
+                lever = rotation(T.theta + pi / 2) @ (at.x_mov - prior.about)
                 spread = at.covariance + np.diag(prior.sigmas[:2] ** 2)
                 spread += np.outer(lever, lever) * prior.sigma_yaw**2
                 apart = sqrt(float(off @ np.linalg.solve(spread, off)))

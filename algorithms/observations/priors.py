@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import degrees, hypot, isfinite, pi, radians
+from math import cos, degrees, hypot, isfinite, pi, radians, sin
 
 import numpy as np
 
@@ -24,15 +24,19 @@ class InitialPose:
 
     pose : metres, metres, radians
     sigma_x, sigma_y, sigma_yaw : one standard deviation; metres, metres, radians
+    about_x, about_y : of which point of map 2 sigma_x and sigma_y are told: its frame's origin, or another
+           one where that lies far off the map and would sweep it about; metres, mov frame
     """
 
     pose: Pose2
     sigma_x: float = SIGMA_XY
     sigma_y: float = SIGMA_XY
     sigma_yaw: float = SIGMA_YAW
+    about_x: float = 0.0
+    about_y: float = 0.0
 
     def __post_init__(self) -> None:
-        _check("initial", {"pose": self.pose.array().tolist()})
+        _check("initial", {"pose": self.pose.array().tolist(), "about": self.about.tolist()})
         _check_angle("initial: the yaw of pose", self.pose.theta)
         for name, value, limits, unit in (
             ("sigma_x", self.sigma_x, SIGMAS_XY, "m"),
@@ -46,9 +50,17 @@ class InitialPose:
         """(3,) standard deviations of x, y, yaw; metres, metres, radians."""
         return np.array([self.sigma_x, self.sigma_y, self.sigma_yaw])
 
+    @property
+    def about(self) -> FloatArray:
+        """(2,) metres, mov frame."""
+        return np.array([self.about_x, self.about_y])
+
     def deviations(self, poses: FloatArray) -> FloatArray:
         """(P,) standard deviations of (P, 3) x, y, theta of T_ref_mov from it."""
         off = poses - self.pose.array()
+        c, s = np.cos(poses[:, 2]) - cos(self.pose.theta), np.sin(poses[:, 2]) - sin(self.pose.theta)
+        off[:, 0] += c * self.about_x - s * self.about_y
+        off[:, 1] += s * self.about_x + c * self.about_y
         off[:, 2] = wrap_angles(off[:, 2])
         return np.asarray(np.linalg.norm(off / self.sigmas, axis=1), dtype=np.float64)
 
@@ -58,7 +70,7 @@ class InitialPose:
         shift, turn : metres, radians
         pivot       : (2,) metres, mov frame
         """
-        moved = shift + turn * hypot(*pivot.tolist())
+        moved = shift + turn * hypot(*(pivot - self.about).tolist())
         return hypot(moved / min(self.sigma_x, self.sigma_y), turn / self.sigma_yaw)
 
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from algorithms.common.pose import FloatArray, Pose2, wrap_angle, wrap_angles
 from algorithms.common.setting_bounds import Bounds, CheckedConfig
-from algorithms.maps.coarse_grid import pooled
+from algorithms.maps.coarse_grid import pooled, trimmed
 from algorithms.maps.grid_map import UNKNOWN, BoolArray, Float32Array, GridMap, where
 from algorithms.maps.wall_distance import surface
 from algorithms.observations.search_window import CoupledWindow
@@ -192,6 +192,17 @@ class PlaneCorrelation:
         out = np.zeros(self.shape, dtype=np.float32)
         out[:rows, :cols] = raster
         return np.asarray(cv2.dft(out, dst=out, nonzeroRows=rows), dtype=np.float32)
+
+
+def searched_area(ref: GridMap, mov: GridMap, config: PlaneConfig, window: CoupledWindow) -> float:
+    """Shifts that a window leaves of the plane, averaged over the turns; m².
+
+    For an answer that comes from elsewhere: among so many it is one.
+    """
+    plane = PlaneCorrelation(trimmed(ref), trimmed(mov), config)
+    left = [plane.within(turn, window) for turn in plane.turns.tolist()]
+    shifts = [plane.shape[0] * plane.shape[1] if within is None else int(within.sum()) for within in left]
+    return sum(shifts) * plane.cell**2 / len(shifts)
 
 
 def places(

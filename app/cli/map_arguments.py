@@ -51,6 +51,14 @@ def add_known(parser: Parser) -> None:
     group.add_argument("--near-radius", type=float, metavar="M", help=about)
 
 
+KNOWN = ("observation", "initial", "sigma", "initial_yaw", "sigma_yaw", "near", "near_radius")
+
+
+def any_known(args: argparse.Namespace) -> bool:
+    """Whether the command line tells anything of how the maps lie."""
+    return any(getattr(args, name) is not None for name in KNOWN)
+
+
 def known_from(args: argparse.Namespace) -> tuple[Known, ...]:
     """All that the command line tells of how the maps lie."""
     from algorithms.common.pose import Pose2

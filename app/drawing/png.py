@@ -30,7 +30,12 @@ def data_uri(pixels: Pixels) -> str:
 
 def png_base64(pixels: Pixels) -> str:
     """(H, W, 3 or 4) a picture as a PNG in base64, made in a hurry; row 0 comes first, as it is."""
+    return base64.b64encode(png_bytes(pixels)).decode()
+
+
+def png_bytes(pixels: Pixels) -> bytes:
+    """(H, W, 3 or 4) a picture as a PNG; row 0 comes first, as it is."""
     order = cv2.COLOR_RGBA2BGRA if pixels.shape[2] == 4 else cv2.COLOR_RGB2BGR
     done, packed = cv2.imencode(".png", cv2.cvtColor(pixels, order))
     assert done  # only a picture without pixels cannot be packed
-    return base64.b64encode(packed.tobytes()).decode()
+    return packed.tobytes()

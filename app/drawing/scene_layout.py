@@ -115,14 +115,19 @@ class SceneLayout:
 
 
 def lay_out(
-    ref: GridMap | None, mov: GridMap | None, at: Encounter | None, aspect: float = 0.9
+    ref: GridMap | None,
+    mov: GridMap | None,
+    at: Encounter | None,
+    aspect: float = 0.9,
+    mov_anchor: FloatArray | None = None,
 ) -> SceneLayout:
     """Choose anchors and the place of map 2 beside map 1.
 
     aspect : width over height of the free part of the page; the maps lie side by side or one above
              the other, whichever shows them larger
+    mov_anchor : (2,) what map 2 is to turn about where nobody was seen; metres, its frame. None: its middle
     """
-    seen = (at.x_ref, at.x_mov) if at else (None, None)
+    seen = (at.x_ref, at.x_mov) if at else (None, mov_anchor)
     known = [known_corners(grid) if grid else None for grid in (ref, mov)]
     anchors = tuple(_anchor(x_hat, corners) for x_hat, corners in zip(seen, known, strict=True))
     corners = tuple(c - anchor if c is not None else None for c, anchor in zip(known, anchors, strict=True))

@@ -29,14 +29,16 @@
   }, true);
   document.addEventListener("click", (e) => {
     const entry = e.target.closest?.("button.mm-entry"), step = e.target.closest?.("button.mm-step");
+    const suggestion = e.target.closest?.("button[data-mm-suggestion]");
+    if (suggestion) S.tell("suggest", { number: Number(suggestion.dataset.mmSuggestion) });
     if (entry) S.tell("go", { to: Number(entry.dataset.go) });
     if (step) S.tell("step", { by: Number(step.dataset.by) });
   });
 
   // --- taking hold of things on the map -------------------------------------------------------------
   // S.hand says what can be taken hold of; everything is optional:
-  //   mov    {hull, arm, cell}: map 2, by the inside of its hull (points of its frame), and turned by a
-  //          knob so many px off its anchor; cell in metres
+  //   mov    {hull, arm, cell, still}: map 2, by the inside of its hull (points of its frame), and turned
+  //          by a knob so many px off its anchor; cell in metres; still: it can be turned alone
   //   grips  [{id, f, p, a, vague}]: signs at p in frame f that can be carried; with a heading a, turned
   //          too; a vague one is not known before it is turned
   //   place  {id, f}: the next touch puts this sign down, and a drag from there turns it
@@ -71,7 +73,7 @@
     }
     if (best) return best;
     if (h.mov && near(knobOf({ f: "map2", p: [0, 0], a: 0 }, h.mov.arm)) < REACH) return { kind: "turn" };
-    return h.mov && inside(inFrame("map2", S.ground(x, y)), h.mov.hull) ? { kind: "carry" } : null;
+    return h.mov && inside(inFrame("map2", S.ground(x, y)), h.mov.hull) ? { kind: h.mov.still ? "turn" : "carry" } : null;
   }
   const angleAt = (point, centre) => Math.atan2(point[1] - centre[1], point[0] - centre[0]);
   function sketch() { // the sign that is held, where it is held
@@ -156,7 +158,7 @@
     if (!S.hand || S.view !== "map" || hold || e.ctrlKey || e.metaKey || e.altKey || busy(document.activeElement)) return;
     if (e.key === "Escape" && S.hand.place) { stop(e); S.tell("cancel"); return; }
     if (!S.hand.mov) return;
-    const step = STEPS[e.key], way = TURNS[e.key];
+    const step = S.hand.mov.still ? undefined : STEPS[e.key], way = TURNS[e.key];
     if (!step && !way) return;
     stop(e);
     const at = S.ways[2] ? S.ways[2].to : S.maps[2]; // on its way it is stepped from where it is going
@@ -182,6 +184,11 @@
     [data-mantine-color-scheme=dark] .mm-step{background:#374151;color:#F9FAFB} [data-mantine-color-scheme=dark] .mm-step:hover:enabled{background:#4B5563}
     .mm-step:focus-visible{outline:2px solid #0072B2;outline-offset:1px}
     .mm-history{max-height:230px;overflow:auto;margin:2px 10px 8px;border:1px solid #9CA3AF55;border-radius:6px}
+    .mm-suggestions{display:grid;grid-template-columns:1fr 1fr;gap:6px;margin:0 10px 10px;font-size:12px;line-height:1.35}
+    .mm-suggestions p{grid-column:1/-1;margin:0}
+    .mm-suggestions button{display:flex;flex-direction:column;gap:1px;padding:4px;border:1px solid #9CA3AF88;border-radius:6px;background:none;color:inherit;font:inherit;text-align:left;cursor:pointer}
+    .mm-suggestions button:hover{border-color:#0072B2;background:#0072B21A} .mm-suggestions button:focus-visible{outline:2px solid #0072B2}
+    .mm-suggestions img{width:100%;border-radius:3px;margin-bottom:2px} .mm-suggestions b{font-size:13px} .mm-suggestions small{font-size:11px;opacity:.75}
     .mm-entry{display:flex;gap:7px;align-items:baseline;width:100%;padding:3px 8px;border:0;background:none;color:inherit;font:12.5px/1.4 system-ui,"Segoe UI",sans-serif;text-align:left;cursor:pointer}
     .mm-entry:hover{background:#6B728022} .mm-entry:focus-visible{outline:2px solid #0072B2;outline-offset:-2px}
     .mm-entry span{overflow-wrap:anywhere} .mm-entry i{flex:none;width:7px;height:7px;border-radius:50%}`;

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from algorithms.files.case_folder import Case
 from algorithms.files.truth_file import Truth
@@ -11,6 +11,15 @@ from algorithms.maps.grid_map import GridMap, remarks_on
 from algorithms.observations.observation import Encounter, Observation, encounters_of, name_of
 from algorithms.observations.pair_problem import Known
 from algorithms.observations.priors import Prior
+from app.model.knowledge import PRIORS, Choice, choice_of, kind_of, used
+
+TO_PLACE: dict[Choice, str] = {
+    "sighting": "Place the robots: where robot 1 saw robot 2. Or choose what else you know, or nothing.",
+    "initial": "Drag map 2 to where it lies, roughly. Or choose what else you know, or nothing.",
+    "turn": "Turn map 2 as it lies, roughly. Or choose what else you know, or nothing.",
+    "near": "Drag each ring to the place that both maps show. Or choose what else you know, or nothing.",
+}
+"""What is to be done where a kind of knowledge is chosen that is not there yet."""
 
 
 @dataclass(frozen=True)
@@ -46,13 +55,15 @@ class MapSlot:
 
 @dataclass(frozen=True, eq=False)
 class MergeInputs:
-    """The maps of two robots and what robot 1 saw; empty for what is not there yet.
+    """The maps of two robots and what is known of how they lie; empty for what is not there yet.
 
     maps         : by the numbers of the robots, from 1
     observations : one sighting or several
     priors       : what else is known
     name         : what to call the pair before a person
     truth        : the known answer of a sample
+    choice       : which kind of knowledge is to be used
+    aside        : what is known beside, and not used
     """
 
     maps: tuple[MapSlot, ...] = (MapSlot(), MapSlot())
@@ -60,6 +71,8 @@ class MergeInputs:
     name: str = ""
     truth: Truth | None = None
     priors: tuple[Prior, ...] = ()
+    choice: Choice = "nothing"
+    aside: tuple[Known, ...] = ()
 
     @staticmethod
     def pair(
@@ -71,7 +84,32 @@ class MergeInputs:
         priors: tuple[Prior, ...] = (),
     ) -> MergeInputs:
         """The inputs of two maps."""
-        return MergeInputs((MapSlot(ref), MapSlot(mov)), observations, name, truth, priors)
+        inputs = MergeInputs((MapSlot(ref), MapSlot(mov)), name=name, truth=truth)
+        return inputs.knowing((*observations, *priors))
+
+    def knowing(self, known: Sequence[Known], choice: Choice | None = None) -> MergeInputs:
+        """The same maps with other knowledge, of which a choice is used; None: all of it."""
+        choice = choice_of(known) if choice is None else choice
+        taken = used(known, choice)
+        seen = tuple(one for one in taken if isinstance(one, Observation))
+        priors = tuple(one for one in taken if not isinstance(one, Observation))
+        aside = tuple(one for one in known if one not in taken)
+        return replace(self, observations=seen, priors=priors, choice=choice, aside=aside)
+
+    @property
+    def pool(self) -> tuple[Known, ...]:
+        """All that is known, used or not."""
+        return (*self.known, *self.aside)
+
+    @property
+    def mixed(self) -> bool:
+        """Whether more than one kind of thing is known."""
+        return len({kind_of(one) for one in self.pool}) > 1
+
+    @property
+    def chosen_prior(self) -> Prior | None:
+        """What is used where a single rough thing was chosen."""
+        return self.priors[0] if self.priors and self.choice in PRIORS else None
 
     @property
     def ref(self) -> GridMap | None:
@@ -90,7 +128,7 @@ class MergeInputs:
 
     @property
     def known(self) -> tuple[Known, ...]:
-        """All that is known of how the maps lie."""
+        """All that is to be used of what is known of how the maps lie."""
         return (*self.observations, *self.priors)
 
     @property
@@ -105,20 +143,25 @@ class MergeInputs:
 
     @property
     def complete(self) -> bool:
-        """Whether there is all that a merge needs."""
-        return len(self.grids) == len(self.maps) and bool(self.observations)
+        """Whether there is all that a merge needs: both maps, and of what is to be used something."""
+        return len(self.grids) == len(self.maps) and (self.choice == "nothing" or bool(self.known))
+
+    @property
+    def sighted(self) -> bool:
+        """Whether there is all that a method needs that cannot do without a sighting."""
+        return self.complete and bool(self.observations)
 
     def case(self) -> Case | None:
         """The same as a case; None where a merge lacks something."""
-        if self.ref is None or self.mov is None or not self.observations:
+        if self.ref is None or self.mov is None or not self.complete:
             return None
         name = self.name or "your maps"
         return Case(name, self.ref, self.mov, self.observations, "", self.truth, self.priors)
 
     def same_pair(self, other: MergeInputs) -> bool:
-        """Whether these are the very maps and sightings of others."""
+        """Whether these are the very maps of others, and the same is known of them."""
         same = (a.grid is b.grid for a, b in zip(self.maps, other.maps, strict=True))
-        return self.observations is other.observations and all(same)
+        return self.known == other.known and all(same)
 
     def missing(self) -> str:
         """What to load next, as a sentence; empty where nothing is missing."""
@@ -130,12 +173,10 @@ class MergeInputs:
         if not here and self.observations:
             return "Now load the two maps: a YAML file and an image each."
         if not here:
-            return "Choose a sample, or load two maps and an observation."
+            return "Choose a sample, or load two maps and what is known of them."
         if absent:
             return f"Map {here[0]} is here. Load map {absent[0]}, too."
-        if not self.observations:
-            return "Both maps are here. Load the observation, or place the robots: where robot 1 saw robot 2."
-        return ""
+        return "" if self.complete else TO_PLACE[self.choice]
 
     def doubt(self) -> str:
         """What is odd about the inputs, in sentences; empty where nothing is."""

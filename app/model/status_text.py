@@ -23,6 +23,7 @@ from app.model.verdict_text import fits_nowhere
 _MANY_BLOCKS = 20_000  # a proof has seldom more; nobody knows before its end how many there will be
 
 READY = "Ready. Press Merge."
+READY_FOR_ALL = "Ready. Nothing is known of how the maps lie: Merge tries every turn and shift."
 # what to do next while the robots are placed by hand, by what is missing
 PLACING = {
     "observer": "1 of 3: where robot 1 stood, in map 1. Press there, and drag the way it looked.",

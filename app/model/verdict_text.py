@@ -5,8 +5,7 @@ from __future__ import annotations
 from math import degrees
 
 from algorithms.common.pose import pose_error
-from algorithms.methods.manual_merge import BY_HAND
-from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.merge_result import CHOSEN, MergeResult
 from algorithms.methods.registry import METHODS
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.verdict.decision import NEXT_TO_NO_WALL, SAME_PLACE, Outcome, Verdict
@@ -51,7 +50,8 @@ def of_hand(result: MergeResult, taken: bool = False) -> str:
     """What the verdict says of a transform made by hand, which is ``taken`` where it is the answer now."""
     reason = result.verdict.reason
     would = f"By hand, would be {result.verdict.outcome.value}: {reason.split(': ', 1)[-1]}"
-    return f"By hand. {reason}" if taken else would
+    made = "Chosen by you" if result.method == CHOSEN else "By hand"
+    return f"{made}. {reason}" if taken else would
 
 
 def optimum(proof: ProofState) -> str:
@@ -98,7 +98,7 @@ def remedy(result: MergeResult) -> str:
     if proof is not None and not proof.proven:
         return "Give the proof more patience, or narrow the window, and merge again."
     if verdict.rival is not None and (verdict.ambiguity or 0.0) > 1:
-        if result.method == BY_HAND:
+        if result.by_person:
             return "Made by hand: refine from there, or snap to the proven optimum."
         return "This method has missed a better place: take the default one, which proves that it finds it."
     first = next(iter(verdict.against), "")

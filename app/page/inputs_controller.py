@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from algorithms.common.errors import MapMergeError
+from algorithms.methods.registry import METHODS
 from app.drawing.scene_layout import lay_out
 from app.model.merge_inputs import MergeInputs
 from app.model.run_state import RunState
 from app.model.view_modes import MAP
 from app.page.run_controller import RunController
+from app.page.suited_method import following_method
 from app.page.tab import Tab
 from app.web.cell_quota import CellQuota
 
@@ -28,9 +30,10 @@ class InputsController:
         """Show these inputs as an action of the person; a lesson goes on with them."""
         self._runs.thread.stop()
         with self._state.locks.action:
-            mode = self._modes.close()
+            mode, before = self._modes.close(), self._state.inputs
             with self._state.locks.drawing:
                 if self.show(inputs):
+                    self.follow(before, inputs)
                     self._history.note(self._state.snapshot())
             if mode is not None and mode.reopen is not None:
                 mode.reopen()
@@ -55,6 +58,12 @@ class InputsController:
         self._display.show_inputs(layout)
         self._display.messages.flush()
         return True
+
+    def follow(self, before: MergeInputs, after: MergeInputs) -> None:
+        """Take the method that suits the inputs now, if the one at hand did suit them before."""
+        method = following_method(self._state.method, before, after)
+        if method != self._state.method:
+            self._runs.set_method(method, METHODS[method].defaults)
 
     def forget_results(self, inputs: MergeInputs, **more: object) -> None:
         """These are the inputs now; what was found with others no longer counts."""

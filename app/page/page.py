@@ -10,8 +10,10 @@ import viser
 from app.jobs.worker_pool import COMMON
 from app.model.merge_inputs import MergeInputs
 from app.page.cancellable_task import DownloadTask
+from app.page.editing.knowledge_controller import KnowledgeController
 from app.page.editing.map_drag_controller import MapDragController
 from app.page.editing.placement_controller import PlacementController
+from app.page.editing.suggestion_controller import SuggestionController
 from app.page.inputs_controller import InputsController
 from app.page.lesson.lesson_controller import LessonController
 from app.page.lesson.lesson_texts import lesson_folder
@@ -71,7 +73,9 @@ class Page:
         ViewController(tab, client)
         zoom = ZoomController(events, messages, views.map.ground, state.locks)
         drag = MapDragController(tab, undo, runs)
-        PlacementController(tab, undo, runs, inputs)
+        SuggestionController(tab, drag)
+        robots = PlacementController(tab, undo, runs, inputs)
+        KnowledgeController(tab, undo, runs, inputs, robots.begin)
         teaching = LessonController(tab, undo, runs, lesson or lesson_folder())
         museum = MuseumController(tab, undo, runs, inputs)
         panels.run.connect_learn(teaching.toggle, museum.toggle)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
+from typing import Any
 
 import viser
 
 from algorithms.common.errors import NoAnswerError
-from algorithms.methods.manual_merge import BY_HAND
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import AugmentDetail
+from algorithms.verdict.contradictions import Contradictions
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.legend import in_hand, legend
 from app.drawing.palette import LIGHT
@@ -26,6 +27,7 @@ from app.page.page_state import PageState
 from app.page.panel_set import Panels
 from app.page.panels.html_widgets import box
 from app.page.panels.result_panel import result_html
+from app.page.panels.suggestions_html import SuggestionPictures
 from app.report.result_files import ResultFiles
 
 LARGE = 2_000_000  # cells of a map that takes a while to draw
@@ -55,6 +57,7 @@ class PageDisplay:
     ) -> None:
         self._client, self._state, self._panels = client, state, panels
         self.views, self.messages = views, messages
+        self._suggestions = SuggestionPictures()
 
     def together(self) -> AbstractContextManager[None]:
         """What is drawn in this context is seen at once."""
@@ -66,7 +69,7 @@ class PageDisplay:
         """Both maps side by side, as they were loaded."""
         state, panels, inputs = self._state, self._panels, self._state.inputs
         panels.transform.offer(inputs.complete)
-        panels.observation.show(inputs)
+        panels.knowledge.show(inputs, inputs.chosen_prior)
         panels.charts.clear()
         self.views.heights.hide()
         self.views.comparison.clear()
@@ -83,9 +86,10 @@ class PageDisplay:
         panels.what_if.offer(None)
         panels.files.placed(bool(inputs.observations))
         doubt = inputs.doubt()
+        ready = status_text.READY if inputs.known else status_text.READY_FOR_ALL
         self.messages.hud(
             case=inputs.name,
-            state=" ".join(filter(None, (inputs.missing(), doubt))) or status_text.READY,
+            state=" ".join(filter(None, (inputs.missing(), doubt))) or ready,
             mood="refused" if doubt else "idle",
             progress=None,
             frames=layout.frames(),
@@ -154,8 +158,16 @@ class PageDisplay:
         """The numbers of a result; faded where it is out of date."""
         state = self._state
         if result is not None:
-            html = result_html(result, state.inputs, state.result_config, state.contradictions, faded=faded)
+            html = self.result_html(result, state.result_config, state.contradictions, faded)
             self._panels.charts.tell(html)
+
+    def result_html(
+        self, result: MergeResult, config: Any, found: Contradictions | None, faded: bool = False
+    ) -> str:
+        """The page of a result; arguments as in result_panel."""
+        inputs = self._state.inputs
+        suggestions = self._suggestions.html(result, inputs, self._state.palette)
+        return result_html(result, inputs, config, found, faded, suggestions)
 
     def mark_outdated(self) -> None:
         """A setting was changed after the result was found."""
@@ -173,7 +185,7 @@ class PageDisplay:
     def _say_verdict(self, result: MergeResult) -> None:
         """The verdict; over the swarm whether it found the proven optimum, and the verdict's first word."""
         found, reason = status_text.found_it(self._state.run), result.verdict.reason
-        if result.method == BY_HAND:
+        if result.by_person:
             reason = verdict_text.of_hand(result, taken=True)
         if found and self._state.view == SWARM:
             reason = f"{found} {reason.split(':')[0]}."

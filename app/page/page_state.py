@@ -105,7 +105,7 @@ class PageState:
     def job(self, **how: Any) -> MergeJob | None:
         """A run as it is set now; None where an input is missing."""
         i = self.inputs
-        if i.ref is None or i.mov is None or not i.observations:
+        if i.ref is None or i.mov is None or not i.complete:
             return None
         return MergeJob(i.ref, i.mov, i.known, self.config, self.method, self.seed, **how)
 

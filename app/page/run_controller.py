@@ -9,7 +9,6 @@ from typing import Any
 
 from algorithms.common.errors import MapMergeError, NoAnswerError
 from algorithms.methods import registry as methods
-from algorithms.methods.manual_merge import BY_HAND
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import CauseDetail, Step, TriedDetail
 from algorithms.verdict.contradictions import Contradictions, find_conflicts
@@ -21,7 +20,6 @@ from app.model.merge_inputs import MergeInputs
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
 from app.model.view_modes import MAP
-from app.page.panels.result_panel import result_html
 from app.page.tab import Tab
 from app.report.replay.html_page import replay_of
 from app.report.result_files import ResultFiles
@@ -225,7 +223,7 @@ class RunController:
         self._modes.close()
         state, replay = self._state, self._panels.export.replay
         contradictions, html = self._weigh(result, config)
-        by_hand = result.method == BY_HAND
+        by_hand = result.by_person
         search = state.search if by_hand else run
         found = {"result": result, "result_config": config, "contradictions": contradictions}
         state.update(run=run, search=search, **found)
@@ -242,7 +240,7 @@ class RunController:
         of = (result, self._state.inputs, config)
         if self._weighed is None or any(a is not b for a, b in zip(self._weighed[0], of, strict=True)):
             found = find_conflicts(result.fusion)
-            self._weighed = of, (found, result_html(result, self._state.inputs, config, found))
+            self._weighed = of, (found, self._display.result_html(result, config, found))
         return self._weighed[1]
 
     # --- after a refusal: a simple change under which the maps would agree? ---------------------------

@@ -18,6 +18,7 @@ from app.model import chart_data as charts
 from app.model import status_text as words
 from app.model import verdict_text
 from app.model.contradiction_text import MOST_PLACES, signed, summary, whose
+from app.model.knowledge import counted
 from app.model.merge_inputs import MergeInputs
 from app.model.objective_label import measure_of
 from app.model.settings import Setting, settings_of, text_for, value_at
@@ -166,12 +167,9 @@ def _proof(result: MergeResult, config: Any) -> str:
 def _known(inputs: MergeInputs) -> list[str]:
     if not inputs.known:
         return ["<p>Nothing but the maps: the place was found by their walls alone.</p>"]
-    count, more = len(inputs.observations), len(inputs.priors)
-    said = "One sighting." if count == 1 else f"{count} sightings." if count else ""
-    if more:
-        said = f"{said} A rough pose, turn or place.".strip()
-    text = known_to_bytes(inputs.known).decode()
-    return [f"<p>{said} As it stands in observation.yaml:</p><pre>{escape(text.rstrip())}</pre>"]
+    said = counted(inputs.known)
+    text = escape(known_to_bytes(inputs.known).decode().rstrip())
+    return [f"<p>{said[0].upper()}{said[1:]}. As it stands in observation.yaml:</p><pre>{text}</pre>"]
 
 
 def _settings(result: MergeResult, config: Any, report: Mapping[str, Any]) -> list[str]:

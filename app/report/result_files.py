@@ -20,6 +20,7 @@ from algorithms.files.map_file import map_to_bytes
 from algorithms.files.observation_file import OBSERVATION_FILE, known_to_bytes
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.suggestions import are_wanted
 from algorithms.verdict.decision import Outcome
 from algorithms.verdict.performance_index import performance_index
 from app.drawing import grid_pixels as render
@@ -27,6 +28,7 @@ from app.drawing.palette import LIGHT
 from app.model.merge_inputs import MergeInputs
 from app.report.html_report import report_page
 from app.report.ros_transform import transform_yaml
+from app.report.suggestion_files import suggestion_files
 from app.system.cancellation import Check, never_cancelled
 from app.system.version import versions
 
@@ -184,6 +186,8 @@ def result_files(
     if with_merged:
         files |= map_to_bytes(result.fusion.merged, MERGED)
         files[TRANSFORM_FILE] = transform_yaml(result)
+    if are_wanted(result) and inputs.ref is not None and inputs.mov is not None:
+        files |= suggestion_files(result, inputs.ref, inputs.mov)
     check(0.1)
     files[OVERLAY_FILE] = overlay_png(result)
     check(0.2)

@@ -9,9 +9,9 @@ import numpy as np
 
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.maps.map_fusion import fuse
-from algorithms.methods.manual_merge import BY_HAND
 from algorithms.methods.merge_result import MergeResult
 from algorithms.observations.observation import Encounter, Observation
+from algorithms.observations.priors import InitialPose, Prior, TurnPrior
 from algorithms.verdict.performance_index import performance_index
 from app.model import status_text as words
 from app.model import verdict_text
@@ -39,7 +39,7 @@ def numbers(result: MergeResult, inputs: MergeInputs, config: Any = None) -> lis
     """The transform with its standard deviations, its value, and the figures of merit."""
     T, verdict = result.T_ref_mov, result.verdict
     at_robot, turn = _deviations(result)
-    rows: list[tuple[str, ...]] = [("made", BY_HAND)] if result.method == BY_HAND else []
+    rows: list[tuple[str, ...]] = [("made", result.method)] if result.by_person else []
     rows += [
         ("T: Δx", f"{T.x:.3f} m"),
         ("T: Δy", f"{T.y:.3f} m"),
@@ -129,6 +129,26 @@ def times(result: MergeResult) -> list[tuple[str, ...]]:
     """Milliseconds per stage, and their sum."""
     seconds = result.timings_s | {"all": sum(result.timings_s.values())}
     return [(STAGES.get(stage, stage), f"{1000 * took:.1f}") for stage, took in seconds.items()]
+
+
+def prior_rows(prior: Prior) -> list[tuple[str, ...]]:
+    """What is roughly known, and how roughly."""
+    if isinstance(prior, InitialPose):
+        T, sigma_yaw = prior.pose, degrees(prior.sigma_yaw)
+        rows: list[tuple[str, ...]] = [
+            ("map 2 lies about at", f"{T.x:.2f}, {T.y:.2f} m, {degrees(T.theta):.1f}°"),
+            ("σ of that", f"{prior.sigma_x:g}, {prior.sigma_y:g} m, {sigma_yaw:.3g}°"),
+        ]
+        if prior.about.any():
+            rows.append(("at its point", f"{prior.about_x:.2f}, {prior.about_y:.2f} m"))
+        return rows
+    if isinstance(prior, TurnPrior):
+        return [("map 2 is turned by about", f"{degrees(prior.yaw):.1f} ± {degrees(prior.sigma):.3g}°")]
+    return [
+        ("a place in map 1", f"{prior.ref_x:.2f}, {prior.ref_y:.2f} m"),
+        ("is about this in map 2", f"{prior.mov_x:.2f}, {prior.mov_y:.2f} m"),
+        ("to", f"{prior.radius:g} m"),
+    ]
 
 
 def sighting_rows(o: Observation, at: Encounter) -> list[tuple[str, ...]]:

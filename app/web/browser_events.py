@@ -76,7 +76,7 @@ class BrowserEvents:
 
     def __init__(self, gui: viser.GuiApi, messages: BrowserMessages) -> None:
         self._messages = messages
-        self._events: dict[str, _Event] = {}
+        self._events: dict[str, list[_Event]] = {}
         self._last = 0  # number of the newest message
         self._waiting: deque[tuple[_Event, dict[str, Any]]] = deque()
         self._wake = Condition()
@@ -95,27 +95,35 @@ class BrowserEvents:
     def on(
         self, event: str, callback: Callable[..., None], /, *, latest: bool = False, **fields: Kind
     ) -> None:
-        """Call back with the fields of every such event, by their names.
+        """Call back with the fields of every such event, by their names; several may ask for one.
 
         latest : of several that wait in a row only the newest counts: a place on a path, not an action
         """
-        self._events[event] = _Event(callback, latest, fields)
+        self._events.setdefault(event, []).append(_Event(callback, latest, fields))
 
     def take(self, text: str) -> bool:
         """Take in a message; whether it was one."""
         try:
             number, name, values = _parsed(text)
-            event = self._events[name]
-            if number <= self._last or set(values) != set(event.fields):
-                return False
-            fields = {field: checked(values[field], kind) for field, kind in event.fields.items()}
+            asked = [(event, _fields_of(event, values)) for event in self._events[name]]
         except (ValueError, KeyError, RecursionError):
+            return False
+        if number <= self._last or all(fields is None for _, fields in asked):
             return False
         with self._wake:
             self._last = number
-            if event.latest and self._waiting and self._waiting[-1][0] is event:
-                self._waiting.pop()
-            return self._queue(event, fields)
+            return all(self._take(event, fields) for event, fields in asked if fields is not None)
+
+    def _take(self, event: _Event, fields: dict[str, Any]) -> bool:
+        """Queue what has come; one that is waiting for the same gives way where only the newest counts."""
+        if event.latest:
+            for k in reversed(range(len(self._waiting))):
+                before, _ = self._waiting[k]
+                if before is event:
+                    del self._waiting[k]
+                if before is event or not before.latest:
+                    break
+        return self._queue(event, fields)
 
     def then(self, callback: Callable[..., None], *args: Any) -> None:
         """Call back with that after all that was told before it, and before what comes later.
@@ -151,6 +159,16 @@ class BrowserEvents:
                 log.exception("an event of the page ended in a bug")
                 self._messages.hud(state=words(error), mood="failed", progress=None)
                 self._messages.flush()
+
+
+def _fields_of(event: _Event, values: dict[str, Any]) -> dict[str, Any] | None:
+    """The fields that an event asks for; None where the values are others."""
+    if set(values) != set(event.fields):
+        return None
+    try:
+        return {field: checked(values[field], kind) for field, kind in event.fields.items()}
+    except ValueError:
+        return None
 
 
 def _parsed(text: str) -> tuple[int, str, dict[str, Any]]:

@@ -72,3 +72,21 @@ def test_what_if_a_number_were_another_is_told_and_is_no_merge(tab):
     assert tab.state == before
     tab.press("Reset what if")
     settle(lambda: "Refused" not in tab.text, "the verdict as it was")
+
+
+def test_a_refused_merge_suggests_places_and_the_one_that_is_pressed_can_be_taken(open_tab, strangers: Case):
+    server = of_server(replace(strangers, observations=()))
+    try:
+        tab = open_tab(size=(1280, 800), at=server)
+        assert merged(tab) == "refused"
+        buttons = tab.page.locator("button[data-mm-suggestion]")
+        settle(lambda: buttons.count() > 0, "suggestions")
+        likely = buttons.last.locator("b").inner_text()
+        buttons.last.click()
+        settle(lambda: tab.state.startswith("By hand, would be refused"), "map 2 in the hand")
+        assert tab.number("likely right") == likely
+        tab.press("Take this as the answer")
+        settle(lambda: tab.state.startswith("Chosen by you. Refused"), "the answer")
+        assert tab.number("made") == "chosen by you"
+    finally:
+        server.stop()

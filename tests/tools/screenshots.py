@@ -207,7 +207,6 @@ def an_empty_page(tab: Tab, keep: Keep) -> None:
 
 def a_placement(tab: Tab, keep: Keep) -> None:
     """Robots placed by hand."""
-    tab.unfold("Observation")
     tab.press("Move the robots by hand")
     tab.page.wait_for_timeout(1500)
     keep("place")

@@ -13,8 +13,9 @@ from algorithms.methods.steps import AnswersDetail, Step, WeighedDetail
 from algorithms.observations.pair_problem import PairProblem
 from algorithms.observations.search_window import WindowConfig
 from algorithms.optimisation.likelihood_field import AgreementConfig
+from algorithms.optimisation.plane_correlation import PlaneConfig, searched_area
 from algorithms.verdict.decision import VerdictConfig
-from algorithms.verdict.probability_model import shipped_model
+from algorithms.verdict.probability_model import ModelKind, shipped_model
 from algorithms.verdict.ranking import better_beside, weigh
 from algorithms.verdict.whole_maps import WholeMaps, make_whole_maps
 
@@ -46,16 +47,23 @@ def weigh_best(
         "weigh", (problem, found, size), lambda: [_weigh(problem, best.T_ref_mov, size)]
     )
     named, *beside = weighed.answers
-    return Found(named, beside or None, covariance, found.answers, best.value if valued else None)
+    value = best.value if valued else None
+    return Found(named, beside or None, covariance, found.answers, value, kind=model_kind(problem))
 
 
 def _weigh(problem: PairProblem, T_ref_mov: Pose2, robot_size: float) -> WeighedDetail:
-    whole, model = whole_maps(problem, robot_size), shipped_model()
+    whole, model = whole_maps(problem, robot_size), shipped_model(model_kind(problem))
     named = weigh(whole, T_ref_mov, model)
     return WeighedDetail((named, *better_beside(whole, named, model)))
+
+
+def model_kind(problem: PairProblem) -> ModelKind:
+    """Which model weighs an answer: without a sighting it may have come from anywhere on the plane."""
+    return "sighting" if problem.observations else "plane"
 
 
 def whole_maps(problem: PairProblem, robot_size: float) -> WholeMaps:
     """Both maps as a whole, for a method that has no settings for it; metres."""
     window, robots = problem.window(WindowConfig()), problem.robots(robot_size)
-    return make_whole_maps(problem.ref, problem.mov, robots, window, AgreementConfig().evidence)
+    searched = 0.0 if problem.observations else searched_area(problem.ref, problem.mov, PlaneConfig(), window)
+    return make_whole_maps(problem.ref, problem.mov, robots, window, AgreementConfig().evidence, searched)

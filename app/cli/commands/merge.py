@@ -11,17 +11,20 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from algorithms.common.errors import NoAnswerError, OutputError
+from algorithms.common.errors import NoAnswerError, OutputError, SettingError
 from algorithms.files.atomic_write import check_folder, write_files
 from algorithms.files.map_file import YAML_SUFFIXES, parse_meta, read_bytes
 from algorithms.maps.grid_map import remarks_on
 from algorithms.methods import registry as methods
-from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.manual_merge import ManualMerge, known_answers
+from algorithms.methods.merge_result import CHOSEN, MergeResult
+from algorithms.methods.suggestions import MOST, are_wanted, suggestions_of
 from algorithms.observations.pair_problem import PairProblem
-from app.cli.argument_parser import Parser
+from app.cli.argument_parser import Parser, whole_number
 from app.cli.map_arguments import add_known, add_reading, known_from, read_maps
 from app.cli.progress_bar import result_of
 from app.cli.setting_flags import add_method, config_from, method_for
+from app.evaluation.table_files import aligned
 from app.model import verdict_text
 from app.model.merge_inputs import MergeInputs
 from app.model.objective_label import measure_of
@@ -36,8 +39,9 @@ from app.report.result_files import (
     report_of_no_answer,
     result_files,
 )
+from app.report.suggestion_files import HEAD, SUGGESTION_FILES, suggestion_rows
 
-FILES = (*MERGED_FILES, TRANSFORM_FILE, OVERLAY_FILE, PAGE_FILE, REPORT_FILE)
+FILES = (*MERGED_FILES, TRANSFORM_FILE, OVERLAY_FILE, *SUGGESTION_FILES, PAGE_FILE, REPORT_FILE)
 
 USAGE = (
     "MAP1 MAP2 [--observation FILE | what else is known] --out DIR [--json] [--force] [--strict] [options]"
@@ -51,6 +55,7 @@ Examples:
   mapmeld merge map1.yaml map2.yaml --initial 10.5 -54.8 -0.47 --sigma 1 0.17 --out result
   mapmeld merge map1.yaml map2.yaml --initial-yaw 1.57 --out result
   mapmeld merge map1.yaml map2.yaml --out result
+  mapmeld merge map1.yaml map2.yaml --out result --take 2
   mapmeld merge left.pgm right.pgm --resolution 0.05 --observation o.yaml --out result
   mapmeld merge map1.yaml map2.yaml --observation observation.yaml --out result \\
           --augment.spread 4 --swarm.particles 800 --seed 7 --json | jq .T_ref_mov
@@ -66,13 +71,15 @@ A merge ends in one of three ways:
   merged, bent   it is likely right, but no one transform lays the maps on each other everywhere: walls
                  will be double
   refused        it cannot be trusted; the reason says what speaks against it, and what would help
-A refused merge leaves the reports and overlay.png alone, and where the method found no transform
+  suggestions.json          of a refused merge: up to five places to choose from with --take, and
+                            suggestion_1.png, … what each looks like
+A refused merge leaves the reports, suggestions and overlay.png alone, and where the method found no transform
 at all only report.json; so does a bent one with --strict. What an earlier run left of the other files
 is then removed, so that nobody takes it for this run's. How a map was read is warned of on stderr
 where it looks wrong.
 
-Exit status: 0 merged, bent or not, 1 refused (with --force too), or bent with --strict, 2 bad input,
-130 interrupted."""
+Exit status: 0 merged, bent or not, or taken with --take; 1 refused (with --force too), or bent with
+--strict; 2 bad input; 130 interrupted."""
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
@@ -82,6 +89,8 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     add_known(parser)
     add_reading(parser)
     parser.add_argument("--json", action="store_true", help="print report.json and nothing else")
+    about = "take answer N of those that a refused merge suggests: you know that it is right"
+    parser.add_argument("--take", type=whole_number(1, MOST), metavar="N", help=about)
     parser.add_argument("--force", action="store_true", help="write the merged map of a refused merge, too")
     add_method(parser, words, suits=True)
 
@@ -111,11 +120,15 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     else:
         report = report_of(result, config, load_s, named, warnings)
         name = f"{args.map1.stem} and {args.map2.stem}"
+        if args.take is not None:
+            result = _taken(result, ManualMerge(problem, config, known_answers(result)), args.take)
+            report = report_of(result, config, load_s, named, warnings)
         inputs = MergeInputs.pair(ref, mov, problem.observations, name, priors=problem.priors)
-        accepted = result.verdict.accepted
+        accepted = result.verdict.accepted or result.by_person
         files = result_files(result, inputs, config, report, with_merged=accepted or args.force)
         lines, status = _summary(result, config), 0 if accepted else 1
         if not accepted:
+            lines += _suggestions(result) if are_wanted(result) else []
             end = "no merged map was written; --force writes it all the same"
             if args.force:
                 end = "--force: the merged map was written although the merge is refused"
@@ -128,6 +141,21 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         lines.append(f"removed from {args.out}, being of an earlier run: {', '.join(removed)}")
     print("\n".join([*lines, end] if end else lines))
     return status
+
+
+def _taken(result: MergeResult, manual: ManualMerge, number: int) -> MergeResult:
+    """The answer of that number, chosen by a person; raises SettingError where there is none."""
+    choices = suggestions_of(result)
+    if number > len(choices):
+        there = "is only 1" if len(choices) == 1 else f"are only {len(choices)}"
+        raise SettingError(f"--take {number}: there {there} to take; run without --take to see what there is")
+    return manual.weigh(choices[number - 1].T_ref_mov, result.seed, CHOSEN)
+
+
+def _suggestions(result: MergeResult) -> list[str]:
+    """Lines of a table of the places to choose from."""
+    rows = [list(HEAD), *suggestion_rows(suggestions_of(result))]
+    return ["map 2 may lie so; --take N takes one on your word:", *aligned(rows)]
 
 
 def _leave(folder: Path, files: Mapping[str, bytes]) -> list[str]:
@@ -169,7 +197,8 @@ def _summary(result: MergeResult, config: Any) -> list[str]:
     """Lines for a person: the verdict, the transform, what was maximised, and what else is likely."""
     T, verdict, proof, measure = result.T_ref_mov, result.verdict, result.proof, measure_of(config)
     rival = verdict_text.rival(result)
-    lines = [verdict.reason, *filter(None, [verdict_text.remedy(result)])]
+    said = verdict_text.of_hand(result, taken=True) if result.by_person else verdict.reason
+    lines = [said, *filter(None, [verdict_text.remedy(result)])]
     lines.append(f"map 2 in map 1: x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°")
     if result.value is not None:
         ended = "" if proof is None else f", {verdict_text.optimum(proof)} ({proof.nodes:,} blocks bounded)"

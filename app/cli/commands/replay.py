@@ -5,22 +5,21 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from algorithms.files.atomic_write import check_file, write_file
 from algorithms.files.case_folder import read_case
-from algorithms.files.observation_file import read_observations
 from algorithms.methods import registry as methods
+from algorithms.observations.pair_problem import PairProblem
 from app.cli.argument_parser import Parser
-from app.cli.map_arguments import add_reading, case_folder, read_maps
+from app.cli.map_arguments import add_known, add_reading, case_folder, known_from, read_maps
 from app.cli.progress_bar import with_bar
-from app.cli.setting_flags import add_method, config_from
+from app.cli.setting_flags import add_method, config_from, method_for
 from app.model.merge_inputs import MergeInputs
 from app.report.replay.html_page import ReplayMetadata, replay_html
 from app.report.replay.recorder import record
 
-USAGE = "{CASE | MAP1 MAP2 --observation FILE} --out FILE.html [options]"
+USAGE = "{CASE | MAP1 MAP2 [--observation FILE | what else is known]} --out FILE.html [options]"
 DESCRIPTION = """\
 Merge two maps and save the run as one HTML page: maps, candidates, swarm, proof and verdict play
 again in any browser, without a network and without mapmeld. For a talk, a lesson, a report.
@@ -43,31 +42,29 @@ HTML_SUFFIXES = (".html", ".htm")
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("first", metavar="CASE|MAP1", help="a sample's name or a case folder; or a map")
     parser.add_argument("map2", type=Path, metavar="MAP2", nargs="?", help="map of robot 2, the observed")
-    parser.add_argument(
-        "--observation", type=Path, metavar="FILE", help="what robot 1 saw (default: that of the case)"
-    )
     parser.add_argument("--out", type=Path, required=True, metavar="FILE.html", help="the page to write")
+    add_known(parser)
     add_reading(parser)
-    add_method(parser, words)
+    add_method(parser, words, suits=True)
 
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, record, write; the exit status."""
     if args.out.suffix.lower() not in HTML_SUFFIXES:
         parser.error(f"--out is {args.out}; let its name end in .html, or no browser will open it")
-    if args.map2 is not None and args.observation is None:
-        parser.error("two maps need their --observation FILE")
     if args.map2 is None and (args.resolution is not None or args.unknown_grey is not None):
         parser.error("--resolution and --unknown-grey say how MAP1 and MAP2 are read: give both maps")
-    config, inputs = config_from(args), _inputs(args, parser)
+    inputs = _inputs(args, parser)
     for warning in inputs.readings():
         print(f"warning: {warning}", file=sys.stderr)
     check_file(args.out)
     assert inputs.ref is not None
     assert inputs.mov is not None
-    steps = methods.run(args.method, inputs.ref, inputs.mov, inputs.known, config, args.seed)
+    method = method_for(args, PairProblem.of(inputs.ref, inputs.mov, inputs.known))
+    config = config_from(args, method)
+    steps = methods.run(method, inputs.ref, inputs.mov, inputs.known, config, args.seed)
     recording = record(with_bar(steps), inputs, config)
-    page = replay_html(recording, ReplayMetadata(inputs, args.method, config, args.seed))
+    page = replay_html(recording, ReplayMetadata(inputs, method, config, args.seed))
     write_file(args.out, page)
     print(recording["verdict"])
     print(f"written to {args.out}: {len(page) / 1000:,.0f} kB, {recording['length']:.0f} s")
@@ -78,9 +75,9 @@ def _inputs(args: argparse.Namespace, parser: Parser) -> MergeInputs:
     """What the command line names: two maps, a sample by its name, or the folder of a case."""
     if args.map2 is not None:
         args.map1 = Path(args.first)
-        (ref, mov), observations = read_maps(args), read_observations(args.observation)
-        return MergeInputs.pair(ref, mov, observations, f"{args.map1.stem} + {args.map2.stem}")
-    folder = case_folder(args.first, parser, "; for two maps give MAP1, MAP2 and --observation FILE")
-    inputs = MergeInputs.of(read_case(folder))
-    seen = inputs.observations if args.observation is None else read_observations(args.observation)
-    return replace(inputs, observations=seen)
+        ref, mov = read_maps(args)
+        name = f"{args.map1.stem} + {args.map2.stem}"
+        return MergeInputs.pair(ref, mov, name=name).knowing(known_from(args))
+    inputs = MergeInputs.of(read_case(case_folder(args.first, parser, "; for two maps give MAP1 and MAP2")))
+    known = known_from(args)
+    return inputs.knowing(known) if known else inputs

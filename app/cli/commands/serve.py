@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.argument_parser import Parser, whole_number
-from app.cli.map_arguments import add_reading, read_maps
+from app.cli.map_arguments import add_known, add_reading, any_known, known_from, read_maps
 from app.web.security.access_control import TOKEN_VARIABLE, Access, access_for, is_local, numeric
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ LOCAL = "127.0.0.1"
 PORT = 8080
 FIRST_SAMPLE = "office_r2_r1"
 
-USAGE = "[MAP1 MAP2 --observation FILE] [--host HOST] [--port PORT] [--token-file FILE] [--certfile FILE] ..."
+USAGE = "[MAP1 MAP2 [--observation FILE | what else is known]] [--host HOST] [--port PORT] ..."
 DESCRIPTION = f"""\
 Open the page: two maps, the sighting, every step of the merge.
 
@@ -45,7 +45,7 @@ can be read on the network, the token with it. SECURITY.md tells more. Ctrl-C en
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("map1", type=Path, metavar="MAP1", nargs="?", help="map of robot 1, the observer")
     parser.add_argument("map2", type=Path, metavar="MAP2", nargs="?", help="map of robot 2, the observed")
-    parser.add_argument("--observation", type=Path, metavar="FILE", help="what robot 1 saw")
+    add_known(parser)
     add_reading(parser)
     parser.add_argument("--host", default=LOCAL, help=f"address to listen at (default: {LOCAL})")
     port = whole_number(0, 65535, "is no port; give a number in [0, 65535]")
@@ -79,8 +79,10 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     from app.system import logging_setup as logs
     from app.web.download import DOWNLOADS
 
-    if (args.map1 is None) != (args.map2 is None) or (args.map1 is None) != (args.observation is None):
-        parser.error("give MAP1, MAP2 and --observation FILE together, or none of them for a sample")
+    if (args.map1 is None) != (args.map2 is None):
+        parser.error("give MAP1 and MAP2 together, or none of them for a sample")
+    if args.map1 is None and any_known(args):
+        parser.error("what is known is told of MAP1 and MAP2: give both maps, too")
     if args.behind:
         print(f"{parser.prog}: --behind is now --proxy-host", file=sys.stderr)
     proxies = (*args.proxy_host, *args.behind)
@@ -142,12 +144,15 @@ def _check_lesson(folder: Path) -> None:
 def _case(args: argparse.Namespace) -> Case | None:
     """What the page opens with: the maps that were named, else a sample; None if none is installed."""
     from algorithms.files.case_folder import Case, read_case
-    from algorithms.files.observation_file import read_observations
+    from algorithms.observations.observation import Observation
     from app.system.data_paths import samples
 
     if args.map1 is not None:
-        (ref, mov), observations = read_maps(args), read_observations(args.observation)
-        return Case(f"{ref.name} + {mov.name}", ref, mov, observations, args.observation.name, None)
+        (ref, mov), known = read_maps(args), known_from(args)
+        seen = tuple(one for one in known if isinstance(one, Observation))
+        priors = tuple(one for one in known if not isinstance(one, Observation))
+        name = args.observation.name if args.observation is not None else ""
+        return Case(f"{ref.name} + {mov.name}", ref, mov, seen, name, None, priors)
     known = samples()
     return read_case(known.get(FIRST_SAMPLE) or next(iter(known.values()))) if known else None
 

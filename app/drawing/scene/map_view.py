@@ -74,8 +74,8 @@ class MapView:
 
     # --- map 2 in a person's hand -----------------------------------------------------------------
 
-    def hold(self, at: Pose2) -> None:
-        """Put map 2 in a person's hand, at a place of the scene."""
+    def hold(self, at: Pose2, turns_only: bool = False) -> None:
+        """Put map 2 in a person's hand, at a place of the scene; ``turns_only``: it can't be shifted."""
         mov = self.inputs.mov
         if mov is None:
             return
@@ -85,7 +85,8 @@ class MapView:
         self.draw_robots(together=True)
         hull = known_hull(mov) - self.layout.anchor_mov
         self._messages.layer("grip", signs.grip(hull, self.palette))
-        self._messages.hand({"mov": {"hull": hull, "arm": signs.TURN_ARM, "cell": mov.resolution}})
+        how = {"arm": signs.TURN_ARM, "cell": mov.resolution, "still": turns_only}
+        self._messages.hand({"mov": {"hull": hull, **how}})
 
     def let_go(self) -> None:
         """Nothing is in a person's hand."""

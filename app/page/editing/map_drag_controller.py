@@ -8,9 +8,11 @@ from functools import partial
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2, wrap_angle
 from algorithms.methods.manual_merge import ManualMerge, known_answers, refine
-from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.merge_result import BY_HAND, CHOSEN, MergeResult
+from algorithms.methods.plane_method import PlaneMethodConfig
 from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.steps import ObservationDetail, Step
+from algorithms.methods.suggestions import suggested
 from algorithms.observations.pair_problem import PairProblem
 from app.model.run_state import RunState
 from app.page.editing.live_verdict import LiveVerdict
@@ -62,6 +64,14 @@ class MapDragController:
                 with self._locks.drawing:
                     self.take_up(manual, T_ref_mov)
 
+    def preview(self, T_ref_mov: Pose2, label: str) -> None:
+        """Take map 2 up at a transform, as a step of its own in the history."""
+        with self._locks.action:
+            self._runs.thread.stop()
+            self.begin(T_ref_mov)
+            if self.active:
+                self._undo.history.note(self._state.snapshot(), label)
+
     def take_up(self, manual: ManualMerge, T_ref_mov: Pose2 | None) -> None:
         """The same with what it is weighed on; whoever calls is drawing."""
         self._modes.enter(self._mode)
@@ -69,8 +79,9 @@ class MapDragController:
         self._verdict.weigh_on(manual)
         self._at = self._maps.mov_at if T_ref_mov is None else self._maps.layout.placed(T_ref_mov)
         self._state.update(hand=self._maps.layout.transform(self._at))
-        searches = isinstance(manual.config, PipelineConfig)
-        self._panel.open(True, refine=searches, prove=searches)
+        proves = isinstance(manual.config, PipelineConfig)
+        climbs = isinstance(manual.config, PlaneMethodConfig)
+        self._panel.open(True, refine=proves or climbs, prove=proves)
         self._display.views.comparison.offer(None, self._state.palette)
         if self._state.turn_to_map():
             self._display.show_view(self._redraw)
@@ -81,7 +92,7 @@ class MapDragController:
     def _new_manual(self) -> ManualMerge | None:
         """What a transform is weighed on; None where an input is missing, or wrong, which is reported."""
         state, i = self._state, self._state.inputs
-        if i.ref is None or i.mov is None or not i.observations:
+        if i.ref is None or i.mov is None or not i.complete:
             return None
         search = self._known_search
         known = known_answers(search.get(MergeResult)) if search is not None else ()
@@ -240,8 +251,10 @@ class MapDragController:
             manual, T, state = self._manual, self._state.hand, self._state
             if manual is None or T is None:
                 return
+            searched = self._known_search.get(MergeResult) if self._known_search is not None else None
+            chosen = searched is not None and suggested(searched, T) is not None
             try:
-                result = manual.weigh(T)
+                result = manual.weigh(T, method=CHOSEN if chosen else BY_HAND)
             except MapMergeError as error:
                 self._panel.tell(box(str(error), "refused"))
                 return

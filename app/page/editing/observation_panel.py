@@ -1,4 +1,4 @@
-"""Folder "Observation": its numbers, and the tools to place the robots by hand."""
+"""A sighting's numbers, and the tools to place the robots by hand."""
 
 from __future__ import annotations
 
@@ -42,24 +42,21 @@ class ObservationPanel:
     """Shows where the robots were and what one saw of the other; its widgets only ask."""
 
     def __init__(self, gui: viser.GuiApi) -> None:
-        with gui.add_folder("Observation", order=20.0, expand_by_default=False):
-            self._html = gui.add_html("")
-            quiet: Any = {"color": QUIET, "visible": False}
-            hint = "With the mouse, in place of an observation file; or mend the one there is."
-            icon = viser.Icon.MAP_PIN
-            self._toggle = gui.add_button("Place robots on the maps", icon=icon, hint=hint, **quiet)
-            self._step = gui.add_html("", visible=False)
-            self._which = gui.add_dropdown("Observation", ("1",), visible=False, hint="Which one is moved.")
-            self._fields: dict[str, Any] = {
-                name: gui.add_number(
-                    label, max(0.0, least), min=least, max=most, step=step, hint=hint, visible=False
-                )
-                for name, (label, hint, least, most, step) in FIELDS.items()
-            }
-            self._add = gui.add_button("Add another observation", **quiet)
-            self._remove = gui.add_button("Remove this observation", **quiet)
-            hint = "observation.yaml, to be loaded again."
-            self._save = gui.add_button("Save observation", icon=viser.Icon.DOWNLOAD, hint=hint, **quiet)
+        self._html = gui.add_html("", visible=False)
+        quiet: Any = {"color": QUIET, "visible": False}
+        hint = "With the mouse, in place of an observation file; or mend the one there is."
+        icon = viser.Icon.MAP_PIN
+        self._toggle = gui.add_button("Place robots on the maps", icon=icon, hint=hint, **quiet)
+        self._step = gui.add_html("", visible=False)
+        self._which = gui.add_dropdown("Observation", ("1",), visible=False, hint="Which one is moved.")
+        self._fields: dict[str, Any] = {
+            name: gui.add_number(
+                label, max(0.0, least), min=least, max=most, step=step, hint=hint, visible=False
+            )
+            for name, (label, hint, least, most, step) in FIELDS.items()
+        }
+        self._add = gui.add_button("Add another observation", **quiet)
+        self._remove = gui.add_button("Remove this observation", **quiet)
 
     def connect(
         self,
@@ -68,14 +65,13 @@ class ObservationPanel:
         choose: Callable[[int], None],
         add: Action,
         remove: Action,
-        save: Action,
     ) -> None:
         """What is done where a person begins or ends to place the robots, and meanwhile.
 
         typed  : a field and its new value; metres, radians; called in viser's loop
         choose : the number of an observation, from 0
         """
-        on_press((self._toggle, toggle), (self._add, add), (self._remove, remove), (self._save, save))
+        on_press((self._toggle, toggle), (self._add, add), (self._remove, remove))
         on_choice(self._which, lambda: choose(int(self._which.value) - 1))
         for name, handle in self._fields.items():
 
@@ -88,13 +84,13 @@ class ObservationPanel:
 
     def show(self, inputs: MergeInputs) -> None:
         """Show the numbers of these inputs; nothing is being placed."""
-        self._html.content, self._html.visible = observations_html(inputs), True
-        self._toggle.visible = inputs.ref is not None and inputs.mov is not None
-        self._toggle.label = "Move the robots by hand" if inputs.observations else "Place robots on the maps"
-        self._toggle.color = QUIET if inputs.observations else LIGHT.ref
+        seen, both = bool(inputs.observations), inputs.ref is not None and inputs.mov is not None
+        put(self._html, content=observations_html(inputs), visible=seen)
+        self._toggle.visible = both and inputs.choice in ("sighting", "all")
+        self._toggle.label = "Move the robots by hand" if seen else "Place robots on the maps"
+        self._toggle.color = QUIET if seen else LIGHT.ref
         for handle in (self._step, self._which, self._add, self._remove, *self._fields.values()):
             handle.visible = False
-        self._save.visible = bool(inputs.observations)
 
     def edit(self, drafts: list[ObservationDraft], chosen: int, trouble: str = "") -> None:
         """Show a draft in fields, and what is to be done next; ``trouble``: what was wrong with the last."""
@@ -113,7 +109,6 @@ class ObservationPanel:
             put(handle, visible=value is not None)
         whole = draft.missing is None
         self._add.visible, self._remove.visible = whole, several or draft.observer is not None
-        self._save.visible = all(one.missing is None for one in drafts)
 
 
 def fields_of(draft: ObservationDraft) -> dict[str, float | None]:
@@ -142,4 +137,4 @@ def observations_html(inputs: MergeInputs) -> str:
     for number, (o, at, doubt) in enumerate(rows, 1):
         head = (f"Observation {number} of {total}", "") if total > 1 else ()
         parts.append((box(doubt, "refused") if doubt else "") + table(sighting_rows(o, at), head))
-    return "".join(parts) or box("No observation yet.", "plain")
+    return "".join(parts)

@@ -9,12 +9,12 @@ import numpy as np
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
-from algorithms.files.observation_file import OBSERVATION_FILE, known_to_bytes
 from algorithms.observations.observation import Observation
 from app.drawing.legend import legend
 from app.drawing.scene import robot_symbols as signs
 from app.drawing.scene_layout import lay_out
 from app.model import status_text as words
+from app.model.knowledge import Choice
 from app.model.observation_draft import ObservationDraft, Part
 from app.model.run_state import RunState
 from app.model.view_modes import MAP
@@ -35,14 +35,14 @@ class PlacementController:
     def __init__(self, tab: Tab, undo: UndoController, runs: RunController, inputs: InputsController) -> None:
         self._state, self._display, self._modes = tab.state, tab.display, tab.modes
         self._messages, self._maps = tab.display.messages, tab.display.views.map
-        self._panels, self._panel, self._locks = tab.panels, tab.panels.observation, tab.state.locks
+        self._panels, self._panel, self._locks = tab.panels, tab.panels.knowledge.observation, tab.state.locks
         self._undo, self._runs, self._inputs = undo, runs, inputs
         self._drafts: list[ObservationDraft] = [ObservationDraft()]
         self._chosen = 0
         self._layout = lay_out(None, None, None)
         self._mode = tab.modes.add(Mode(self._end, leave=self._leave, redraw=self._show, resume=self._resume))
         typed = partial(tab.events.then, self._type)  # in order with what the page tells of the signs
-        self._panel.connect(self._toggle, typed, self._choose, self._add, self._remove, self._save)
+        self._panel.connect(self._toggle, typed, self._choose, self._add, self._remove)
         sign = {"id": PARTS, "at": Numbers(2, 2), "heading": Numbers(0, 1)}
         tab.events.on("drag", lambda **to: self._move(**to, rests=False), latest=True, **sign)
         tab.events.on("drop", lambda **to: self._move(**to, rests=True), **sign)
@@ -168,12 +168,6 @@ class PlacementController:
             self._drafts[self._chosen] = after
             self._settle() if rests else self._show()
 
-    def _save(self) -> None:
-        with self._locks.action:
-            made = self._made() if self.active else self._state.inputs.observations
-            if made:
-                self._panels.send(OBSERVATION_FILE, known_to_bytes(made))
-
     # --- what comes of it -------------------------------------------------------------------------
 
     def _made(self) -> tuple[Observation, ...]:
@@ -188,7 +182,10 @@ class PlacementController:
             self._show(str(error))
             return
         if made != self._state.inputs.observations:
-            inputs = replace(self._state.inputs, observations=made)
+            before = self._state.inputs
+            choice: Choice = "all" if before.choice == "all" else "sighting"
+            inputs = replace(before, observations=made, choice=choice)
+            self._inputs.follow(before, inputs)
             self._inputs.forget_results(inputs)
             self._panels.charts.clear()
             self._panels.run.merge.disabled = not inputs.complete
@@ -198,6 +195,7 @@ class PlacementController:
     def _show(self, trouble: str = "") -> None:
         draft = self._drafts[self._chosen]
         self._panel.edit(self._drafts, self._chosen, trouble)
+        self._panels.knowledge.savable(all(one.missing is None for one in self._drafts))
         if self._state.view != MAP:
             return
         others = [one for number, one in enumerate(self._drafts) if number != self._chosen]

@@ -16,7 +16,7 @@ from app.model.objective_label import measure_of
 from app.page.panels.html_widgets import Action, box, on_press, table
 
 HOW = (
-    "Drag map 2. To turn it about robot 2, drag the knob, or hold Shift or Alt. Arrow keys: one cell, with "
+    "Drag map 2. To turn it, drag the knob, or hold Shift or Alt. Arrow keys: one cell, with "
     "Shift 1 cm; [ and ]: 0.5°, with Shift 0.1°. The empty ground still pans."
 )
 SMALL = "margin:2px 12px 6px;font-size:12px;line-height:1.45;opacity:.85"
@@ -45,7 +45,7 @@ class TransformPanel:
             number = {"min": -FAR, "max": FAR, "visible": False}
             self._x = gui.add_number("T: Δx (m)", 0.0, step=0.01, hint="Right, in map 1.", **number)
             self._y = gui.add_number("T: Δy (m)", 0.0, step=0.01, hint="Up, in map 1.", **number)
-            hint = "Counter-clockwise, about robot 2."
+            hint = "Counter-clockwise, about the knob's foot: robot 2, or the middle of map 2."
             self._turn = gui.add_number("T: Δθ (°)", 0.0, step=0.1, hint=hint, **number)
             self._says = gui.add_html("", visible=False)
             self._refine, self._snap, self._take = (
@@ -100,8 +100,10 @@ def weighed_html(result: MergeResult, config: Any, method: Pose2 | None) -> str:
         ("likely right", words.likelihood(verdict.probability)),
         ("contradicted, as the maps are", f"{verdict.rigid_contradiction:.1%}"),
         ("wall in view of both", f"{verdict.shared_wall:.1f} m"),
-        ("robot 2 off its sighting", f"{verdict.deviation:.1f} σ"),
     ]
+    if result.weighed[0].deviations:
+        off = "robot 2 off its sighting" if result.encounters else "off what is known"
+        rows.append((off, f"{verdict.deviation:.1f} σ"))
     if method is not None:
         apart, turn = pose_error(result.T_ref_mov, method, result.pivot)
         rows.append(("off the method's answer", f"{apart:.2f} m, {degrees(turn):.1f}°"))

@@ -14,7 +14,7 @@ from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import MapMergeError
 from algorithms.files.case_folder import read_case
 from algorithms.files.map_file import READABLE_SUFFIXES, map_from_bytes, parse_meta
-from algorithms.files.observation_file import observations_from_bytes
+from algorithms.files.observation_file import known_from_bytes
 from algorithms.maps.grid_map import GridMap
 from app.drawing.palette import QUIET
 from app.model.merge_inputs import Files, MapSlot, MergeInputs, Upload
@@ -33,7 +33,7 @@ SLOTS = {
     "image1": ("Map 1: image", ",".join(READABLE_SUFFIXES)),
     "yaml2": ("Map 2: YAML", ".yaml,.yml"),
     "image2": ("Map 2: image", ",".join(READABLE_SUFFIXES)),
-    "observation": ("Observation: YAML", ".yaml,.yml"),
+    "observation": ("What is known: YAML", ".yaml,.yml"),
 }
 
 NO_YAML = (
@@ -91,10 +91,8 @@ def inputs_from(
 
     seen = uploads.get("observation")
     inputs = MergeInputs(
-        maps=tuple(read(number) for number in (1, 2)),
-        observations=observations_from_bytes(seen.name, seen.content) if seen else (),
-        name="your files" if uploads else "",
-    )
+        maps=tuple(read(number) for number in (1, 2)), name="your files" if uploads else ""
+    ).knowing(known_from_bytes(seen.name, seen.content) if seen else ())
     known.clear()  # of what is not there any more
     known.update(now)
     return inputs

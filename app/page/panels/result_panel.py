@@ -22,16 +22,19 @@ def result_html(
     config: Any = None,
     found: Contradictions | None = None,
     faded: bool = False,
+    suggestions: str = "",
 ) -> str:
     """HTML of the whole result; faded where it is out of date.
 
     config : the settings that were used
     found  : where the maps contradict each other
+    suggestions : HTML of what a refused merge suggests; never faded, since each can still be taken
     """
     verdict = result.verdict
     note = "Out of date: something was changed." if faded else words.remedy(result)
     return (
         box(verdict.reason, words.mood(verdict), note, faded)
+        + suggestions
         + why_html(verdict, faded)
         + (places_html(found, faded) if found is not None else "")
         + table(numbers(result, inputs, config), faded=faded)

@@ -9,6 +9,7 @@ from typing import Any
 from algorithms.common.pose import Pose2
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
+from app.model.knowledge import CHOICES
 from app.model.merge_inputs import Files, MergeInputs
 from app.model.merge_job import Goal
 from app.model.run_state import RunState
@@ -71,6 +72,10 @@ def change(before: PageSnapshot, after: PageSnapshot) -> tuple[str, Hashable]:
     old, new = before.inputs, after.inputs
     if old is not new:
         if old.grids == new.grids:
+            if old.choice != new.choice:
+                return f"known: {CHOICES[new.choice]}", None
+            if old.observations == new.observations:
+                return f"{CHOICES[new.choice]} by hand", "prior"
             count = len(new.observations)
             said = "observation by hand" if count == 1 else f"{count} observations by hand"
             return (said if count else "no observation"), "observation"

@@ -15,11 +15,19 @@ from algorithms.methods.steps import Step
 from app.drawing import grid_pixels as render
 from app.drawing.palette import DARK, LIGHT, Palette
 from app.model import status_text as words
+from app.model.knowledge import counted
 from app.model.merge_inputs import MergeInputs
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
 from app.model.settings import settings_of, text_for, value_at
-from app.report.replay.recorder import LATER_PARTICLES, PARTICLES, PICTURE, Recording, record, sizes
+from app.report.replay.recorder import (
+    LATER_PARTICLES,
+    PARTICLES,
+    PICTURE,
+    Recording,
+    record,
+    sizes,
+)
 from app.system.cancellation import Check, never_cancelled, wanted
 from app.system.data_paths import asset
 from app.system.version import versions
@@ -42,7 +50,7 @@ class ReplayMetadata:
         return [
             ["pair", self.inputs.name],
             *sizes(self.inputs),
-            ["observations", str(len(self.inputs.observations))],
+            ["known", counted(self.inputs.known)],
             ["method", f"{METHODS[self.method].title} ({self.method})"],
             ["seed", str(self.seed)],
             ["made with", ", ".join(f"{name} {number}" for name, number in self.versions.items())],

@@ -23,6 +23,7 @@ from app.drawing.scene.run_view import RunView
 from app.drawing.scene_layout import lay_out
 from app.model import status_text as words
 from app.model import verdict_text
+from app.model.knowledge import counted
 from app.model.merge_inputs import MergeInputs
 from app.model.playback import FRAME, dwell
 from app.model.run_state import RunState
@@ -30,7 +31,7 @@ from app.model.status_text import typeset
 from app.model.view_modes import MAP
 from app.report.replay.chart_recorder import curves
 from app.report.replay.image_recorder import PictureScene
-from app.report.result_rows import STAGES, numbers, sighting_rows
+from app.report.result_rows import STAGES, numbers, prior_rows, sighting_rows
 
 BEFORE = 1.2  # seconds that the maps lie side by side
 AFTER = 4.0  # seconds that the verdict stays
@@ -145,12 +146,14 @@ def sizes(inputs: MergeInputs) -> list[list[str]]:
 
 def beginning(inputs: MergeInputs) -> dict[str, Any]:
     """What there is before anything was done."""
-    seen = ["sightings of robot 2", str(len(inputs.observations))]
-    return {"title": inputs.name, "rows": [*sizes(inputs), seen]}
+    return {"title": inputs.name, "rows": [*sizes(inputs), ["known", counted(inputs.known)]]}
 
 
 def observed(inputs: MergeInputs) -> dict[str, Any]:
-    """The numbers of the first sighting."""
+    """The numbers of the first sighting; without one of what else is known."""
+    if not inputs.observations:
+        rows = [row for prior in inputs.priors for row in prior_rows(prior)]
+        return {"title": "What is known", "rows": _typeset(rows or [("of how the maps lie", "nothing")])}
     o, at = inputs.observations[0], inputs.encounters[0]
     of = f", the first of {len(inputs.observations)}" if len(inputs.observations) > 1 else ""
     return {"title": f"What robot 1 saw{of}", "rows": _typeset(sighting_rows(o, at))}

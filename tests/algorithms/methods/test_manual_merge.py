@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2, pose_error
-from algorithms.methods.manual_merge import BY_HAND, ManualMerge, known_answers, refine
-from algorithms.methods.merge_result import MergeResult
-from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
+from algorithms.methods.manual_merge import ManualMerge, known_answers, refine
+from algorithms.methods.merge_result import BY_HAND, MergeResult
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS, PLANE_METHOD, merge
 from algorithms.methods.steps import RefineDetail
 from algorithms.observations.pair_problem import PairProblem
 
@@ -114,3 +114,17 @@ def test_maps_are_never_touched_and_merging_twice_gives_the_same(small_case, res
     assert [grid.cells.tobytes() for grid in (small_case.ref, small_case.mov)] == before
     assert again.T_ref_mov == result.T_ref_mov
     assert again.fusion.merged.cells.tobytes() == result.fusion.merged.cells.tobytes()
+
+
+def test_without_a_sighting_a_hand_weighs_as_the_search_over_the_plane_does(small_case):
+    found = merge(small_case.ref, small_case.mov)
+    problem = PairProblem(small_case.ref, small_case.mov)
+    manual = ManualMerge(problem, METHODS[PLANE_METHOD].defaults, known_answers(found))
+    hand = manual.weigh(found.T_ref_mov)
+    assert hand.kind == found.kind
+    assert hand.verdict.probability == pytest.approx(found.verdict.probability, abs=0.01)
+    assert hand.value == pytest.approx(found.value)
+    beside = about(found.T_ref_mov, found.pivot, 0.1, -0.1, 0.01)
+    *_, last = refine(manual, beside)
+    assert last.detail.value >= manual.value(beside)
+    assert max(pose_error(last.detail.T_ref_mov, found.T_ref_mov, found.pivot)) < 0.05

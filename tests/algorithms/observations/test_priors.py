@@ -19,7 +19,13 @@ T = Pose2(3.0, -2.0, 0.7)
 AT = (1.5, 4.0)
 HERE = T.apply(np.array(AT)).tolist()
 RING = SightedRing(Observation(Pose2(0.0, 0.0, 0.3), *AT, 6.0, 0.4, sigma_range=1.0, sigma_bearing=pi), 0.1)
-PRIORS = [InitialPose(T, 0.5, 2.0, 0.2), TurnPrior(T.theta, 0.1), NearPlace(*HERE, *AT, 1.0), RING]
+PRIORS = [
+    InitialPose(T, 0.5, 2.0, 0.2),
+    TurnPrior(T.theta, 0.1),
+    NearPlace(*HERE, *AT, 1.0),
+    RING,
+    InitialPose(T, 0.5, 2.0, 0.2, *AT),
+]
 
 small = st.floats(-0.5, 0.5)
 
@@ -34,6 +40,13 @@ def test_a_standard_deviation_off_is_one():
     assert PRIORS[0].deviations(T.array()[None] + (0.0, 2.0, 0.0)) == pytest.approx([1])
     assert PRIORS[1].deviations(T.array()[None] + (9.0, 9.0, 0.1)) == pytest.approx([1])
     assert PRIORS[2].deviations(T.array()[None] + (0.5, 0.0, 0.0)) == pytest.approx([1])  # half the radius
+
+
+def test_a_pose_that_is_known_at_a_point_of_map_2_lets_it_turn_about_that_point():
+    turned = Pose2(0.0, 0.0, T.theta + 0.2)
+    x, y = (np.array(HERE) - turned.apply(np.array(AT))).tolist()
+    poses = np.array([[x, y, turned.theta], [x, y + 2.0, turned.theta]])
+    assert PRIORS[4].deviations(poses) == pytest.approx([1, 2**0.5])  # of the turn; of the turn and y
 
 
 @pytest.mark.parametrize("prior", PRIORS)

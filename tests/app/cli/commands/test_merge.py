@@ -22,8 +22,15 @@ from algorithms.methods import registry as methods
 from algorithms.methods.registry import METHODS
 from app.cli.main import main
 
-OF_A_REFUSAL = {"overlay.png", "report.html", "report.json"}
-ALL_FILES = {"merged.yaml", "merged.pgm", "transform.yaml"} | OF_A_REFUSAL
+ALWAYS = {"overlay.png", "report.html", "report.json"}
+ALL_FILES = {"merged.yaml", "merged.pgm", "transform.yaml"} | ALWAYS
+
+
+def of_a_refusal(folder) -> set[str]:
+    """What a refused merge leaves: what it suggests, too."""
+    suggested = json.loads((folder / "suggestions.json").read_text())
+    assert suggested
+    return ALWAYS | {"suggestions.json"} | {each["picture"] for each in suggested}
 
 
 def test_a_merge_leaves_its_files_and_ends_with_0(case_folder, tmp_path, capsys):
@@ -74,7 +81,7 @@ def test_a_bent_merge_is_a_merge_unless_it_is_to_be_strict(bent_folder, tmp_path
     assert {path.name for path in tmp_path.iterdir()} == ALL_FILES
     assert main([*asked, "--strict"]) == 1
     assert "a bent merge is not wanted" in capsys.readouterr().out
-    assert {path.name for path in tmp_path.iterdir()} == OF_A_REFUSAL
+    assert {path.name for path in tmp_path.iterdir()} == ALWAYS  # it is right: there is nothing to choose
     assert main([*asked, "--strict", "--force"]) == 1
     assert {path.name for path in tmp_path.iterdir()} == ALL_FILES
 
@@ -145,7 +152,7 @@ def test_a_method_starts_from_its_own_defaults(case_folder, tmp_path):
 
 def test_a_refused_merge_ends_with_1_and_leaves_no_map(strangers_folder, tmp_path, capsys):
     assert main(["merge", *inputs(strangers_folder), "--out", str(tmp_path)]) == 1
-    assert {path.name for path in tmp_path.iterdir()} == OF_A_REFUSAL
+    assert {path.name for path in tmp_path.iterdir()} == of_a_refusal(tmp_path)
     said = capsys.readouterr().out
     assert said.startswith("Refused: ")
     assert "--force" in said
@@ -154,8 +161,29 @@ def test_a_refused_merge_ends_with_1_and_leaves_no_map(strangers_folder, tmp_pat
 
 def test_force_writes_the_refused_map_and_still_ends_with_1(strangers_folder, tmp_path):
     assert main(["merge", *inputs(strangers_folder), "--out", str(tmp_path), "--force"]) == 1
-    assert {path.name for path in tmp_path.iterdir()} == ALL_FILES
+    assert {path.name for path in tmp_path.iterdir()} == ALL_FILES | of_a_refusal(tmp_path)
     assert yaml.safe_load((tmp_path / "transform.yaml").read_text())["accepted"] is False
+
+
+def test_a_suggestion_is_taken_on_the_word_of_a_person(strangers_folder, tmp_path, capsys):
+    maps = inputs(strangers_folder)[:2]
+    assert main(["merge", *maps, "--out", str(tmp_path)]) == 1
+    suggested = json.loads((tmp_path / "suggestions.json").read_text())
+    assert "--take N" in capsys.readouterr().out
+    last = suggested[-1]
+    assert main(["merge", *maps, "--out", str(tmp_path), "--take", str(last["number"])]) == 0
+    assert capsys.readouterr().out.startswith("Chosen by you. Refused: ")
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["T_ref_mov"] == last["T_ref_mov"]
+    assert report["method"] == "chosen by you"
+    assert {path.name for path in tmp_path.iterdir()} == ALL_FILES  # no suggestion is left of the run before
+
+
+def test_a_suggestion_that_is_not_there_is_told_in_a_line(case_folder, tmp_path, capsys):
+    asked = ["merge", *inputs(case_folder), "--out", str(tmp_path), "--take", "5"]
+    assert main(asked) == 2
+    assert "to take" in capsys.readouterr().err
+    assert not (tmp_path / "merged.yaml").exists()
 
 
 def test_a_refused_merge_takes_an_earlier_map_away_and_says_so(
@@ -164,12 +192,7 @@ def test_a_refused_merge_takes_an_earlier_map_away_and_says_so(
     (tmp_path / "notes.txt").write_text("mine")
     assert main(["merge", *inputs(case_folder), "--out", str(tmp_path)]) == 0
     assert main(["merge", *inputs(strangers_folder), "--out", str(tmp_path)]) == 1
-    assert {path.name for path in tmp_path.iterdir()} == {
-        "overlay.png",
-        "report.html",
-        "report.json",
-        "notes.txt",
-    }
+    assert {path.name for path in tmp_path.iterdir()} == of_a_refusal(tmp_path) | {"notes.txt"}
     assert "removed" in capsys.readouterr().out
 
 

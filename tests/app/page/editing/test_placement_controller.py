@@ -18,7 +18,7 @@ from app.page.undo.undo_controller import UndoController
 
 @pytest.fixture
 def tab(inputs):
-    return noting_tab(MergeInputs.pair(inputs.ref, inputs.mov))
+    return noting_tab(MergeInputs.pair(inputs.ref, inputs.mov).knowing((), "sighting"))
 
 
 @pytest.fixture
@@ -33,8 +33,8 @@ def placing(tab) -> PlacementController:
 
 
 def press(tab, which: int) -> None:
-    """Press a button of the panel: 0 begin or end, 3 add, 4 remove, 5 save."""
-    tab.panels.observation.connect.call_args.args[which]()
+    """Press a button of the panel: 0 begin or end, 3 add, 4 remove."""
+    tab.panels.knowledge.observation.connect.call_args.args[which]()
 
 
 def drop(tab, sign: str, point, heading: float | None = None) -> None:
@@ -65,7 +65,7 @@ def test_three_touches_make_the_observation_that_they_show(placing, tab, inputs)
 
 def test_a_touch_beside_the_map_is_refused_with_a_word(placing, tab):
     drop(tab, "observer", (1e4, 0.0))
-    assert "not in map 1" in tab.panels.observation.edit.call_args.args[2]
+    assert "not in map 1" in tab.panels.knowledge.observation.edit.call_args.args[2]
     assert tab.state.inputs.observations == ()
 
 
@@ -81,14 +81,10 @@ def test_escape_drops_a_half_placed_observation_and_leaves_a_whole_one(placing, 
     assert tab.state.inputs.observations == ()
 
 
-def test_what_is_saved_reads_back_as_what_was_placed(placing, tab, inputs):
-    press(tab, 5)
-    tab.panels.send.assert_not_called()  # nothing is whole yet
+def test_only_whole_observations_can_be_saved(placing, tab, inputs):
+    tab.panels.knowledge.savable.assert_called_with(False)
     place_all(tab, inputs)
-    press(tab, 5)
-    name, content = tab.panels.send.call_args.args
-    assert name == "observation.yaml"
-    assert b"measurement" in content
+    tab.panels.knowledge.savable.assert_called_with(True)
 
 
 def test_done_shows_everything_as_usual(placing, tab, inputs):

@@ -226,7 +226,6 @@ def test_the_command_takes_two_maps_as_merge_does(case_folder, tmp_path):
     [
         (["ofice_r2_r1", "--out", "a.html"], "did you mean office_r2_r1?"),
         (["office_r2_r1", "--out", "a.txt"], "let its name end in .html"),
-        (["map1.yaml", "map2.yaml", "--out", "a.html"], "--observation FILE"),
         (["office_r2_r1", "--out", "a.html", "--resolution", "0.1"], "give both maps"),
         (["office_r2_r1", "--out", "a.html", "--unknown-grey", "205"], "give both maps"),
     ],
