@@ -149,12 +149,13 @@ METHODS: dict[str, Method] = {
 }
 
 
-def default_method(problem: PairProblem) -> str:
+def default_method(problem: PairProblem, among: Sequence[str] = (DEFAULT_METHOD, PLANE_METHOD)) -> str:
     """The method that suits what is known: near a sighting that is sharp enough the proven one, else the one
-    that searches the plane.
+    that searches the plane; where it is not among those to choose from, the first of them.
     """
     sharp = problem.observations and problem.window(WindowConfig()).disc <= SHARP
-    return DEFAULT_METHOD if sharp else PLANE_METHOD
+    suits = DEFAULT_METHOD if sharp else PLANE_METHOD
+    return suits if suits in among else among[0]
 
 
 def method_of(config: Any) -> str:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
-from algorithms.methods.registry import DEFAULT_METHOD, METHODS, PLANE_METHOD, default_method
-from algorithms.observations.pair_problem import PairProblem
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS, PLANE_METHOD
 from app.cli.argument_parser import Parser, did_you_mean, whole_number
 from app.model.settings import Setting, settings_of, value_at, what_became_of, with_value
 
@@ -21,14 +20,13 @@ def add_method(
 ) -> None:
     """Add ``--method``, ``--seed`` and the settings of the method that ``words`` ask for.
 
-    suits : whether a method that suits what is known is taken where none is named; ``method_for`` tells it
+    default : the method whose settings are taken where none is named
+    suits   : whether then the one that suits what is known is to run; ``configs_from`` has those in question
     """
     _method_flag(parser, default, suits)
     add_seed(parser)
     ahead = Parser(prog=parser.prog, add_help=False, strict=False)
     _method_flag(ahead, default, suits)
-    if suits and "--observation" not in [word.partition("=")[0] for word in words]:
-        default = PLANE_METHOD
     named = ahead.parse_known_args(words)[0].method or default
     parser.set_defaults(settings_of=named)
     defaults = METHODS[named].defaults
@@ -60,30 +58,31 @@ def config_from(args: argparse.Namespace, method: str = "") -> Any:
     return config
 
 
-def method_for(args: argparse.Namespace, problem: PairProblem) -> str:
-    """The method that is named, or else the one that suits what is known; not where a setting was given that
-    it does not have.
+def configs_from(args: argparse.Namespace) -> dict[str, Any]:
+    """The config of the method that is named, or of each that ``default_method`` chooses from and that has
+    every setting that was given; by the method's name.
     """
     if args.method is not None:
-        return str(args.method)
-    suits = default_method(problem)
-    has = {setting.path for setting in settings_of(METHODS[suits].defaults)}
-    for setting in settings_of(METHODS[args.settings_of].defaults):
-        if getattr(args, _flag(setting)) is not None and setting.path not in has:
-            return str(args.settings_of)
-    return suits
+        return {args.method: config_from(args)}
+    own = settings_of(METHODS[args.settings_of].defaults)
+    given = {setting.path for setting in own if getattr(args, _flag(setting)) is not None}
+    has = {
+        name: {setting.path for setting in settings_of(METHODS[name].defaults)}
+        for name in (DEFAULT_METHOD, PLANE_METHOD)
+    }
+    return {name: config_from(args, name) for name, paths in has.items() if given <= paths}
 
 
-def method_name(name: str) -> str:
+def method_name(name: str, known: Collection[str] = METHODS) -> str:
     """The name of a method, as it was given."""
-    if name not in METHODS:
-        near = did_you_mean(name, METHODS) or f"; known are {', '.join(METHODS)}"
+    if name not in known:
+        near = did_you_mean(name, known) or f"; known are {', '.join(known)}"
         raise argparse.ArgumentTypeError(f"there is no method {name or 'without a name'}{near}")
     return name
 
 
 def _method_flag(parser: argparse.ArgumentParser, default: str, suits: bool) -> None:
-    usual = f"{default} near a good sighting, else {PLANE_METHOD}" if suits else default
+    usual = f"{DEFAULT_METHOD} near a good sighting, else {PLANE_METHOD}" if suits else default
     titles = "\n".join(f"{name}: {method.title}" for name, method in METHODS.items())
     parser.add_argument(
         "--method",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from statistics import median
@@ -11,10 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.common.errors import NoAnswerError
+from algorithms.common.errors import MapMergeError, NoAnswerError
 from algorithms.files.case_folder import Case, case_folders, group_of
 from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE
+from algorithms.methods.registry import default_method
+from algorithms.observations.pair_problem import Known, PairProblem
+from algorithms.simulator.rough_priors import Knowledge
 from algorithms.verdict.calibration import brier_score, calibration_error, reliability
+from app.evaluation.case_knowledge import known_of
 from app.evaluation.crossed_pairs import Pair, name_of_pair, read_pair
 from app.evaluation.method_run import Judgement, judge_case, merge_or_reason, reason_of
 from app.jobs.executor import Executor, LostTask, SerialExecutor, Task
@@ -25,19 +29,26 @@ OVERALL = "overall"
 
 @dataclass(frozen=True)
 class EvaluationTask:
-    """What is to be run on every case, with its badly measured observation where it is to be rough."""
+    """What is to be run on every case.
+
+    configs   : settings by the name of their method; of several the one that suits what is known is run
+    rough     : take the badly measured observation of each
+    knowledge : what the method is told of each, as in ``known_of``
+    """
 
     root: Path
-    method: str
-    config: Any
+    configs: Mapping[str, Any]
     seed: int = 0
     rough: bool = False
+    knowledge: Knowledge = "sighting"
 
 
 @dataclass(frozen=True)
 class EvaluatedCase:
     """What came of one case.
 
+    knowledge : what the method was told
+    drawn     : a rough pose or a rough turn, where one was drawn for it
     report    : as in report.json; without one ``no_answer`` says that the method found no transform, or
                 ``error`` why it could not be run
     truth     : None where none is known, or the method could not be run
@@ -51,6 +62,8 @@ class EvaluatedCase:
     error: str = ""
     truth: Judgement | None = None
     seconds: float = 0.0
+    knowledge: Knowledge = "sighting"
+    drawn: tuple[Known, ...] = ()
 
     @property
     def accepted(self) -> bool:
@@ -73,8 +86,8 @@ class EvaluatedCase:
         return self.truth is not None and self.accepted and not self.truth.right
 
     def plain(self) -> dict[str, Any]:
-        """As JSON holds it: of report, no_answer and error what there is."""
-        outcome = ("report", "no_answer", "error")
+        """As JSON holds it: of report, no_answer, error and drawn what there is."""
+        outcome = ("report", "no_answer", "error", "drawn")
         return {name: value for name, value in asdict(self).items() if value or name not in outcome}
 
 
@@ -115,13 +128,20 @@ def run_case(pair: Pair, order: EvaluationTask, read: Loaded | EvaluatedCase | N
     if isinstance(read, EvaluatedCase):
         return read
     (case, reading_s), began = read, perf_counter()
-    result = merge_or_reason(case, order.method, order.config, order.seed)
+    try:
+        known = known_of(case, order.knowledge)
+        problem = PairProblem.of(case.ref, case.mov, known)
+    except MapMergeError as error:
+        return _evaluated(case.name, order, error=reason_of(error), seconds=reading_s)
+    method = default_method(problem, tuple(order.configs))
+    config = order.configs[method]
+    result = merge_or_reason(case, method, config, order.seed, known=known)
     outcome: dict[str, Any] = {"error": result}
     if isinstance(result, NoAnswerError):
         outcome = {"no_answer": str(result), "truth": judge_case(case, None)}
     elif not isinstance(result, str):
-        report = report_of(result, order.config, reading_s)
-        outcome = {"report": report, "truth": judge_case(case, result)}
+        outcome = {"report": report_of(result, config, reading_s), "truth": judge_case(case, result)}
+    outcome |= {"drawn": () if order.knowledge == "sighting" else known}
     return _evaluated(case.name, order, **outcome, seconds=reading_s + perf_counter() - began)
 
 
@@ -135,7 +155,8 @@ def _read(pair: Pair, order: EvaluationTask) -> Loaded | EvaluatedCase:
 
 
 def _evaluated(name: str, order: EvaluationTask, **outcome: Any) -> EvaluatedCase:
-    return EvaluatedCase(name, ROUGH_OBSERVATION_FILE if order.rough else OBSERVATION_FILE, **outcome)
+    file = ROUGH_OBSERVATION_FILE if order.rough else OBSERVATION_FILE
+    return EvaluatedCase(name, file, knowledge=order.knowledge, **outcome)
 
 
 def totals_of(cases: Sequence[EvaluatedCase]) -> dict[str, dict[str, Any]]:
@@ -143,6 +164,8 @@ def totals_of(cases: Sequence[EvaluatedCase]) -> dict[str, dict[str, Any]]:
 
     n, judged, errors : cases, those with a truth that ran, those that failed
     right, fine       : of the judged, whether accepted or refused
+    right_first       : of the judged that should merge: the answer that is named is right
+    right_among_five  : of the judged that should merge: one of the first five answers is
     right_accepted    : of the judged that should merge: right and accepted
     refused           : of all that ran; with those where the method found no transform at all
     wrong_accepted    : of the judged: accepted, and not right
@@ -162,6 +185,8 @@ def _totals(cases: Sequence[EvaluatedCase]) -> dict[str, Any]:
         "judged": len(truths),
         "right": sum(truth.right for truth in truths),
         "fine": sum(truth.fine for truth in truths),
+        "right_first": sum(case.transform_right for case in ran),
+        "right_among_five": sum(truth.among_five for truth in truths),
         "right_accepted": sum(case.transform_right and case.accepted for case in ran),
         "refused": sum(not case.accepted for case in ran),
         "wrong_accepted": sum(case.wrong_accepted for case in ran),

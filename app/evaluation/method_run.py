@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from math import radians
 from time import perf_counter
 from typing import Any, Literal
+
+import numpy as np
 
 from algorithms.common.errors import MapMergeError, NoAnswerError
 from algorithms.common.pose import Pose2, pose_error
@@ -16,6 +18,7 @@ from algorithms.maps.map_fusion import Fusion, fuse
 from algorithms.methods import registry as methods
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.stage_runner import StageCache
+from algorithms.observations.pair_problem import Known
 from algorithms.verdict.decision import Outcome
 from algorithms.verdict.performance_index import performance_index
 from app.jobs.warm_up import small_merge
@@ -23,6 +26,7 @@ from app.model.settings import settings_of, value_at
 
 FINE_M = 0.15
 FINE_RAD = radians(1)
+FIRST_ANSWERS = 5  # as many as a person looks through
 
 
 @dataclass(frozen=True)
@@ -82,6 +86,8 @@ class Judgement:
     distance, angle : from the truth, at the seen robot; metres, radians; None without a transform
     right, fine     : within the case's tolerance, within FINE_M and FINE_RAD. Two maps that share no place
                       have no right transform: there, right means refused
+    among_five      : whether the merge, or one of the first answers that were weighed beside it, is within
+                      the tolerance; of maps that share no place none is
     """
 
     distance: float | None
@@ -89,6 +95,7 @@ class Judgement:
     right: bool
     fine: bool
     expected: Literal["merge", "refuse"]
+    among_five: bool = False
 
 
 def true_fusion(case: Case) -> Fusion | None:
@@ -100,18 +107,26 @@ def true_fusion(case: Case) -> Fusion | None:
 
 
 def run_method(
-    case: Case, method: str, config: Any, seed: int, true: Fusion | None, memo: StageCache | None = None
+    case: Case,
+    method: str,
+    config: Any,
+    seed: int,
+    true: Fusion | None,
+    memo: StageCache | None = None,
+    known: Sequence[Known] | None = None,
 ) -> MethodRun:
     """Run a method and judge it; what goes wrong with it is in the answer.
 
     config : its settings; None: its defaults
     true   : ``true_fusion(case)``, made once for many runs
     memo   : as in ``methods.run``. The seconds of a stage that is remembered count as if it had run
+    known  : what it is told of the case; all that is known unless given
     """
     config = methods.METHODS[method].defaults if config is None else config
-    _load_code(method, config)
+    known = case.known if known is None else known
+    _load_code(method, config, bool(known))
     began = perf_counter()
-    result = merge_or_reason(case, method, config, seed, memo)
+    result = merge_or_reason(case, method, config, seed, memo, known)
     elapsed = perf_counter() - began
     if isinstance(result, str):
         return MethodRun.failure(result)
@@ -135,11 +150,20 @@ def run_method(
 
 
 def merge_or_reason(
-    case: Case, method: str, config: Any, seed: int, memo: StageCache | None = None
+    case: Case,
+    method: str,
+    config: Any,
+    seed: int,
+    memo: StageCache | None = None,
+    known: Sequence[Known] | None = None,
 ) -> MergeResult | NoAnswerError | str:
-    """The result of a method, its refusal, or why it could not be run: a bug in one must not cost others."""
+    """The result of a method, its refusal, or why it could not be run: a bug in one must not cost others.
+
+    known : what it is told of the case; all that is known unless given
+    """
+    known = case.known if known is None else known
     try:
-        *_, last = methods.run(method, case.ref, case.mov, case.known, config, seed, memo)
+        *_, last = methods.run(method, case.ref, case.mov, known, config, seed, memo)
     except NoAnswerError as refusal:
         return refusal
     except Exception as error:
@@ -154,18 +178,26 @@ def reason_of(error: Exception) -> str:
 
 
 def judge_case(case: Case, result: MergeResult | None) -> Judgement | None:
-    """How far a merge, or None where a method found no transform, is from the truth; None without one."""
+    """How far a merge, or None where a method found no transform, is from the truth; None without one.
+
+    The distance is taken where robot 2 was first seen, also of a merge that was not told so.
+    """
     truth = case.truth
     if truth is None:
         return None
     distance = angle = None
-    right = fine = False
+    right = fine = among_five = False
     if truth.T_ref_mov is not None and result is not None:
-        distance, angle = pose_error(result.T_ref_mov, truth.T_ref_mov, result.pivot)
+        at, seen = result.pivot, case.observations[:1]
+        if seen:
+            at = np.array([seen[0].observed_x, seen[0].observed_y])
+        distance, angle = pose_error(result.T_ref_mov, truth.T_ref_mov, at)
         right, fine = truth.allows(distance, angle), distance <= FINE_M and angle <= FINE_RAD
+        first = (each.T_ref_mov for each in result.weighed[:FIRST_ANSWERS])
+        among_five = right or any(truth.allows(*pose_error(T, truth.T_ref_mov, at)) for T in first)
     if truth.expected == "refuse":
-        right, fine = result is None or not result.verdict.accepted, False
-    return Judgement(distance, angle, right, fine, truth.expected)
+        right, fine, among_five = result is None or not result.verdict.accepted, False, False
+    return Judgement(distance, angle, right, fine, truth.expected, among_five)
 
 
 # ---- the first run of a method loads its code: seconds that are not the method's
@@ -173,12 +205,14 @@ def judge_case(case: Case, result: MergeResult | None) -> Judgement | None:
 _loaded: set[tuple[Any, ...]] = set()
 
 
-def _load_code(method: str, config: Any) -> None:
-    """Merge a room with itself, once per process and method: numbers don't choose code, words do."""
+def _load_code(method: str, config: Any, informed: bool) -> None:
+    """Merge a room with itself, once per process and method: numbers don't choose code, words do, and whether
+    anything is known.
+    """
     words = tuple(value_at(config, at.path) for at in settings_of(config) if at.bounds is None)
-    if (method, words) in _loaded:
+    if (method, words, informed) in _loaded:
         return
-    _loaded.add((method, words))
+    _loaded.add((method, words, informed))
     room = small_merge()
     with suppress(Exception):  # a room so small may be beyond a method; the real maps tell what matters
-        list(methods.run(method, room.ref, room.mov, room.observations, config))
+        list(methods.run(method, room.ref, room.mov, room.observations if informed else (), config))

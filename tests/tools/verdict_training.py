@@ -13,7 +13,6 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-import zlib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import exp, log, pi, radians
@@ -41,6 +40,7 @@ from algorithms.verdict.calibration import brier_score, calibration_error
 from algorithms.verdict.probability_model import MODEL_FILE, ModelKind, VerdictModel
 from app.cli.executor_flags import executor_for
 from app.cli.progress_bar import bar
+from app.evaluation.case_knowledge import known_of
 from app.evaluation.crossed_pairs import Crossing, Pair, building_of, crossings, read_pair
 from app.evaluation.dataset_evaluation import rough_folders
 from app.evaluation.table_files import aligned
@@ -277,9 +277,7 @@ def _real(_: None, given: tuple[Path, Pair, Any]) -> list[Labelled]:
     known: tuple[Known, ...] = case.observations
     model: ModelKind = "sighting"
     if way in OTHER_KNOWLEDGE:
-        rng, model = stream(zlib.crc32(case.name.encode()), "knowledge"), "plane"
-        somewhere = met_at(case.observations[0], uniform(rng, -pi, pi))
-        known = rough_prior(case.truth.T_ref_mov or somewhere, way, rng)
+        known, model = known_of(case, way), "plane"
     example = _example(case, known, truth, buildings, model)
     return [] if example is None else [Labelled(example, kind)]
 

@@ -23,7 +23,7 @@ from algorithms.observations.pair_problem import PairProblem
 from app.cli.argument_parser import Parser, whole_number
 from app.cli.map_arguments import add_known, add_reading, known_from, read_maps
 from app.cli.progress_bar import result_of
-from app.cli.setting_flags import add_method, config_from, method_for
+from app.cli.setting_flags import add_method, configs_from
 from app.evaluation.table_files import aligned
 from app.model import verdict_text
 from app.model.merge_inputs import MergeInputs
@@ -92,7 +92,8 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     about = "take answer N of those that a refused merge suggests: you know that it is right"
     parser.add_argument("--take", type=whole_number(1, MOST), metavar="N", help=about)
     parser.add_argument("--force", action="store_true", help="write the merged map of a refused merge, too")
-    add_method(parser, words, suits=True)
+    seen = "--observation" in [word.partition("=")[0] for word in words]
+    add_method(parser, words, methods.DEFAULT_METHOD if seen else methods.PLANE_METHOD, suits=True)
 
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
@@ -101,8 +102,9 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     (ref, mov), known = read_maps(args), known_from(args)
     load_s = perf_counter() - began
     problem = PairProblem.of(ref, mov, known)
-    method = method_for(args, problem)
-    config = config_from(args, method)
+    configs = configs_from(args)
+    method = methods.default_method(problem, tuple(configs))
+    config = configs[method]
     warnings = remarks_on((ref, mov))
     for warning in warnings:
         print(f"warning: {warning}", file=sys.stderr)

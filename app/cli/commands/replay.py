@@ -14,7 +14,7 @@ from algorithms.observations.pair_problem import PairProblem
 from app.cli.argument_parser import Parser
 from app.cli.map_arguments import add_known, add_reading, case_folder, known_from, read_maps
 from app.cli.progress_bar import with_bar
-from app.cli.setting_flags import add_method, config_from, method_for
+from app.cli.setting_flags import add_method, configs_from
 from app.model.merge_inputs import MergeInputs
 from app.report.replay.html_page import ReplayMetadata, replay_html
 from app.report.replay.recorder import record
@@ -60,8 +60,10 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     check_file(args.out)
     assert inputs.ref is not None
     assert inputs.mov is not None
-    method = method_for(args, PairProblem.of(inputs.ref, inputs.mov, inputs.known))
-    config = config_from(args, method)
+    configs = configs_from(args)
+    problem = PairProblem.of(inputs.ref, inputs.mov, inputs.known)
+    method = methods.default_method(problem, tuple(configs))
+    config = configs[method]
     steps = methods.run(method, inputs.ref, inputs.mov, inputs.known, config, args.seed)
     recording = record(with_bar(steps), inputs, config)
     page = replay_html(recording, ReplayMetadata(inputs, method, config, args.seed))

@@ -63,3 +63,26 @@ def test_evaluate_tells_how_true_the_probabilities_are_and_what_became_of_wrong_
     assert "wrong pairs: 3, accepted 0, failed 0" in said
     assert f"ECE {told['calibration']['ece']:.3f}" in said
     assert told["totals"]["flat"]["right_accepted"] == 2
+
+
+def test_the_same_wrong_pairs_are_run_with_each_kind_of_knowledge(two_buildings, tmp_path, capsys):
+    words = [
+        "--knowledge",
+        "initial,none",
+        "--method",
+        "harris",
+        "--wrong-pairs",
+        "2",
+        "--json",
+        str(tmp_path / "out.json"),
+    ]
+    assert main(["evaluate", str(two_buildings), *words]) == 0
+    told = json.loads((tmp_path / "out.json").read_text())
+    pairs = {
+        kind: [each for each in told["wrong_pairs"] if each["knowledge"] == kind]
+        for kind in ("initial", "none")
+    }
+    assert [each["case"] for each in pairs["initial"]] == [each["case"] for each in pairs["none"]]
+    assert all(each["drawn"] for each in pairs["initial"])
+    assert told["by_knowledge"]["none"]["calibration"]["n"] == 4 + 2
+    assert capsys.readouterr().out.count("wrong pairs: 2, accepted 0, failed 0") == 2

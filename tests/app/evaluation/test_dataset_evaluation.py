@@ -8,7 +8,10 @@ from pathlib import Path
 import pytest
 
 from algorithms.common.errors import NoAnswerError
+from algorithms.common.pose import Pose2
+from algorithms.files.observation_file import known_to_bytes
 from algorithms.methods import registry as methods
+from algorithms.observations.priors import InitialPose
 from app.cli.main import main
 from app.evaluation import dataset_evaluation as evaluate
 from app.evaluation.dataset_evaluation import EvaluatedCase, EvaluationTask, run_case, totals_of
@@ -21,11 +24,11 @@ DEFAULTS = methods.METHODS[METHOD].defaults
 
 
 def order(root, **more):
-    return EvaluationTask(Path(root), METHOD, DEFAULTS, **more)
+    return EvaluationTask(Path(root), {METHOD: DEFAULTS}, **more)
 
 
-def entry(name, accepted=True, right=True, fine=False, seconds=1.0, judged=True):
-    truth = Judgement(0.0, 0.0, right, fine, "merge") if judged else None
+def entry(name, accepted=True, right=True, fine=False, seconds=1.0, judged=True, among=False):
+    truth = Judgement(0.0, 0.0, right, fine, "merge", right or among) if judged else None
     report = {"verdict": {"accepted": accepted}}
     return EvaluatedCase(name, "o", report, truth=truth, seconds=seconds)
 
@@ -34,7 +37,7 @@ def test_totals_count_each_group_by_the_name_up_to_its_first_underscore():
     totals = totals_of(
         [
             entry("a_1_x", fine=True, seconds=1.0),
-            entry("a_2", right=False, seconds=3.0),
+            entry("a_2", right=False, seconds=3.0, among=True),
             entry("a_3", right=False, accepted=False, seconds=8.0),
             entry("b_1", judged=False),
             entry("b_2", accepted=False),
@@ -47,6 +50,8 @@ def test_totals_count_each_group_by_the_name_up_to_its_first_underscore():
         "judged": 3,
         "right": 1,
         "fine": 1,
+        "right_first": 1,
+        "right_among_five": 2,
         "right_accepted": 1,
         "refused": 1,
         "wrong_accepted": 1,
@@ -58,6 +63,8 @@ def test_totals_count_each_group_by_the_name_up_to_its_first_underscore():
         "judged": 1,
         "right": 1,
         "fine": 0,
+        "right_first": 1,
+        "right_among_five": 1,
         "right_accepted": 0,
         "refused": 1,
         "wrong_accepted": 0,
@@ -264,3 +271,91 @@ def test_without_a_truth_no_answer_is_not_judged(unanswering, small_case, case_m
 def test_evaluate_ends_with_0_where_a_case_has_no_answer(unanswering, case_folder, capsys):
     assert main(["evaluate", str(case_folder), "--method", METHOD]) == 0
     assert "failed" not in capsys.readouterr().out
+
+
+# ---- knowledge other than a sighting
+
+KINDS = ("sighting", "initial", "turn", "none")
+
+
+@pytest.fixture
+def two(case_maker, small_case, strangers, tmp_path):
+    """A folder of a case to be merged, and one to be refused."""
+    case_maker(small_case, "flat_1")
+    case_maker(strangers, "neg_1")
+    return tmp_path / "cases"
+
+
+def test_each_kind_of_knowledge_has_its_table_and_the_method_that_suits_it(two, tmp_path, capsys):
+    words = ["--knowledge", ",".join(KINDS), "--json", str(tmp_path / "out.json")]
+    assert main(["evaluate", str(two), *words]) == 0
+    told = json.loads((tmp_path / "out.json").read_text())
+    assert [(each["knowledge"], each["case"]) for each in told["cases"]] == [
+        (kind, case) for kind in KINDS for case in ("flat_1", "neg_1")
+    ]
+    for each in told["cases"]:
+        sighting = each["knowledge"] == "sighting"
+        assert each["report"]["method"] == ("spectra-proven" if sighting else "whole-plane")
+        assert ("drawn" in each) is (each["knowledge"] in ("initial", "turn"))
+        assert each["truth"]["right"]
+        assert each["truth"]["among_five"] is (each["case"] == "flat_1")
+    assert list(told["by_knowledge"]) == list(KINDS)
+    for kind, found in told["by_knowledge"].items():
+        overall = found["totals"]["overall"]
+        assert (overall["n"], overall["right"], overall["right_first"]) == (2, 2, 1), kind
+        assert found["calibration"]["n"] == 2
+    assert told["totals"]["overall"]["n"] == 2 * len(KINDS)
+    lines = capsys.readouterr().out.splitlines()
+    assert [line for line in lines if line in KINDS] == list(KINDS)
+    assert sum("first five" in line for line in lines) == len(KINDS)
+
+
+def test_what_is_drawn_is_the_same_on_any_number_of_processes(two):
+    asked = EvaluationTask(two, {"harris": methods.METHODS["harris"].defaults}, knowledge="initial")
+    one = list(evaluate.evaluate(asked, SerialExecutor()))
+    assert all(each.drawn for each in one)
+    assert without_times(one) == without_times(evaluate.evaluate(asked, ProcessExecutor(2)))
+
+
+def test_a_case_that_holds_a_rough_pose_alone_is_run_by_the_method_that_suits_it(two, small_case):
+    pose = small_case.truth.T_ref_mov
+    prior = InitialPose(replace(pose, x=pose.x + 0.4))
+    (two / "flat_1" / "observation.yaml").write_bytes(known_to_bytes([prior]))
+    configs = {name: methods.METHODS[name].defaults for name in ("spectra-proven", "whole-plane")}
+    told = run_case(two / "flat_1", EvaluationTask(two, configs))
+    assert told.report["method"] == "whole-plane"
+    assert told.transform_right
+
+
+def test_a_case_that_contradicts_itself_is_told_and_costs_no_other(two, small_case):
+    far = InitialPose(Pose2(900.0, 900.0, 1.0))
+    known = known_to_bytes([*small_case.observations, far])
+    (two / "flat_1" / "observation.yaml").write_bytes(known)
+    told = {each.case: each for each in evaluate.evaluate(order(two))}
+    assert "standard deviations of both" in told["flat_1"].error
+    assert not told["neg_1"].error
+
+
+@pytest.mark.parametrize(
+    ("words", "remedy"),
+    [
+        (["--knowledge", "non"], "there is no knowledge non, did you mean none?"),
+        (["--knowledge", "none,"], "known are sighting, initial, turn, none"),
+        (["--knowledge", "turn", "--method", "spectra-swarm"], "spectra-swarm needs a sighting, and "),
+        (
+            ["--knowledge", "none", "--method", "bilateral"],
+            "choose a --method that does without: whole-plane",
+        ),
+        (["--knowledge", "sighting,none", "--swarm.particles", "90"], "spectra-proven needs a sighting"),
+        (["--knowledge", "none", "--swarm.particles", "90"], "no option --swarm.particles"),
+        (["--knowledge", "none", "--rough"], "--rough and --both choose a sighting"),
+        (["--knowledge", "initial,turn", "--both"], "--knowledge initial,turn leaves it out"),
+    ],
+)
+def test_knowledge_that_cannot_be_asked_for_ends_with_2_and_one_line(words, remedy, case_folder, capsys):
+    with pytest.raises(SystemExit) as left:
+        main(["evaluate", str(case_folder), *words])
+    assert left.value.code == 2
+    said = capsys.readouterr().err
+    assert remedy in said
+    assert said.count("\n") == 1

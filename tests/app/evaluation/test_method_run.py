@@ -3,10 +3,12 @@
 from dataclasses import replace
 from math import radians
 
+import numpy as np
 import pytest
 
-from algorithms.common.pose import Pose2
+from algorithms.common.pose import Pose2, pose_error
 from algorithms.files.truth_file import Truth
+from algorithms.methods.registry import merge
 from app.evaluation.method_run import judge_case
 
 
@@ -56,3 +58,28 @@ def test_two_maps_of_different_places_are_right_when_refused(small_case, result,
     truth = judge_case(case, replace(result, verdict=verdict))
     assert truth.right is not accepted
     assert truth.distance is None
+
+
+def test_a_merge_that_was_not_told_of_the_seen_robot_is_judged_there_all_the_same(small_case):
+    found = merge(small_case.ref, small_case.mov)
+    seen = small_case.observations[0]
+    at = np.array([seen.observed_x, seen.observed_y])
+    assert np.hypot(*(found.pivot - at)) > 0.5
+    truth = Truth(found.T_ref_mov @ Pose2(theta=radians(2)))
+    told = judge_case(replace(small_case, truth=truth), found)
+    assert told.distance == pytest.approx(pose_error(found.T_ref_mov, truth.T_ref_mov, at)[0])
+    alone = judge_case(replace(small_case, truth=truth, observations=()), found)
+    assert alone.distance == pytest.approx(pose_error(found.T_ref_mov, truth.T_ref_mov, found.pivot)[0])
+    assert alone.distance != pytest.approx(told.distance)
+
+
+@pytest.mark.parametrize(("place", "among"), [(0, True), (1, True), (4, True), (5, False)])
+def test_a_right_answer_counts_among_the_first_five(small_case, result, place, among):
+    far = Pose2(30.0, 30.0, 1.0)
+    answers = [replace(result.weighed[0], T_ref_mov=far)] * 8
+    answers[place] = replace(answers[place], T_ref_mov=small_case.truth.T_ref_mov)
+    found = replace(result, T_ref_mov=answers[0].T_ref_mov, weighed=tuple(answers))
+    truth = judge_case(small_case, found)
+    assert (truth.right, truth.among_five) == (place == 0, among)
+    refuse = replace(small_case, truth=replace(small_case.truth, expected="refuse"))
+    assert not judge_case(refuse, found).among_five
