@@ -16,9 +16,9 @@ from algorithms.common.errors import TooLargeError
 from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import Case
 from algorithms.maps.map_fusion import fuse
-from algorithms.methods.registry import METHODS
 from app.drawing.grid_pixels import Pixels
 from app.drawing.palette import LIGHT, css
+from app.evaluation.compared_methods import COMPARED
 from app.evaluation.figure_style import figure_files
 from app.evaluation.method_comparison import ComparedRun, tally
 from app.evaluation.method_run import MethodRun
@@ -39,7 +39,7 @@ RIGHT_AND_WRONG = (
 
 def maps_figure(case: Case, scores: Sequence[ComparedRun], title: str) -> dict[str, bytes]:
     """The files of the merged maps of one case, a panel per method, by suffix."""
-    in_order = [score for name in METHODS for score in scores if score.method == name]
+    in_order = [score for name in COMPARED for score in scores if score.method == name]
     rows, columns = _grid(len(in_order))
 
     def draw(figure: Figure) -> None:
@@ -85,7 +85,7 @@ def _panel(axes: Axes, case: Case, score: ComparedRun) -> None:
     for spine in axes.spines.values():
         spine.set(visible=True, color=css(LIGHT.unknown))
     outcome, hue = _outcome(score.trial)
-    axes.set_title("\n".join(textwrap.wrap(METHODS[score.method].title, 30)), fontsize=8.5)
+    axes.set_title("\n".join(textwrap.wrap(COMPARED[score.method].title, 30)), fontsize=8.5)
     axes.set_xlabel(outcome, color=hue, fontsize=8)
     pose = score.trial.pose
     in_the_middle: dict[str, Any] = {"transform": axes.transAxes, "ha": "center", "fontsize": 7}
@@ -133,7 +133,7 @@ def _outcome(trial: MethodRun) -> tuple[str, str]:
 def bars_figure(scores: Sequence[ComparedRun]) -> dict[str, bytes]:
     """The files of the bars of eq. (23), by suffix: a group per case, or the means of many cases."""
     cases = list(dict.fromkeys(score.case for score in sorted(scores, key=lambda score: score.case)))
-    methods = [name for name in METHODS if any(score.method == name for score in scores)]
+    methods = [name for name in COMPARED if any(score.method == name for score in scores)]
     if len(cases) > MOST_CASES:
         return figure_files(lambda figure: _means(figure, scores, methods), 8, 1.2 + 0.32 * len(methods))
     rows, columns = _grid(len(cases))

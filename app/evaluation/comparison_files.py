@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import Any
 
 from algorithms.files.case_folder import Case
-from algorithms.methods.registry import METHODS
+from app.evaluation.compared_methods import COMPARED
 from app.evaluation.method_comparison import ComparedRun, Configs, MethodTotals, tally
 from app.evaluation.table_files import (
     JUDGED,
@@ -98,7 +98,7 @@ def _scores_csv(scores: Sequence[ComparedRun]) -> bytes:
 
 def _in_order(scores: Sequence[ComparedRun]) -> list[ComparedRun]:
     """By case, then in the order of the table of methods: however they came."""
-    order = list(METHODS)
+    order = list(COMPARED)
     return sorted(scores, key=lambda score: (score.case, order.index(score.method)))
 
 

@@ -11,17 +11,17 @@ from typing import Any
 
 from algorithms.common.errors import MapMergeError
 from algorithms.files.case_folder import Case, case_folders, name_in, read_case
-from algorithms.methods.registry import METHODS
+from app.evaluation.compared_methods import COMPARED
 from app.evaluation.method_run import MethodRun, run_method, true_fusion
 from app.jobs.executor import Executor, LostTask, Shared, Task
 
 Configs = Mapping[str, Any]
-"""Settings by the name of their method, in the order they are to be shown."""
+"""Settings by the names of COMPARED, in the order they are to be shown."""
 
 
 @dataclass(frozen=True)
 class ComparedRun:
-    """What came of one method on one pair."""
+    """What came of one method, called by its name in COMPARED, on one pair."""
 
     case: str
     method: str
@@ -33,9 +33,9 @@ Pairs = Iterable[tuple[str, Case | str]]
 
 
 def defaults_of(names: Iterable[str]) -> dict[str, Any]:
-    """The methods of these names at their defaults, in the order of the table."""
+    """What is compared under these names, at its defaults, in the order of the table."""
     wanted = set(names)
-    return {name: method.defaults for name, method in METHODS.items() if name in wanted}
+    return {name: each.defaults for name, each in COMPARED.items() if name in wanted}
 
 
 def compare_methods(
@@ -81,12 +81,14 @@ def pairs_in(root: Path, rough: bool = False) -> tuple[int, Pairs]:
 def _work(case: Case | str, order: tuple[str, Any, int]) -> MethodRun:
     if isinstance(case, str):
         return MethodRun.failure(case)
-    method, config, seed = order
+    name, config, seed = order
+    compared = COMPARED[name]
     try:
         true = true_fusion(case)
     except MapMergeError as error:
         return MethodRun.failure(str(error))
-    return run_method(case, method, config, seed, true)
+    known = case.known if compared.informed else ()
+    return run_method(case, compared.method, config, seed, true, known=known)
 
 
 @dataclass(frozen=True)
@@ -123,7 +125,7 @@ def tally(scores: Sequence[ComparedRun]) -> dict[str, MethodTotals]:
     trials: dict[str, list[MethodRun]] = {}
     for score in scores:
         trials.setdefault(score.method, []).append(score.trial)
-    return {name: _totals(trials[name]) for name in METHODS if name in trials}
+    return {name: _totals(trials[name]) for name in COMPARED if name in trials}
 
 
 def _totals(trials: Sequence[MethodRun]) -> MethodTotals:

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from algorithms.files.atomic_write import check_folder, write_files
 from algorithms.files.case_folder import Case
-from algorithms.methods.registry import METHODS
 from app.cli.argument_parser import Parser
 from app.cli.executor_flags import add_workers, executor_for
 from app.cli.map_arguments import case_folder
 from app.cli.progress_bar import bar
 from app.cli.setting_flags import add_seed, method_name
+from app.evaluation.compared_methods import COMPARED
 from app.evaluation.comparison_files import NOTES, case_files, contest_files, remarks, table_rows
 from app.evaluation.method_comparison import compare_methods, defaults_of, pairs_in
 from app.evaluation.table_files import aligned
@@ -21,6 +21,8 @@ from app.evaluation.table_files import aligned
 USAGE = "DIR|CASE|SAMPLE [--methods A,B,…] [--rough] [--out DIR] [--jobs N | --scheduler ADDRESS]"
 DESCRIPTION = """\
 Run several methods on the same cases, at their defaults, and hold every transform against the truth.
+whole-plane, which uses all that is known and needs none of it, runs without it, too: as
+whole-plane-walls-alone.
 
 Examples:
   mapmeld compare office_r2_r1       every method on one sample
@@ -54,10 +56,12 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     )
     parser.add_argument(
         "--methods",
-        type=lambda text: tuple(dict.fromkeys(method_name(name.strip()) for name in text.split(","))),
-        default=tuple(METHODS),
+        type=lambda text: tuple(
+            dict.fromkeys(method_name(name.strip(), COMPARED) for name in text.split(","))
+        ),
+        default=tuple(COMPARED),
         metavar="A,B,…",
-        help=f"which of them (default: all: {', '.join(METHODS)})",
+        help=f"which of them (default: all: {', '.join(COMPARED)})",
     )
     parser.add_argument("--rough", action="store_true", help="take observation_rough.yaml of each case")
     parser.add_argument("--out", type=Path, metavar="DIR", help="leave tables and pictures there")

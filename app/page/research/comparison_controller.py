@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from threading import Event
+from typing import Any
 
 import numpy as np
 
-from algorithms.methods.registry import DEFAULT_METHOD, METHODS
+from algorithms.methods.registry import DEFAULT_METHOD
 from app.drawing.png import png_base64
 from app.drawing.svg.thumbnail import thumbnail
+from app.evaluation.compared_methods import COMPARED
 from app.evaluation.comparison_files import contest_archive
 from app.evaluation.method_comparison import ComparedRun, compare_methods
 from app.jobs.background_job import BackgroundJob, beside_the_page
@@ -45,7 +47,7 @@ class ComparisonController:
     ) -> None:
         self._state, self._panel, self._others = state, panel, others
         self._deliver, self._executor, self._locks = deliver, executor, state.locks
-        self._chosen = {name for name in FIRST if name in METHODS}
+        self._chosen = {name for name in FIRST if name in COMPARED}
         self._pair = MergeInputs()
         self._found: dict[str, OtherResult] = {}
         self._pictures: dict[str, str] = {}
@@ -53,8 +55,8 @@ class ComparisonController:
         self._waiting: list[str] = []  # of those, whose end is not known yet
         self._work = BackgroundJob(self, self._locks.drawing, "comparison", panel.say)
         panel.connect(self._run, self._stop, self._group, self._save)
-        events.on("pick", self._pick, method=tuple(METHODS), yes=bool)
-        events.on("show", self._show, method=tuple(METHODS))
+        events.on("pick", self._pick, method=tuple(COMPARED), yes=bool)
+        events.on("show", self._show, method=tuple(COMPARED))
         state.subscribe("setup", self._setup_changed)
         state.subscribe("other", self._draw)
         state.subscribe("palette", self._recolour)
@@ -101,7 +103,7 @@ class ComparisonController:
     def _group(self, word: str) -> None:
         with self._locks.action, self._locks.drawing:
             words = {family: short for family, (_, short) in FAMILIES.items()}
-            self._chosen = {name for name, method in METHODS.items() if word in (ALL, words[method.family])}
+            self._chosen = {name for name, method in COMPARED.items() if word in (ALL, words[method.family])}
             self._draw()
 
     def _run(self) -> None:
@@ -110,12 +112,12 @@ class ComparisonController:
             case = i.case()
             if case is None or not self._chosen:
                 return
-            self._asked = [name for name in METHODS if name in self._chosen]
+            self._asked = [name for name in COMPARED if name in self._chosen]
             self._waiting = list(self._asked)
             for name in self._asked:
                 self._found.pop(name, None)
                 self._pictures.pop(name, None)
-            configs = {name: self._state.config_for(name) for name in self._asked}
+            configs = {name: self._config_of(name) for name in self._asked}
 
             def work(stop: Event) -> Iterator[tuple[OtherResult, str]]:
                 pairs = [(case.name, case)]
@@ -125,6 +127,9 @@ class ComparisonController:
 
             self._work.start(work)
             self._draw()
+
+    def _config_of(self, name: str) -> Any:
+        return self._state.config_for(COMPARED[name].method)
 
     def _stop(self) -> None:
         with self._locks.action, self._locks.drawing:
@@ -176,7 +181,7 @@ class ComparisonController:
     def _draw(self) -> None:
         with self._locks.drawing:
             self._panel.possible(len(self._chosen), self._pair.complete, self._work.busy, bool(self._found))
-            self._panel.show({name: self._card(name) for name in METHODS})
+            self._panel.show({name: self._card(name) for name in COMPARED})
 
     def _card(self, name: str) -> Card:
         card, other = Card(name in self._chosen), self._found.get(name)
@@ -184,8 +189,8 @@ class ComparisonController:
             return replace(card, state="runs" if name == self._waiting[0] else "waits")
         if other is None:
             return card
-        default = other.config == METHODS[name].defaults
-        current = other.config == self._state.config_for(name) and other.seed == self._state.seed
+        default = other.config == COMPARED[name].defaults
+        current = other.config == self._config_of(name) and other.seed == self._state.seed
         return replace(
             card,
             state="done",

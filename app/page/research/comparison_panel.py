@@ -9,8 +9,9 @@ from typing import Any, Literal
 
 import viser
 
-from algorithms.methods.registry import METHODS, Family
+from algorithms.methods.registry import Family
 from app.drawing.palette import LIGHT, QUIET, STOP
+from app.evaluation.compared_methods import COMPARED
 from app.model.status_text import typeset
 from app.page.panels.html_widgets import Action, on_press, put
 from app.page.research.other_result import RunSummary
@@ -63,7 +64,7 @@ class ComparePanel:
         self._cards: dict[str, viser.GuiHtmlHandle] = {}
         for family, (title, _) in FAMILIES.items():
             gui.add_html(f'<h4 class="mm-family">{escape(title)}</h4>')
-            for name, method in METHODS.items():
+            for name, method in COMPARED.items():
                 if method.family == family:
                     self._cards[name] = gui.add_html(card_html(name, Card(chosen=False)))
         hint = "A zip: a table of the methods, every transform, the merged maps side by side."
@@ -104,7 +105,7 @@ def says_html(words: str, share: float | None = None) -> str:
 def card_html(name: str, card: Card) -> str:
     """HTML of a method: a box to tick it, and what came of it."""
     checked = " checked" if card.chosen else ""
-    title = escape(METHODS[name].title)
+    title = escape(COMPARED[name].title)
     head = (
         f'<label title="Run this method, too: {escape(name)}">'
         f'<input type="checkbox" data-mm-pick="{name}"{checked}><span>{title}</span></label>'

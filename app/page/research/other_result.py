@@ -10,9 +10,9 @@ from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import fuse
 from algorithms.methods.merge_result import Answer
-from algorithms.methods.registry import METHODS
 from algorithms.methods.steps import AnswersDetail, AugmentDetail, ObservationDetail, Step
 from algorithms.observations.observation import Observation, encounters_of
+from app.evaluation.compared_methods import COMPARED
 from app.evaluation.method_run import MethodRun
 from app.model.run_state import RunState
 from app.page.panels.html_widgets import box, table
@@ -71,7 +71,7 @@ def sentence(words: str) -> str:
 
 @dataclass(frozen=True)
 class OtherResult:
-    """What a method has found on the loaded pair, with the settings it ran with."""
+    """What a method, called by its name in COMPARED, has found on the loaded pair, and with what settings."""
 
     method: str
     config: Any
@@ -80,7 +80,7 @@ class OtherResult:
 
     @property
     def title(self) -> str:
-        return METHODS[self.method].title
+        return COMPARED[self.method].title
 
     @property
     def pose(self) -> Pose2:

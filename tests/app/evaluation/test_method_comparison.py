@@ -3,14 +3,15 @@
 import warnings
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from sweep_plans import trials
 
 from algorithms.common.errors import NoAnswerError
-from algorithms.common.pose import Pose2
-from algorithms.methods.registry import METHODS
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.methods.registry import METHODS, PLANE_METHOD, merge
 from app.evaluation.method_comparison import (
     ComparedRun,
     compare_methods,
@@ -46,6 +47,19 @@ def test_every_pair_meets_every_method(small_case, strangers):
     assert told["flat", QUICK].right
     assert told["flat", QUICK].accepted
     assert told["flat", QUICK].index > 0.95
+
+
+def test_walls_alone_are_told_nothing_and_judged_as_the_others_are(small_case):
+    seen = small_case.observations[0]
+    case = replace(small_case, observations=(replace(seen, range=seen.range + 6.0),))
+    told = outcomes([("flat", case)], (PLANE_METHOD, f"{PLANE_METHOD}-walls-alone"))
+    misled, alone = told["flat", PLANE_METHOD], told["flat", f"{PLANE_METHOD}-walls-alone"]
+    assert not misled.right
+    assert alone.right
+    T = merge(case.ref, case.mov).T_ref_mov
+    assert alone.T_ref_mov == (T.x, T.y, T.theta)
+    at = np.array([seen.observed_x, seen.observed_y])
+    assert alone.distance == pytest.approx(pose_error(T, case.truth.T_ref_mov, at)[0])
 
 
 def test_of_maps_that_share_no_place_every_transform_is_wrong_also_a_refused_one(strangers):
