@@ -254,7 +254,6 @@ EXERCISED_BY = {
         "app.page.page_display",
         "app.page.panel_set",
         "app.page.panels.chart_widgets",
-        "app.page.panels.charts_panel",
         "app.page.panels.export_panel",
         "app.page.panels.run_panel",
         "app.page.research.sweep_panel",

@@ -25,6 +25,7 @@ from algorithms.methods.stage_runner import StageRunner
 from algorithms.methods.steps import AnswersDetail, PlaneDetail, Step, WeighedDetail
 from algorithms.observations.pair_problem import PairProblem
 from algorithms.observations.search_window import WindowConfig
+from algorithms.optimisation.correlation_picture import picture_of
 from algorithms.optimisation.covariance import covariance_of
 from algorithms.optimisation.likelihood_field import AgreementConfig
 from algorithms.optimisation.plane_correlation import PlaneConfig, PlaneCorrelation, places
@@ -89,6 +90,7 @@ def correlate(problem: PairProblem, config: PlaneMethodConfig) -> Iterator[Plane
     window = problem.window(config.window, curved=True)
     poses, values, searched = np.zeros((0, 3)), np.zeros(0, dtype=np.float32), 0.0
     total = len(correlation.turns)
+    tops: FloatArray = np.full(total, np.nan)
     for start in range(0, total, TOGETHER):
         turns = correlation.turns[start : start + TOGETHER].tolist()
         looks = each_on_a_core(lambda turn: correlation.look(turn, window, HILLS), turns)
@@ -97,8 +99,11 @@ def correlate(problem: PairProblem, config: PlaneMethodConfig) -> Iterator[Plane
         kept = places(poses, values, problem.pivot, config.places, *BESIDE)
         poses, values = poses[kept], values[kept]
         searched += sum(look.shifts for look in looks) * correlation.cell**2 / total
-        best = max(looks, key=lambda look: look.top)
-        yield PlaneDetail(start + len(looks), total, best, correlation.cell, poses, values, searched)
+        done, best = start + len(looks), max(looks, key=lambda look: look.top)
+        tops[start:done] = [look.top if len(look.values) else np.nan for look in looks]
+        picture = picture_of(correlation, best, correlation.within(best.turn, window))
+        so_far = poses, values, searched
+        yield PlaneDetail(done, correlation.turns, tops.copy(), picture, correlation.cell, *so_far)
 
 
 def climb(whole: WholeMaps, plane: PlaneDetail, config: PlaneMethodConfig) -> AnswersDetail:

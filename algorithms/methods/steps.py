@@ -11,9 +11,9 @@ from algorithms.methods.merge_result import Answer, MergeResult
 from algorithms.observations.observation import Encounter
 from algorithms.observations.search_window import CoupledWindow, Window
 from algorithms.optimisation.branch_and_bound import ProofState
+from algorithms.optimisation.correlation_picture import CorrelationPicture
 from algorithms.optimisation.objective import Objective
 from algorithms.optimisation.optimiser import SearchState
-from algorithms.optimisation.plane_correlation import TurnLook
 from algorithms.optimisation.search_box import SearchBox
 from algorithms.optimisation.subcell_peak import Peak
 from algorithms.spectra.augmented_map import AugmentedMap
@@ -136,21 +136,29 @@ class TurnsDetail:
 class PlaneDetail:
     """Stage "correlate": some more turns of the plane are done.
 
-    done, total   : turns
-    look          : the best of the newest turns
-    cell          : edge of a cell of its surface; metres
+    done          : how many turns
+    turns, tops   : (K,) all turns of T_ref_mov, radians, rising from −π, and how high the highest hill of
+                    each is, metres of wall; NaN where it has not been tried or what is known leaves no shift
+    picture       : of the best of the newest turns; None where none of them has a shift left
+    cell          : edge of a cell of the plane; metres
     poses, values : (P, 3), (P,) x, y, theta of T_ref_mov at the best places so far, best first, and how good
                     they are; metres of wall
     searched      : shifts that the knowledge leaves, averaged over the circle's turns so far; m²
     """
 
     done: int
-    total: int
-    look: TurnLook
+    turns: FloatArray
+    tops: FloatArray
+    picture: CorrelationPicture | None
     cell: float
     poses: FloatArray
     values: Float32Array
     searched: float
+
+    @property
+    def total(self) -> int:
+        """How many turns there are."""
+        return len(self.turns)
 
 
 @dataclass(frozen=True, eq=False)

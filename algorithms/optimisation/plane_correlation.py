@@ -85,7 +85,7 @@ class PlaneCorrelation:
         self.cell = max(config.finest, ref.resolution, mov.resolution, fitting)
         self.blur = max(config.blur, self.cell)
         count = ceil(360 / config.turn_step)
-        self.turns = np.arange(count) * (2 * pi / count) - pi
+        self.turns = np.asarray(np.arange(count) * (2 * pi / count) - pi, dtype=np.float64)
         field, points, weight = self._ready(still)
         self._field, at, self._weight = self._ready(moved)
         self._middle = np.array(self._field.shape[::-1]) / 2
@@ -122,12 +122,21 @@ class PlaneCorrelation:
 
     def poses(self, turn: float, rows: IntArray, cols: IntArray) -> FloatArray:
         """(P, 3) x, y, theta of T_ref_mov at so many places of the surface of a turn."""
+        shifts = np.stack([cols, rows], axis=-1).astype(np.float64)
+        for axis, (whole, extent) in enumerate(zip(self.shape[::-1], self._extent[::-1], strict=True)):
+            shifts[:, axis] -= np.where(shifts[:, axis] >= extent, whole, 0)  # beyond the map it is wrapped
+        return self.poses_at(turn, shifts)
+
+    def unwrapped(self, surface_: NDArray[Any]) -> tuple[NDArray[Any], FloatArray]:
+        """A surface with all its shifts in their order, and the (2,) shift, column and row, of its first."""
+        first = np.subtract(self._extent, self.shape)
+        return np.roll(surface_, -first, axis=(0, 1)), first[::-1].astype(np.float64)
+
+    def poses_at(self, turn: float, shifts: FloatArray) -> FloatArray:
+        """(P, 3) x, y, theta of T_ref_mov at (P, 2) shifts, columns and rows, of a turn; none is wrapped."""
         c, s = self._cos_sin(turn)
         turned = np.array([[c, -s], [s, c]])
-        shift = np.stack([cols, rows], axis=-1).astype(np.float64)
-        for axis, (whole, extent) in enumerate(zip(self.shape[::-1], self._extent[::-1], strict=True)):
-            shift[:, axis] -= np.where(shift[:, axis] >= extent, whole, 0)  # beyond the map it is wrapped
-        xy = (shift + self._side / 2 - turned @ self._middle) * self.cell
+        xy = (shifts + self._side / 2 - turned @ self._middle) * self.cell
         # from the axes of the grids to the frames of the maps
         still, angle = self._still, self._grid_turn(turn)
         out = np.empty((len(xy), 3))

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from algorithms.common.pose import FloatArray
-from algorithms.methods.steps import TurnsDetail
+from algorithms.methods.steps import PlaneDetail, TurnsDetail
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.spectra.candidates import Candidate
 from algorithms.spectra.hough_spectra import HoughMatch, ShiftMatch
@@ -138,6 +138,17 @@ def circle(detail: TurnsDetail, measure: str = "agreement") -> Chart:
     room = 0.08 * max(high - low, 1e-3)
     title = f"Best {measure} at every turn"
     return replace(CIRCLE, title=title, up=(low - room, high + room), columns=(x, y, best))
+
+
+def plane_turns(detail: PlaneDetail, measure: ObjectiveLabel) -> Chart:
+    """Turn in degrees, the highest hill of each (0 where there is none, or it is not tried yet), the best."""
+    y = np.where(np.isfinite(detail.tops), detail.tops, 0.0)
+    best = np.full(len(y), np.nan)
+    top = float(y.max(initial=0.0))
+    if top > 0:
+        best[y.argmax()] = top
+    title, up = f"Best {measure.row} at every turn", (0.0, 1.08 * top if top > 0 else 1.0)
+    return replace(CIRCLE, title=title, up=up, columns=(np.degrees(detail.turns), y, best))
 
 
 def shift_spectra(match: ShiftMatch, form: Chart = X_SPECTRA) -> Chart:

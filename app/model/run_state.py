@@ -12,6 +12,7 @@ from algorithms.methods.steps import (
     AnswersDetail,
     CandidatesDetail,
     Detail,
+    PlaneDetail,
     ProofDetail,
     ProvenDetail,
     RefineDetail,
@@ -34,6 +35,7 @@ class RunState:
     courses : best value after every iteration, a list per refined candidate
     swarms  : the newest snapshot of every refined candidate
     shifts  : the turns tried so far
+    plane   : of a search over the plane the step that met the highest hill; None before there is one
     ceiling : the highest bound that the proof began with; −inf before it
     """
 
@@ -42,6 +44,7 @@ class RunState:
     courses: list[list[float]] = field(default_factory=list)
     swarms: list[RefineDetail] = field(default_factory=list)
     shifts: list[ShiftDetail] = field(default_factory=list)
+    plane: PlaneDetail | None = None
     ceiling: float = float("-inf")
     _newest: dict[type, Detail] = field(default_factory=dict)
 
@@ -58,6 +61,9 @@ class RunState:
                 self.swarms.append(detail)
             self.courses[detail.index].append(detail.state.best_value)
             self.swarms[detail.index] = detail
+        elif isinstance(detail, PlaneDetail):
+            if len(detail.values) and (self.plane is None or detail.values[0] > self.plane.values[0]):
+                self.plane = detail
         elif isinstance(detail, ProofDetail) and isfinite(detail.state.ceiling):
             self.ceiling = max(self.ceiling, detail.state.ceiling)
 

@@ -204,8 +204,8 @@ class RunView:
             return self._maps.layout.view(at)
         rival = self._maps.layout.placed(result.verdict.rival)
         self._maps.ground.ghost(rival)
-        heading = self._maps.inputs.observations[0].observed_heading
+        seen = next(iter(self._maps.inputs.observations), None)
         hull = known_hull(mov) - self._maps.layout.anchor_mov
-        doubt = signs.rival(rival, hull, heading, words.rival(result), self._maps.palette)
+        doubt = signs.rival(rival, hull, seen, words.rival(result), self._maps.palette)
         self._messages.layer("rival", doubt)
         return union(self._maps.layout.view(at), self._maps.layout.view(rival))

@@ -8,6 +8,7 @@ import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2, rotation
 from algorithms.methods.steps import MatchesDetail, WindowDetail
+from algorithms.observations.observation import Observation
 from algorithms.observations.search_window import CoupledWindow, Window
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.optimisation.search_box import SearchBox
@@ -105,20 +106,22 @@ def proof(state: ProofState, layout: SceneLayout, colours: Palette) -> list[Item
     return items
 
 
-def rival(at: Pose2, hull: FloatArray, heading: float | None, words: str, colours: Palette) -> list[Item]:
+def rival(at: Pose2, hull: FloatArray, seen: Observation | None, words: str, colours: Palette) -> list[Item]:
     """Where map 2 and its robot would lie under the rival that leaves the answer in doubt.
 
-    at      : where the rival puts map 2's anchor, and its turn; scene
-    hull    : (N, 2) outline of map 2, from its anchor
-    heading : of robot 2 in map 2; None where it is not known
+    at   : where the rival puts map 2's anchor, and its turn; scene
+    hull : (N, 2) outline of map 2, from its anchor
+    seen : the sighting of robot 2, which stands at the anchor; None: where it stood is not known
     """
     outline = at.apply(hull)
     foot = outline[int(outline[:, 1].argmin())]
     label = {"t": f"rival: {words}", "tp": foot, "dy": 13, "align": "center", "size": 12}
     label["tc"] = css(colours.rival)
     around = path(outline, colours.rival, alpha=0.8, w=1.4, close=True, d=[7, 5], **label)
+    if seen is None:
+        return [around]
     # larger than the star of the answer, which lies on it: both put robot 2 where it was seen
-    turned = None if heading is None else heading + at.theta
+    turned = None if seen.observed_heading is None else seen.observed_heading + at.theta
     return [around, robot(at.xy, turned, (13, 12), colours.rival, "scene")]
 
 

@@ -1,4 +1,4 @@
-// Small charts on a canvas: lines, areas, dashes, dots; axes with round numbers.
+// Small charts on a canvas: lines, areas, dashes, dots, or a picture with a scale of colours; axes with round numbers.
 const mapmeldCharts = (() => {
   const LEFT = 44, RIGHT = 14, TITLE = 26, KEYS = 18, FOOT = 40;
 
@@ -12,7 +12,12 @@ const mapmeldCharts = (() => {
   const TURNS = { 180: [0, 45, 90, 135, 180], 360: [-180, -90, 0, 90, 180] }; // degrees have round numbers of their own
 
   function chart(g, c, x, y, wide, high, ink) {
-    const left = x + LEFT, right = x + wide - RIGHT, top = y + TITLE + KEYS, foot = y + high - FOOT;
+    let left = x + LEFT, right = x + wide - RIGHT;
+    const top = y + TITLE + KEYS, foot = y + high - FOOT;
+    if (c.image) { // a metre is as long upwards as it is across
+      left += 16;
+      right = Math.min(right, left + (foot - top) * (c.x[1] - c.x[0]) / (c.y[1] - c.y[0]));
+    }
     const px = (v) => left + (v - c.x[0]) / (c.x[1] - c.x[0]) * (right - left);
     const py = (v) => foot - (Math.min(c.y[1], Math.max(c.y[0], v)) - c.y[0]) / (c.y[1] - c.y[0]) * (foot - top);
     const say = (text, at, line, align, size, colour) => {
@@ -30,12 +35,28 @@ const mapmeldCharts = (() => {
       say(s.t, key + 14, y + 34, "left", 11, ink.quiet);
       key += 26 + g.measureText(s.t).width;
     }
+    if (c.scale) {
+      const [dark, bright] = c.scale.ends, strip = 90;
+      say(dark, key, y + 34, "left", 11, ink.quiet);
+      key += g.measureText(dark).width + 6;
+      const colours = g.createLinearGradient(key, 0, key + strip, 0);
+      c.scale.stops.forEach((stop, i, all) => colours.addColorStop(i / (all.length - 1), stop));
+      g.fillStyle = colours; g.fillRect(key, y + 30, strip, 8);
+      say(bright, key + strip + 6, y + 34, "left", 11, ink.quiet);
+    }
     const across = c.label.includes("°") && TURNS[c.x[1] - c.x[0]];
     const xs = across ? { found: across, digits: 0 } : ticks(c.x[0], c.x[1], 6), ys = ticks(c.y[0], c.y[1], 5);
     const sign = (v, digits) => v.toFixed(digits).replace("-", "−");
+    if (c.image) {
+      g.imageSmoothingEnabled = false;
+      g.drawImage(c.picture, left, top, right - left, foot - top);
+      g.save(); g.translate(x + 12, (top + foot) / 2); g.rotate(-Math.PI / 2);
+      say(c.up, 0, 0, "center", 11.5, ink.quiet);
+      g.restore();
+    }
     g.lineWidth = 1; g.strokeStyle = ink.line;
     for (const v of ys.found) {
-      g.beginPath(); g.moveTo(left, py(v)); g.lineTo(right, py(v)); g.stroke();
+      g.beginPath(); g.moveTo(c.image ? left - 4 : left, py(v)); g.lineTo(c.image ? left : right, py(v)); g.stroke();
       say(sign(v, ys.digits), left - 6, py(v), "right", 11, ink.quiet);
     }
     for (const v of xs.found) {

@@ -270,5 +270,9 @@
     image.src = picture.data;
     await image.decode();
     picture.light = image; picture.dark = recoloured(image);
-  })).then(() => { $("page").hidden = false; P.ready = true; requestAnimationFrame(loop); });
+  }).concat(R.frames.flatMap((told) => told.curves || []).filter((chart) => chart.image).map((chart) => {
+    chart.picture = new Image();
+    chart.picture.src = chart.image;
+    return chart.picture.decode();
+  }))).then(() => { $("page").hidden = false; P.ready = true; requestAnimationFrame(loop); });
 })();

@@ -8,7 +8,15 @@ from typing import Any
 import viser
 
 from algorithms.maps.map_fusion import Fusion
-from algorithms.methods.steps import CandidatesDetail, HoughDetail, ProofDetail, RefineDetail, TurnsDetail
+from algorithms.methods.steps import (
+    CandidatesDetail,
+    HoughDetail,
+    PlaneDetail,
+    ProofDetail,
+    RefineDetail,
+    TurnsDetail,
+)
+from app.drawing.svg.correlation_plot import correlation_svg
 from app.model import chart_data as charts
 from app.model import status_text as words
 from app.model.run_state import RunState
@@ -56,15 +64,17 @@ class ChartsPanel:
             self._hint = gui.add_html("")
             self._proof_says = gui.add_html("")
             self._charts = {name: add_chart(gui, form, height) for name, (_, form, height) in CHARTS.items()}
+            self._surface = gui.add_html("")
             self._candidates, self._rivals = gui.add_html(""), gui.add_html("")
             self.result = gui.add_html("")
-        self._texts = (self._proof_says, self._candidates, self._rivals, self.result)
-        self._widgets: list[tuple[Any, str, str]] = [  # each with its page and its name in ``_shown``
-            *((handle, CHARTS[name][0], name) for name, handle in self._charts.items()),
-            (self._candidates, SWARM, "candidates"),
-            (self._proof_says, PROOF, "proof"),
-            (self._rivals, PROOF, "proof"),
-            (self.result, RESULT, "result"),
+        self._texts = (self._proof_says, self._surface, self._candidates, self._rivals, self.result)
+        self._widgets: list[tuple[Any, tuple[str, ...], str]] = [  # with its pages and its name in ``_shown``
+            *((handle, (CHARTS[name][0],), name) for name, handle in self._charts.items()),
+            (self._surface, (TURN, SHIFT), "surface"),
+            (self._candidates, (SWARM,), "candidates"),
+            (self._proof_says, (PROOF,), "proof"),
+            (self._rivals, (PROOF,), "proof"),
+            (self.result, (RESULT,), "result"),
         ]
         self._panel.dock_left()
         self._panel.set_width(WIDTH)
@@ -98,8 +108,8 @@ class ChartsPanel:
     def _show_page(self) -> None:
         put(self._pages, value=self.page)
         empty = True
-        for handle, page, name in self._widgets:
-            shown = page == self.page and bool(self._shown.get(name))
+        for handle, pages, name in self._widgets:
+            shown = self.page in pages and bool(self._shown.get(name))
             put(handle, visible=shown)
             empty = empty and not shown
         put(self._hint, visible=empty)
@@ -128,10 +138,13 @@ class ChartsPanel:
         hough, found, proof = run.get(HoughDetail), run.get(CandidatesDetail), run.get(ProofDetail)
         refine, measure, chosen = run.get(RefineDetail), run.measure, run.at_hand
         if isinstance(detail, TurnsDetail):
-            self._forget("hough", "turns")  # of an earlier run, with spectra
+            self._forget("hough", "turns", "surface")  # of an earlier run
             self._draw("circle", detail, lambda: charts.circle(detail, measure.name))
         elif hough is not None and detail is hough:
-            self._forget("circle")
+            self._forget("circle", "surface")
+        if (plane := run.get(PlaneDetail)) is not None:
+            self._forget(*(self._shown.keys() - {"circle", "surface", "result"}))
+            self._show_plane(run, plane)
         if hough is not None:
             turn = chosen.T_ref_mov.theta if chosen else None
             self._draw("hough", hough, lambda: charts.hough_spectra(hough.match))
@@ -158,6 +171,14 @@ class ChartsPanel:
         if follow and not self._chosen:
             self.page = row_of(detail).page or self.page
         self._show_page()
+
+    def _show_plane(self, run: RunState, plane: PlaneDetail) -> None:
+        """The best of every turn, and the surface of the turn at hand; after the search that of the best."""
+        self._draw("circle", plane, lambda: charts.plane_turns(plane, run.measure))
+        at_hand = run.plane if run.plane is not None and run.last.detail is not plane else plane
+        top = float(plane.values[0]) if len(plane.values) else 1.0
+        if self._new("surface", at_hand.picture and (at_hand.picture, top)) and at_hand.picture is not None:
+            self._surface.content = correlation_svg(at_hand.picture, top)
 
     def _forget(self, *names: str) -> None:
         for name in names:

@@ -14,18 +14,23 @@ from algorithms.methods.steps import (
     AugmentDetail,
     HoughDetail,
     ObservationDetail,
+    PlaneDetail,
     ProofDetail,
     ProvenDetail,
     RefineDetail,
     WindowDetail,
 )
-from app.drawing.palette import LIGHT, css
+from algorithms.optimisation.correlation_picture import CorrelationPicture
+from app.drawing.palette import LIGHT, VIRIDIS, css
+from app.drawing.png import data_uri
+from app.drawing.svg.correlation_plot import scale_ends, surface_pixels, surface_title
 from app.model import chart_data as charts
 from app.model import status_text as words
 from app.model.chart_data import Chart, Curve
 from app.model.run_state import RunState
 
 LEAST = 20.0  # iterations that the axis of the climb holds from the beginning
+STOPS = 8  # colours by which a scale is drawn
 FINEST = 360  # points of a curve, at most; of a finer one the highest of each group is kept
 
 Recorded = dict[str, Any]
@@ -38,6 +43,8 @@ def curves(run: RunState) -> list[Recorded]:
         return []  # numbers are shown
     if isinstance(detail, HoughDetail):
         return _turning(run)
+    if run.reached(PlaneDetail):
+        return _plane(run)
     searching = isinstance(detail, (RefineDetail, AnswersDetail))
     if isinstance(detail, ProvenDetail) or (run.reached(ProofDetail) and not searching):
         return [_proof(run)]
@@ -63,6 +70,36 @@ def _shifting(run: RunState) -> list[Recorded]:
         recorded(charts.shift_correlation(chosen.x, charts.SHIFT_X)),
         recorded(charts.shift_correlation(chosen.y, charts.SHIFT_Y)),
     ]
+
+
+def _plane(run: RunState) -> list[Recorded]:
+    """The best of every turn, and the surface of the turn at hand; after the search that of the best."""
+    plane = run.get(PlaneDetail)
+    assert plane is not None
+    told = [recorded(charts.plane_turns(plane, run.measure))]
+    searching = run.last is not None and run.last.detail is plane
+    shown = plane if searching or run.plane is None else run.plane
+    if shown.picture is not None:
+        told.append(_surface(shown.picture, float(plane.values[0]) if len(plane.values) else 1.0))
+    return told
+
+
+def _surface(picture: CorrelationPicture, top: float) -> Recorded:
+    """A picture in place of curves, and the colours of its scale from dark to bright."""
+    across, up = zip(picture.low, picture.high, strict=True)
+    stops = VIRIDIS[np.linspace(0, 255, STOPS).astype(int)].tolist()
+    marks = {"t": "best", "c": css(LIGHT.best), "k": "dots", "r": 4, "rim": "#ffffff"}
+    hill = picture.hills[:1]
+    return {
+        "title": surface_title(picture),
+        "label": "Δx (m)",
+        "up": "Δy (m)",
+        "x": _short(across),
+        "y": _short(up),
+        "image": data_uri(surface_pixels(picture, top)),
+        "scale": {"stops": [css(tuple(stop)) for stop in stops], "ends": scale_ends(top)},
+        "series": [marks | {"x": _short(hill[:, 0]), "y": _short(hill[:, 1])}] if len(hill) else [],
+    }
 
 
 def _climb(run: RunState) -> Recorded:

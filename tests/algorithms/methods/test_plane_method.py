@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import pi, radians
 
+import numpy as np
 import pytest
 
 from algorithms.common.errors import SettingError
@@ -70,6 +71,11 @@ def test_the_turns_are_told_one_batch_after_another_with_the_best_places_so_far(
     assert told[-1].done == told[-1].total
     tops = [float(detail.values[0]) for detail in told if len(detail.values)]
     assert tops == sorted(tops)
+    for detail in told:
+        tried = np.isfinite(detail.tops)
+        assert not tried[detail.done :].any()
+        assert np.nanmax(detail.tops) == pytest.approx(float(detail.values[0]))
+        assert detail.picture.turn in detail.turns[: detail.done]
 
 
 def test_maps_of_different_buildings_are_refused(strangers):

@@ -10,7 +10,7 @@ from proofs import proof_state
 
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
-from algorithms.methods.registry import METHODS, run
+from algorithms.methods.registry import METHODS, PLANE_METHOD, run
 from algorithms.methods.steps import (
     AugmentDetail,
     CandidatesDetail,
@@ -90,6 +90,15 @@ def test_merged_cells_have_a_colour_for_what_agrees_and_one_for_what_contradicts
     doubtful = replace(result, verdict=replace(result.verdict, rival=result.T_ref_mov))
     story = story_of([*steps, Step("verdict", doubtful, 0.0)])
     assert "rival" in words(legend(LIGHT, "Map", story))
+
+
+def test_without_a_sighting_no_place_is_called_a_robots(small_case):
+    story, told = RunState(METHODS[PLANE_METHOD].defaults), set()
+    for step in run(PLANE_METHOD, small_case.ref, small_case.mov):
+        story.add(step)
+        told |= set(words(legend(LIGHT, "Map", story)))
+    assert {"map 2's middle at the best place", "at others", "map 2's middle"} <= told
+    assert not any("robot" in entry for entry in told)
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, nan
 
 import numpy as np
 import pytest
@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from proofs import proof_state
 
 from algorithms.common.pose import FloatArray, wrap_angles
+from algorithms.methods.steps import PlaneDetail
 from algorithms.optimisation.branch_and_bound import ProofState
 from app.model import chart_data as charts
 from app.model.objective_label import AGREEMENT
@@ -65,6 +66,22 @@ def test_in_the_middle_of_every_sector_stands_its_own_ceiling(state):
     for turn, bound, met in zip(np.degrees(state.turns), state.ceilings, state.found, strict=True):
         assert inside(x, ceiling, turn) == pytest.approx(np.clip(bound, 0, top))
         assert inside(x, found, turn) == pytest.approx(np.clip(met, 0, top))
+
+
+@given(st.lists(st.one_of(st.just(nan), st.floats(1e-3, 300)), min_size=1, max_size=40))
+def test_the_best_of_every_turn_is_a_curve_without_holes_whose_top_is_marked_once(tops):
+    turns = np.arange(len(tops)) * (2 * np.pi / len(tops)) - np.pi
+    detail = PlaneDetail(0, turns, np.array(tops), None, 0.1, np.zeros((0, 3)), np.zeros(0), 0.0)
+    chart = charts.plane_turns(detail, AGREEMENT)
+    (low, high), (x, y, best) = chart.up, chart.columns
+    assert x == pytest.approx(np.degrees(turns))
+    assert np.isfinite(y).all()
+    assert ((y == tops) | (np.isnan(tops) & (y == 0))).all()
+    assert (low <= y).all()
+    assert (y <= high).all()
+    assert np.isfinite(best).sum() == np.isfinite(tops).any()
+    if np.isfinite(tops).any():
+        assert np.nanmax(best) == np.nanmax(tops)
 
 
 def test_the_optimum_is_marked_at_its_turn_and_its_value():

@@ -11,7 +11,7 @@ from proofs import proof_state
 
 from algorithms.common.pose import Pose2, rotation
 from algorithms.methods.steps import WindowDetail
-from algorithms.observations.observation import encounter
+from algorithms.observations.observation import Observation, encounter
 from algorithms.observations.search_window import WindowConfig, coupled_window, paper_window
 from app.drawing.palette import LIGHT
 from app.drawing.scene.search_symbols import discs, proof, rival, windows
@@ -84,12 +84,16 @@ def test_the_proof_marks_its_best_and_its_rivals():
 
 def test_the_rival_lies_where_its_transform_puts_map_2_with_its_words_below():
     hull = known_hull(MOV) - LAYOUT.anchor_mov
-    outline, robot = rival(LAYOUT.placed(T_REF_MOV), hull, 0.4, "180° turned, 98%", LIGHT)
+    seen = Observation(Pose2(), 0.0, 0.0, 1.0, 0.0, observed_heading=0.4)
+    outline, robot = rival(LAYOUT.placed(T_REF_MOV), hull, seen, "180° turned, 98%", LIGHT)
     assert outline["t"] == "rival: 180° turned, 98%"
     assert outline["p"] + LAYOUT.anchor_ref == pytest.approx(T_REF_MOV.apply(known_hull(MOV)))
     assert outline["tp"][1] == pytest.approx(outline["p"][:, 1].min())
     assert robot["s"] == "robot"
     assert robot["a"] == pytest.approx(0.4 + T_REF_MOV.theta)
+    assert (
+        len(rival(LAYOUT.placed(T_REF_MOV), hull, None, "7 m away", LIGHT)) == 1
+    )  # nobody knows where it stood
 
 
 def test_the_outline_of_a_map_holds_every_known_cell_and_no_more_than_its_corners():

@@ -111,6 +111,18 @@ def test_the_climb_grows_and_the_axis_of_the_proof_stands_still(recording):
     assert all(axis == proofs[0] for axis in proofs)
 
 
+def test_a_search_over_the_plane_shows_the_best_of_every_turn_and_the_surface_of_the_turn_at_hand(small_case):
+    played = recorded(small_case, "whole-plane")
+    told = [frame["curves"] for frame in played["frames"] if frame.get("curves")]
+    assert all(charts[0]["title"] == "Best agreement (m of wall) at every turn" for charts in told)
+    surfaces = [chart for charts in told for chart in charts[1:]]
+    assert all((chart["label"], chart["up"]) == ("Δx (m)", "Δy (m)") for chart in surfaces)
+    *searched, last = [chart["title"] for chart in surfaces]
+    assert len(set(searched)) == len(searched) > 1
+    assert last in searched  # the best turn, looked at again
+    assert all(chart["scale"]["ends"][1].endswith("m of wall") for chart in surfaces)
+
+
 def test_the_same_run_is_the_same_file_byte_by_byte(small_case, recording):
     assert page_of(small_case, recorded(small_case)) == page_of(small_case, recording)
 
