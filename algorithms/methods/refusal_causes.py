@@ -1,7 +1,8 @@
 """Why a merge was refused, where the cause is simple: a map read wrongly, mirrored, or of another scale.
 
-Each simple change is made to map 2, and the default method asked whether the maps agree then. It is named
-only where the verdict accepts the changed maps.
+Each simple change is made to map 2, and the method that suits is asked whether the maps agree then: near a
+sighting the default one, without one the search over the plane. It is named only where the verdict accepts
+the changed maps.
 """
 
 from __future__ import annotations
@@ -17,9 +18,10 @@ from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
 from algorithms.maps.coarse_grid import pooled
 from algorithms.maps.grid_map import GridMap, remarks_on
-from algorithms.methods import spectra_method
+from algorithms.methods import plane_method, spectra_method
 from algorithms.methods.merge_result import MergeResult
-from algorithms.methods.shared_stages import run_search
+from algorithms.methods.plane_method import PlaneMethodConfig
+from algorithms.methods.shared_stages import Search, run_search
 from algorithms.methods.spectra_config import PipelineConfig
 from algorithms.methods.steps import CauseDetail, TriedDetail
 from algorithms.observations import observation
@@ -31,9 +33,8 @@ from algorithms.verdict.decision import Verdict
 SCALES = (0.5, 2.0, 0.8, 1.25, 0.4, 2.5)  # between cells of 0.02, 0.025, 0.04, 0.05 and 0.1 m
 PATIENCE = 2  # of the proof, in 10⁵ nodes: how long each change is tried
 MOST_CELLS = 2_000_000  # of a map; a larger one is tried in coarser cells
+FEW_PLACES, FEW_ANSWERS = 30, 3  # of the search over the plane
 NO_SWARM = SwarmConfig(particles=10, iterations=1)  # what it finds has no influence on a proven answer
-
-Change = Callable[[GridMap, Observation], tuple[GridMap, Observation]]
 
 
 @dataclass(frozen=True)
@@ -42,45 +43,52 @@ class Cause:
 
     clause : how it is named, as in "mirrored, map 2 agrees"
     cure   : what to do
-    change : makes right of the map and of what robot 2 knows of itself
+    grid   : makes right of the map
+    seen   : of what robot 2 knows of itself
     """
 
     clause: str
     cure: str
-    change: Change
+    grid: Callable[[GridMap], GridMap]
+    seen: Callable[[Observation], Observation] = lambda o: o
 
 
-def _flipped(axis: int) -> Change:
+def _flipped(axis: int) -> Callable[[GridMap], GridMap]:
     """The image alone is turned over; its corner and the robots stay where they are."""
-
-    def change(grid: GridMap, o: Observation) -> tuple[GridMap, Observation]:
-        return replace(grid, cells=np.ascontiguousarray(np.flip(grid.cells, axis))), o
-
-    return change
+    return lambda grid: replace(grid, cells=np.ascontiguousarray(np.flip(grid.cells, axis)))
 
 
-def _scaled(factor: float, frame: bool) -> Change:
-    """Cells of another size; with ``frame`` the map's corner and its robot's place are scaled, too."""
+def _scaled(factor: float) -> Callable[[GridMap], GridMap]:
+    """Cells of another size; the map's corner stays where it is."""
+    return lambda grid: replace(grid, resolution=grid.resolution * factor)
 
-    def change(grid: GridMap, o: Observation) -> tuple[GridMap, Observation]:
-        larger = replace(grid, resolution=grid.resolution * factor)
-        if not frame:
-            return larger, o
+
+def _scaled_frame(factor: float) -> Callable[[GridMap], GridMap]:
+    """The same, and the map's corner is scaled, too."""
+
+    def change(grid: GridMap) -> GridMap:
         origin = Pose2(grid.origin.x * factor, grid.origin.y * factor, grid.origin.theta)
-        there = replace(o, observed_x=o.observed_x * factor, observed_y=o.observed_y * factor)
-        return replace(larger, origin=origin), there
+        return replace(grid, resolution=grid.resolution * factor, origin=origin)
 
     return change
+
+
+def _scaled_place(factor: float) -> Callable[[Observation], Observation]:
+    """Where robot 2 stood, scaled."""
+    return lambda o: replace(o, observed_x=o.observed_x * factor, observed_y=o.observed_y * factor)
 
 
 def _causes(mov: GridMap) -> list[list[Cause]]:
-    """Simple changes. Those of one list differ little: the likeliest of them is told."""
+    """Simple changes. Those of one list differ little: the likeliest of them is told. Without a sighting
+    they do not differ at all.
+    """
     over = "turn its image over in a picture editor, or save the map anew"
     mirrored = [
         Cause(
             "mirrored, map 2 agrees",
             "is its lidar mounted upside down, or was its image flipped? Put that right, and merge again",
-            lambda grid, o: (grid.mirrored(), observation.mirrored(o)),
+            lambda grid: grid.mirrored(),
+            observation.mirrored,
         ),
         Cause("with its image flipped left to right, map 2 agrees", over, _flipped(1)),
         Cause("with its image flipped top to bottom, map 2 agrees", over, _flipped(0)),
@@ -92,18 +100,25 @@ def _causes(mov: GridMap) -> list[list[Cause]]:
         cure = f"set resolution: {cell} in its YAML file"
         more = f"{cure}, and multiply its origin and where robot 2 stood by {factor:g}"
         causes.append(
-            [Cause(clause, cure, _scaled(factor, False)), Cause(clause, more, _scaled(factor, True))]
+            [
+                Cause(clause, cure, _scaled(factor)),
+                Cause(clause, more, _scaled_frame(factor), _scaled_place(factor)),
+            ]
         )
     return causes
 
 
-def find_cause(problem: PairProblem, config: PipelineConfig) -> Iterator[TriedDetail | CauseDetail]:
+def find_cause(
+    problem: PairProblem, near: PipelineConfig, wide: PlaneMethodConfig
+) -> Iterator[TriedDetail | CauseDetail]:
     """Yield what is being tried, and at the end the cause, if one was found.
 
-    config : of the default method
+    near, wide : of the method near a sighting, and of the one without
     """
     remarks = " ".join(remarks_on((problem.ref, problem.mov)))
-    causes = _causes(problem.mov) if problem.observations else []
+    causes = _causes(problem.mov)
+    if not problem.observations:
+        causes = [alike[:1] for alike in causes]
     ref, mov = (pooled(grid, ceil(sqrt(grid.cells.size / MOST_CELLS))) for grid in (problem.ref, problem.mov))
     coarse = replace(problem, ref=ref, mov=mov)
     total, number = sum(map(len, causes)), 0
@@ -112,7 +127,7 @@ def find_cause(problem: PairProblem, config: PipelineConfig) -> Iterator[TriedDe
         for cause in alike:
             yield TriedDetail(cause.clause, number, total)
             number += 1
-            found = _try(coarse, cause, config)
+            found = _try(coarse, cause, near, wide)
             if found is not None and found.verdict.accepted:
                 agreeing.append((found.verdict, cause))
         if agreeing:
@@ -124,13 +139,18 @@ def find_cause(problem: PairProblem, config: PipelineConfig) -> Iterator[TriedDe
     yield CauseDetail(f"How the maps were read may be the cause. {remarks}" if remarks else "")
 
 
-def _try(problem: PairProblem, cause: Cause, config: PipelineConfig) -> MergeResult | None:
-    """What the default method makes of the maps after a change; None where that cannot be."""
-    quick: Any = replace(config, swarm=NO_SWARM, proof=replace(config.proof, patience=PATIENCE))
+def _try(
+    problem: PairProblem, cause: Cause, near: PipelineConfig, wide: PlaneMethodConfig
+) -> MergeResult | None:
+    """What the method makes of the maps after a change; None where that cannot be."""
+    quick: Any = replace(near, swarm=NO_SWARM, proof=replace(near.proof, patience=PATIENCE))
+    search: Search = spectra_method.search
+    if not problem.observations:
+        quick, search = replace(wide, places=FEW_PLACES, answers=FEW_ANSWERS), plane_method.search
     try:
-        changed = [cause.change(problem.mov, o) for o in problem.observations]
-        right = PairProblem(problem.ref, changed[0][0], tuple(o for _, o in changed))  # a prior may be wrong
-        *_, last = run_search(spectra_method.search, right, quick)
+        seen = tuple(map(cause.seen, problem.observations))
+        right = PairProblem(problem.ref, cause.grid(problem.mov), seen)  # a prior may be wrong
+        *_, last = run_search(search, right, quick)
     except MapMergeError:  # a robot off its map, or cells too fine: this was not the cause
         return None
     assert isinstance(last.detail, MergeResult)

@@ -232,8 +232,8 @@ def find_cause(ref: GridMap, mov: GridMap, known: Known | Sequence[Known] = ()) 
     last one's detail is a CauseDetail.
     """
     began = perf_counter()
-    default = METHODS[DEFAULT_METHOD].defaults
-    for detail in refusal_causes.find_cause(PairProblem.of(ref, mov, known), default):
+    near, wide = (METHODS[name].defaults for name in (DEFAULT_METHOD, PLANE_METHOD))
+    for detail in refusal_causes.find_cause(PairProblem.of(ref, mov, known), near, wide):
         yield Step("explain", detail, perf_counter() - began)
         began = perf_counter()
 

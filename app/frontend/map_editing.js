@@ -31,6 +31,7 @@
     const entry = e.target.closest?.("button.mm-entry"), step = e.target.closest?.("button.mm-step");
     const suggestion = e.target.closest?.("button[data-mm-suggestion]");
     if (suggestion) S.tell("suggest", { number: Number(suggestion.dataset.mmSuggestion) });
+    if (e.target.closest?.("button.mm-take")) S.tell("take");
     if (entry) S.tell("go", { to: Number(entry.dataset.go) });
     if (step) S.tell("step", { by: Number(step.dataset.by) });
   });
@@ -173,6 +174,7 @@
     const listed = S.keys?.groups.find(([title]) => title === "Map 2 by hand"); // the list that "?" shows
     if (listed && !listed[1].length) listed[1].push(...KEYS);
     S.hand = Object.keys(message.hand).length ? message.hand : null;
+    document.body.toggleAttribute("data-mm-held", Boolean(S.hand?.mov));
     if (!S.hand && hold) { hold = null; S.held = false; sketch(); }
     if (!S.hand && S.surface()) S.surface().style.cursor = "";
   });
@@ -188,6 +190,8 @@
     .mm-suggestions p{grid-column:1/-1;margin:0}
     .mm-suggestions button{display:flex;flex-direction:column;gap:1px;padding:4px;border:1px solid #9CA3AF88;border-radius:6px;background:none;color:inherit;font:inherit;text-align:left;cursor:pointer}
     .mm-suggestions button:hover{border-color:#0072B2;background:#0072B21A} .mm-suggestions button:focus-visible{outline:2px solid #0072B2}
+    .mm-suggestions .mm-take{grid-column:1/-1;padding:5px;align-items:center;background:#0072B2;color:#fff;font-weight:600}
+    .mm-suggestions .mm-take:hover{background:#005A8E} body:not([data-mm-held]) .mm-take{display:none}
     .mm-suggestions img{width:100%;border-radius:3px;margin-bottom:2px} .mm-suggestions b{font-size:13px} .mm-suggestions small{font-size:11px;opacity:.75}
     .mm-entry{display:flex;gap:7px;align-items:baseline;width:100%;padding:3px 8px;border:0;background:none;color:inherit;font:12.5px/1.4 system-ui,"Segoe UI",sans-serif;text-align:left;cursor:pointer}
     .mm-entry:hover{background:#6B728022} .mm-entry:focus-visible{outline:2px solid #0072B2;outline-offset:-2px}

@@ -85,7 +85,7 @@ def test_a_refused_merge_suggests_places_and_the_one_that_is_pressed_can_be_take
         buttons.last.click()
         settle(lambda: tab.state.startswith("By hand, would be refused"), "map 2 in the hand")
         assert tab.number("likely right") == likely
-        tab.press("Take this as the answer")
+        tab.press("Take it")
         settle(lambda: tab.state.startswith("Chosen by you. Refused"), "the answer")
         assert tab.number("made") == "chosen by you"
     finally:

@@ -47,6 +47,7 @@ class MapDragController:
         tab.events.on("carry", lambda **at: self._carry(Pose2(**at)), latest=True, **where)
         tab.events.on("put", lambda knew, **at: self._put(Pose2(**at), knew), knew=int, **where)
         tab.events.on("nudge", self._nudge, knew=int, **where)
+        tab.events.on("take", self._take)
 
     def close(self) -> None:
         self._verdict.close()
@@ -70,6 +71,9 @@ class MapDragController:
             self._runs.thread.stop()
             self.begin(T_ref_mov)
             if self.active:
+                with self._locks.drawing:
+                    self._messages.look_down(self._maps.extent(), need=True)
+                    self._messages.flush()
                 self._undo.history.note(self._state.snapshot(), label)
 
     def take_up(self, manual: ManualMerge, T_ref_mov: Pose2 | None) -> None:

@@ -31,10 +31,11 @@ class SuggestionPictures:
                 for each in suggestions_of(result)
             ]
             made = self._made = result.weighed, palette, "".join(buttons)
-        return (
-            '<div class="mm-suggestions"><p>Is it one of these? Press one to lay map 2 so; then take it, or '
-            f"mend it, under “By hand”.</p>{made[2]}</div>"
+        said = (
+            "Is it one of these? Press one to lay map 2 so; then take it, or mend it first, under “By hand”."
         )
+        take = '<button type="button" class="mm-take">Take it</button>'
+        return f'<div class="mm-suggestions"><p>{said}</p>{made[2]}{take}</div>'
 
 
 def _button(suggestion: Suggestion, picture: str) -> str:

@@ -10,17 +10,17 @@ import pytest
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import GridMap, remarks_on
 from algorithms.methods.refusal_causes import find_cause
-from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge, run_explained
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS, PLANE_METHOD, merge, run_explained
 from algorithms.methods.steps import CauseDetail, TriedDetail
 from algorithms.observations.observation import mirrored
 from algorithms.observations.pair_problem import PairProblem
 
-CONFIG = METHODS[DEFAULT_METHOD].defaults
+CONFIG, PLANE = (METHODS[name].defaults for name in (DEFAULT_METHOD, PLANE_METHOD))
 
 
-def explained(case):
+def explained(case, method=DEFAULT_METHOD, config=CONFIG):
     """The last of what merging and asking for a cause yields."""
-    *_, last = run_explained(DEFAULT_METHOD, case.ref, case.mov, case.observations, CONFIG, 0)
+    *_, last = run_explained(method, case.ref, case.mov, case.observations, config, 0)
     return last.detail
 
 
@@ -63,6 +63,17 @@ def test_cells_of_a_wrong_size_are_told_with_the_right_one(factor, small_case):
     assert f"resolution: {small_case.mov.resolution:g}" in told
 
 
+def test_without_a_sighting_a_mirrored_map_and_cells_of_a_wrong_size_are_told_as_well(small_case):
+    alone = replace(small_case, observations=())
+    mirrored_told = explained(with_mov(alone, small_case.mov.mirrored()), None, None)
+    assert mirrored_told.verdict.hint.startswith("Mirrored, map 2 agrees on ")
+    larger = replace(small_case.mov, resolution=2 * small_case.mov.resolution)
+    assert (
+        f"resolution: {small_case.mov.resolution:g}"
+        in explained(with_mov(alone, larger), None, None).verdict.hint
+    )
+
+
 def test_a_map_that_was_put_right_when_it_was_read_and_is_mirrored_is_told_to_be_mirrored(small_case):
     odd = replace(small_case.mov.mirrored(), remarks=("grey 205 is read as unknown",))
     (seen,) = small_case.observations
@@ -74,7 +85,7 @@ def test_cells_that_would_be_too_fine_or_too_coarse_are_no_cause(strangers):
         mov = replace(strangers.mov, resolution=cell)
         x, y = mov.corners().mean(axis=0).tolist()  # where robot 2 stands on its map, however small that is
         tiny = with_mov(strangers, mov, (replace(strangers.observations[0], observed_x=x, observed_y=y),))
-        *_, last = find_cause(problem_of(tiny), CONFIG)
+        *_, last = find_cause(problem_of(tiny), CONFIG, PLANE)
         assert isinstance(last, CauseDetail)
 
 
@@ -86,13 +97,13 @@ def test_maps_of_two_buildings_have_no_simple_cause(strangers):
 
 def test_how_a_map_was_read_is_told_where_no_change_helps(strangers):
     odd = with_mov(strangers, replace(strangers.mov, remarks=("no wall was read in it",)))
-    *_, last = find_cause(problem_of(odd), CONFIG)
+    *_, last = find_cause(problem_of(odd), CONFIG, PLANE)
     assert "no wall was read in it" in last.hint
     assert remarks_on((odd.ref, odd.mov)) == ("Map 2 (hall): no wall was read in it.",)
 
 
 def test_every_change_is_told_before_it_is_tried(strangers):
-    *tried, last = find_cause(problem_of(strangers), CONFIG)
+    *tried, last = find_cause(problem_of(strangers), CONFIG, PLANE)
     assert all(isinstance(each, TriedDetail) for each in tried)
     assert [each.index for each in tried] == list(range(tried[0].total))
     assert last == CauseDetail("")
