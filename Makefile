@@ -9,7 +9,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 TOOL := PYTHONPATH=tests/support $(BIN)/python tests/tools
 
-.PHONY: help run test bench fuzz soak idle audit samples screenshots equations replays verdict results clean
+.PHONY: help run test bench fuzz soak idle audit samples screenshots equations replays verdict unrelated results clean
 
 help:
 	@echo "make run          open the tool on a sample, in the browser (ARGS=--no-browser: only serve it)"
@@ -24,6 +24,7 @@ help:
 	@echo "make equations    typeset the equations in static/equations again"
 	@echo "make replays      record the pages in static/replays again"
 	@echo "make verdict      fit the verdict's model to simulated pairs again (ARGS='--cases DIR'); about an hour"
+	@echo "make unrelated    merge 1,000 pairs of unrelated maps without a sighting (ARGS='--pairs 100'); about an hour"
 	@echo "make results      measure the paper's section IV on the samples again: RESULTS.md; about 3 minutes on 2 cores"
 	@echo "make clean        remove the environment and everything that was made"
 
@@ -78,6 +79,9 @@ replays: $(VENV)/ready
 
 verdict: $(VENV)/ready
 	@$(TOOL)/verdict_training.py $(ARGS)
+
+unrelated: $(VENV)/ready
+	@$(TOOL)/unrelated_pairs.py $(ARGS)
 
 results: $(VENV)/ready
 	@$(PIP) install -e '.[surf]'

@@ -23,6 +23,7 @@ from algorithms.maps.grid_map import (
 )
 from algorithms.maps.robots import NO_ROBOTS, Robots
 
+SAME_CELL = 1e-6  # of a cell's edge; what rounding in a file may make of it
 SAME_PLACE = 0.12  # metres; a wall that both maps show so near to each other is one, and no robot
 
 
@@ -44,6 +45,7 @@ class Fusion:
     agreed_walls : cells where both are walls
     conflicting : cells where one is a wall and the other is free
     cleared     : wall cells of one map around the maker of the other, which were that robot: now floor
+    resolutions : of every map as it was given; metres per cell
     """
 
     merged: GridMap
@@ -52,6 +54,16 @@ class Fusion:
     agreed_walls: int
     conflicting: int
     cleared: int = 0
+    resolutions: tuple[float, ...] = ()
+
+    @property
+    def resampled(self) -> dict[int, float]:
+        """The maps that came in coarser cells than the merged one's: number, from 1, and metres per cell."""
+        return {
+            number: cell
+            for number, cell in enumerate(self.resolutions, 1)
+            if not np.isclose(cell, self.merged.resolution, rtol=SAME_CELL)
+        }
 
     @property
     def ref_cells(self) -> CellArray:
@@ -93,7 +105,7 @@ def fuse(
     """
     ref = maps[0]
     cell = min(grid.resolution for grid in maps)
-    if np.isclose(ref.resolution, cell, rtol=1e-6):
+    if np.isclose(ref.resolution, cell, rtol=SAME_CELL):
         cell = ref.resolution
     to_grid = ref.origin.inverse()  # the first grid's own axes, metres
     corners = [np.array([[0.0, 0.0], [ref.width, ref.height]]) * ref.resolution]
@@ -133,6 +145,7 @@ def fuse(
         agreed_walls=agreed_walls,
         conflicting=conflicting,
         cleared=cleared,
+        resolutions=tuple(grid.resolution for grid in maps),
     )
 
 

@@ -5,7 +5,7 @@ places are climbed and held against the whole maps.
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from math import radians
 from typing import Annotated
@@ -126,9 +126,18 @@ def climb(whole: WholeMaps, plane: PlaneDetail, config: PlaneMethodConfig) -> An
 
 
 def weigh(whole: WholeMaps, climbed: AnswersDetail) -> WeighedDetail:
-    """The hilltops by the whole maps, patches slipped; the likeliest first."""
+    """The hilltops by the whole maps, patches slipped; the likeliest first, each on its hilltop."""
     tops = [answer.T_ref_mov for answer in climbed.answers]
-    return WeighedDetail(ranked(whole, tops, shipped_model(PLANE), *ELSEWHERE))
+    found = ranked(whole, tops, shipped_model(PLANE), *ELSEWHERE)
+    return WeighedDetail(tuple(_on_top(whole, each) for each in found))
+
+
+def _on_top(whole: WholeMaps, each: Weighed) -> Weighed:
+    """An answer on its hilltop, which swapping the maps leaves where it is; where that is in the window."""
+    top = whole.hilltop(each.T_ref_mov)
+    if not whole.window.contains(top.array()[None])[0]:
+        return each
+    return replace(each, T_ref_mov=top, began=each.began if each.moved else top)
 
 
 def covariance_at(

@@ -147,7 +147,7 @@ def judge(
     evidence = named.evidence
     share = None
     if others is not None:
-        share = exp(min(MOST_ODDS, log_odds_over(scores[0], named.score))) if rivals else 0.0
+        share = exp(min(MOST_ODDS, log_odds_over(scores[0], named.score, named.enough))) if rivals else 0.0
     rival = rivals[0] if rivals and (share or 0.0) >= RIVAL_FROM else None
     accepted, bent = likely >= config.accept_from and not doubts, is_bent(evidence, config)
     only_bent = accepted and bent and config.refuse_bent
@@ -289,6 +289,6 @@ def _rivalry(named: Weighed, rival: Weighed, pivot: FloatArray, sighted: bool) -
     apart = f"{degrees(turn):.0f}° apart"
     if distance > SAME_PLACE and degrees(turn) < 1:
         apart = f"{distance:.1f} m apart"
-    if log_odds_over(rival.score, named.score) > -ALIKE:
+    if log_odds_over(rival.score, named.score, named.enough) > -ALIKE:
         return f"two answers fit almost equally well, {apart}: {cure}"
     return f"another answer, {apart}, fits too well to be ruled out: {cure}"

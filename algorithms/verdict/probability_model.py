@@ -6,8 +6,9 @@ Every answer gets a score s = b + Σ w_k q_k. Of the answers that the search kno
 
 Without others this is plain logistic regression. Beyond a score of ``ENOUGH`` an answer fits as well as any,
 and is not held to be likelier than another one of which that is true as well: a twin with less wall in common
-halves the probability. The weights are those of ``probability_model.json``, which says what made them:
-``make verdict`` fits them to simulated pairs (``tests/tools/model_fit.py``).
+halves the probability. How wide the search was raises or lowers all scores alike, and that score with them:
+it says nothing about which of the answers fits. The weights are those of ``probability_model.json``, which
+says what made them: ``make verdict`` fits them to simulated pairs (``tests/tools/model_fit.py``).
 """
 
 from __future__ import annotations
@@ -103,6 +104,7 @@ QUANTITIES: dict[str, Quantity] = {
 }
 """Logarithms of metres and m², but for the misfit."""
 
+WIDTH = "searched"  # the quantity that all answers of a search share
 OTHERS = "others"  # beside the quantities: what other answers take away
 
 
@@ -148,7 +150,13 @@ class VerdictModel:
             name: weight * (quantities[name] - self.typical[name]) for name, weight in self.weights.items()
         }
         score = self.score(quantities)
-        return {**moved, OTHERS: log_odds(score, others) - score}
+        return {**moved, OTHERS: log_odds(score, others, self.enough(quantities)) - score}
+
+    def enough(self, quantities: Mapping[str, float]) -> float:
+        """Score from which on an answer of such a search fits as well as any."""
+        if WIDTH not in self.weights:
+            return ENOUGH
+        return ENOUGH + self.weights[WIDTH] * (quantities[WIDTH] - self.typical[WIDTH])
 
     @property
     def typical_score(self) -> float:
@@ -160,20 +168,20 @@ def quantities_of(fit: Fit) -> dict[str, float]:
     return {name: quantity.of(fit) for name, quantity in QUANTITIES.items()}
 
 
-def probability(score: float, others: Sequence[float] = ()) -> float:
-    """That the answer of this score is right, where others have these scores."""
-    return 1 / (1 + exp(-max(-700.0, log_odds(score, others))))
+def probability(score: float, others: Sequence[float] = (), enough: float = ENOUGH) -> float:
+    """That the answer of this score is right, where others have these scores; ``enough``: VerdictModel's."""
+    return 1 / (1 + exp(-max(-700.0, log_odds(score, others, enough))))
 
 
-def log_odds(score: float, others: Sequence[float] = ()) -> float:
+def log_odds(score: float, others: Sequence[float] = (), enough: float = ENOUGH) -> float:
     """The same as log-odds."""
-    against = [-score, *(log_odds_over(other, score) for other in others)]
+    against = [-score, *(log_odds_over(other, score, enough) for other in others)]
     return -float(np.logaddexp.reduce(np.array(against)))
 
 
-def log_odds_over(score: float, other: float) -> float:
+def log_odds_over(score: float, other: float, enough: float = ENOUGH) -> float:
     """Log-odds of one answer over another, by their scores; of the worse of two as far as it is worse."""
-    return score - other if score >= other else min(score, ENOUGH) - min(other, ENOUGH)
+    return score - other if score >= other else min(score, enough) - min(other, enough)
 
 
 def model_from(plain: Mapping[str, Any]) -> VerdictModel:

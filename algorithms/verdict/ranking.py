@@ -8,7 +8,14 @@ from math import radians
 
 from algorithms.common.parallel_kernels import each_on_a_core
 from algorithms.common.pose import Pose2, pose_error
-from algorithms.verdict.probability_model import Fit, VerdictModel, misfit_of, probability, quantities_of
+from algorithms.verdict.probability_model import (
+    ENOUGH,
+    Fit,
+    VerdictModel,
+    misfit_of,
+    probability,
+    quantities_of,
+)
 from algorithms.verdict.wall_evidence import Evidence
 from algorithms.verdict.whole_maps import WholeMaps
 
@@ -25,6 +32,7 @@ class Weighed:
     deviations : from every sighting; standard deviations
     quantities : of the verdict's model
     score      : log-odds of being right, were there no other
+    enough     : score from which on an answer fits as well as any, as in VerdictModel
     """
 
     T_ref_mov: Pose2
@@ -33,6 +41,7 @@ class Weighed:
     deviations: tuple[float, ...]
     quantities: Mapping[str, float]
     score: float
+    enough: float = ENOUGH
 
     @property
     def moved(self) -> bool:
@@ -46,7 +55,8 @@ def weigh(whole: WholeMaps, T_ref_mov: Pose2, model: VerdictModel, began: Pose2 
     deviations = tuple(whole.window.deviations(T_ref_mov.array()[None])[0].tolist())
     quantities = quantities_of(Fit(evidence, misfit_of(deviations, WINDOW_EDGE), whole.searched))
     began = T_ref_mov if began is None else began
-    return Weighed(T_ref_mov, began, evidence, deviations, quantities, model.score(quantities))
+    score, enough = model.score(quantities), model.enough(quantities)
+    return Weighed(T_ref_mov, began, evidence, deviations, quantities, score, enough)
 
 
 def ranked(
@@ -103,7 +113,7 @@ def elsewhere(
 
 def probability_of(named: Weighed, others: Sequence[Weighed]) -> float:
     """That an answer is right, the others beside it."""
-    return probability(named.score, [other.score for other in others])
+    return probability(named.score, [other.score for other in others], named.enough)
 
 
 def _apart(whole: WholeMaps, a: Weighed, b: Weighed, distance: float, angle: float) -> bool:

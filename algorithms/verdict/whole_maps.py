@@ -65,7 +65,7 @@ class WholeMaps:
         """What the walls say of a transform, or of the hilltop within a few centimetres: where cells end is
         chance, and would count otherwise.
         """
-        return evidence(self.ref, self.mov, self._hilltop(T_ref_mov), self.robots)
+        return evidence(self.ref, self.mov, self.hilltop(T_ref_mov), self.robots)
 
     @cached_property
     def crisp(self) -> Objective:
@@ -123,7 +123,7 @@ class WholeMaps:
         """Share of the walls that contradict with the maps as they are."""
         return evidence(self.ref, self.mov, T_ref_mov, self.robots, slip=False).rigid_contradiction
 
-    def _hilltop(self, T_ref_mov: Pose2) -> Pose2:
+    def hilltop(self, T_ref_mov: Pose2) -> Pose2:
         """The top of the paraboloid that fits the crisp objective at the 27 places around, again and again.
 
         It is fitted about the middle of all robots, or of all walls, so that swapping the maps or turning a

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import degrees
 
 from algorithms.common.pose import pose_error
+from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import CHOSEN, MergeResult
 from algorithms.methods.registry import METHODS
 from algorithms.optimisation.branch_and_bound import ProofState
@@ -61,6 +62,12 @@ def optimum(proof: ProofState) -> str:
     if fits_nowhere(proof):
         return "nothing fits"
     return "proven" if proof.proven else f"not proven: {proof.stopped or 'not finished'}"
+
+
+def resampled(fusion: Fusion) -> str:
+    """Which map was resampled: "map 2 from cells of 0.2 m to 0.05 m"; empty where none was."""
+    changed = " and ".join(f"map {n} from cells of {cell:g} m" for n, cell in fusion.resampled.items())
+    return f"{changed} to {fusion.merged.resolution:g} m" if changed else ""
 
 
 def mood(verdict: Verdict) -> str:

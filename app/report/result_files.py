@@ -52,7 +52,8 @@ def report_of(
     inputs: Mapping[str, str] | None = None,
     warnings: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """What report.json says: metres and radians; a number that is not finite is null.
+    """What report.json says: metres and radians; a number that is not finite is null. "resampled" are the
+    cells of maps that were coarser than the merged one's.
 
     load_s   : seconds spent on reading the maps
     inputs   : the files it was made from, as the user named them
@@ -77,6 +78,7 @@ def report_of(
             for weighed in result.weighed
         ],
         "performance_index_at_estimate": performance_index(result.fusion),
+        "resampled": {f"map{number}": cell for number, cell in result.fusion.resampled.items()},
     }
     return _report(found, result.method, result.seed, config, load_s, inputs, warnings)
 
@@ -112,6 +114,7 @@ def _report(
         "proof": None,
         "answers": [],
         "performance_index_at_estimate": None,
+        "resampled": {},
         "settings": config,
         "inputs": dict(inputs or {}),
         "warnings": warnings,

@@ -73,6 +73,7 @@ def numbers(result: MergeResult, inputs: MergeInputs, config: Any = None) -> lis
         *_deviation(result),
         *_rivals(result),
         *_proof(result),
+        *_resampled(result),
         ("seed", f"{result.seed}"),
     ]
     return rows
@@ -112,6 +113,12 @@ def _proof(result: MergeResult) -> list[tuple[str, ...]]:
     if result.proven_optimal and result.search_found_it is not None:
         rows.append(("found by the search", "yes" if result.search_found_it else "no"))
     return rows
+
+
+def _resampled(result: MergeResult) -> list[tuple[str, ...]]:
+    """Which map came in coarser cells than the merged one's."""
+    changed = verdict_text.resampled(result.fusion)
+    return [("resampled", changed)] if changed else []
 
 
 def _deviations(result: MergeResult) -> tuple[float, float]:

@@ -111,7 +111,8 @@ def predict(model: VerdictModel, examples: Sequence[Example]) -> Forecast:
         best = int(scores.argmax())
         same = example.right & example.right[best]  # one right answer, told twice
         others = [score for k, score in enumerate(scores.tolist()) if k != best and not same[k]]
-        probabilities.append(probability(float(scores[best]), others))
+        enough = model.enough(dict(zip(QUANTITIES, example.quantities[best].tolist(), strict=True)))
+        probabilities.append(probability(float(scores[best]), others, enough))
         right.append(bool(example.right[best]))
     return Forecast(np.array(probabilities), np.array(right, dtype=np.bool_))
 

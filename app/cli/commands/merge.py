@@ -211,6 +211,8 @@ def _summary(result: MergeResult, config: Any) -> list[str]:
         lines.append(f"another answer: {rival} likely")
     if verdict.cleared_cells:
         lines.append(f"{verdict.cleared_cells} cells around robots were the robots themselves: floor now")
+    if changed := verdict_text.resampled(result.fusion):
+        lines.append(f"resampled: {changed}")
     lines.append(
         f"acceptance index {verdict.acceptance_index:.3f} "
         f"over {verdict.overlap_cells} cells ({verdict.overlap_area:.1f} m²)"

@@ -115,6 +115,14 @@ def test_the_finer_resolution_is_kept():
     assert fuse((fine, coarse), (Pose2(), Pose2())).merged.resolution == 0.05
 
 
+def test_which_map_was_resampled_is_told():
+    coarse, fine = GridMap(np.zeros((2, 2), np.int8), 0.2), GridMap(np.zeros((8, 8), np.int8), 0.05)
+    same = (Pose2(), Pose2())
+    assert fuse((coarse, fine), same).resampled == {1: 0.2}
+    assert fuse((fine, coarse), same).resampled == {2: 0.2}
+    assert fuse((fine, fine), same).resampled == {}
+
+
 def test_a_yawed_origin_stays_the_origin_of_the_merged_map():
     ref = drawn_map(Pose2(), origin_yaw=0.6)
     assert fuse((ref, drawn_map(Pose2())), (Pose2(), Pose2())).merged.origin.theta == pytest.approx(0.6)

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from algorithms.common.errors import SettingError
-from algorithms.common.parallel_kernels import use_threads
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS, PLANE_METHOD, default_method, merge, run
@@ -51,19 +50,6 @@ def test_whatever_is_known_the_same_place_is_found(small_case, alone, kind):
     assert len(found.weighed[0].deviations) == 1
 
 
-def test_swapping_the_maps_inverts_the_answer(small_case, alone):
-    back = merge(small_case.mov, small_case.ref)
-    assert is_at(alone, back.T_ref_mov.inverse())
-
-
-def test_one_thread_and_several_give_the_same_answer(small_case, alone):
-    use_threads(1)
-    try:
-        assert merge(small_case.ref, small_case.mov).T_ref_mov == alone.T_ref_mov
-    finally:
-        use_threads(64)
-
-
 def test_the_turns_are_told_one_batch_after_another_with_the_best_places_so_far(small_case):
     told = [step.detail for step in run(None, small_case.ref, small_case.mov) if step.stage == "correlate"]
     assert all(isinstance(detail, PlaneDetail) for detail in told)
@@ -76,10 +62,6 @@ def test_the_turns_are_told_one_batch_after_another_with_the_best_places_so_far(
         assert not tried[detail.done :].any()
         assert np.nanmax(detail.tops) == pytest.approx(float(detail.values[0]))
         assert detail.picture.turn in detail.turns[: detail.done]
-
-
-def test_maps_of_different_buildings_are_refused(strangers):
-    assert not merge(strangers.ref, strangers.mov).verdict.accepted
 
 
 def test_the_method_suits_what_is_known(small_case):

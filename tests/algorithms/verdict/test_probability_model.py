@@ -15,6 +15,7 @@ from algorithms.verdict.probability_model import (
     QUANTITIES,
     Fit,
     log_odds,
+    log_odds_over,
     misfit_of,
     probability,
     quantities_of,
@@ -22,7 +23,7 @@ from algorithms.verdict.probability_model import (
 )
 from algorithms.verdict.wall_evidence import Evidence
 
-MODEL = shipped_model()
+MODEL, PLANE = shipped_model(), shipped_model("plane")
 CLEAN = Evidence(100.0, 1.0, 98.0, 3.0, across=30.0, floor=60.0)
 metres = st.floats(0, 500)
 scores = st.floats(-40, 40)
@@ -84,6 +85,24 @@ def test_two_answers_are_never_certain_together(score, other):
 @given(st.floats(ENOUGH, 40), st.floats(ENOUGH, 40))
 def test_of_twins_that_both_fit_as_well_as_can_be_none_is_likelier_than_a_half(score, other):
     assert probability(score, [other]) <= 0.5
+
+
+@given(fits(), fits(), metres, metres)
+def test_how_wide_the_search_was_says_nothing_about_which_answer_fits(first, second, narrow, wide):
+    told = []
+    for searched in (narrow, wide):
+        found = [quantities_of(replace(fit, searched=searched)) for fit in (first, second)]
+        told.append(log_odds_over(*map(PLANE.score, found), PLANE.enough(found[0])))
+    assert told[0] == pytest.approx(told[1], abs=1e-6)
+
+
+@given(fits(), st.lists(fits(), max_size=3), metres, metres)
+def test_a_wider_search_never_makes_a_merge_likelier_whatever_else_fits(fit, others, searched, more):
+    def likely_among(searched: float) -> float:
+        named, *rest = (quantities_of(replace(each, searched=searched)) for each in (fit, *others))
+        return probability(PLANE.score(named), [PLANE.score(each) for each in rest], PLANE.enough(named))
+
+    assert likely_among(searched + more) <= likely_among(searched) + 1e-9
 
 
 @given(scores)

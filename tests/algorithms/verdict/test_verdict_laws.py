@@ -14,33 +14,21 @@ from math import atan2
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
+from simulated import BUILDINGS, cases_of
 
 from algorithms.common.pose import Pose2, rotation, wrap_angle
 from algorithms.maps.grid_map import UNKNOWN
 from algorithms.methods.refusal_causes import NO_SWARM
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge
 from algorithms.observations.observation import Observation, encounter
-from algorithms.simulator.robot import Conditions
-from algorithms.simulator.scenario import SimulatedCase, simulate
+from algorithms.simulator.scenario import SimulatedCase
 from algorithms.simulator.wrong_pairs import mismatch
 from algorithms.verdict.wall_map import SAME_WALL
 
 DEFAULT = METHODS[DEFAULT_METHOD].defaults
 QUICK = replace(DEFAULT, swarm=NO_SWARM)  # the proof finds what the swarm does not
-BUILDINGS = [
-    ("apartment", 1, 0.4),
-    ("corridor", 3, 0.3),
-    ("home", 10, 0.4),
-    ("office", 2, 0.3),
-    ("warehouse", 20, 0.3),
-]
 FRAMES = [Pose2(13.3, -22.7, 2.5), Pose2(-71.0, 8.0, -0.4), Pose2(0.02, 0.01, 0.9)]
 LITTLE = 0.01
-
-
-@cache
-def cases_of(kind: str, seed: int, overlap: float) -> tuple[SimulatedCase, ...]:
-    return simulate(kind, seed, overlap, conditions=(Conditions(resolution=0.05),) * 3, sightings=2).cases
 
 
 def likely(ref, mov, observations) -> float:

@@ -25,6 +25,13 @@ def test_an_unproven_optimum_says_why():
     assert words.optimum(proof_state()) == "proven"
 
 
+def test_the_map_that_was_resampled_is_named_with_its_cells(result):
+    cell = result.fusion.merged.resolution
+    assert words.resampled(result.fusion) == ""
+    told = words.resampled(replace(result.fusion, resolutions=(cell, 4 * cell)))
+    assert told == "map 2 from cells of 0.2 m to 0.05 m"
+
+
 def refused(result: MergeResult, proof: ProofState | None = None, **changes) -> MergeResult:
     verdict = replace(result.verdict, accepted=False, outcome=Outcome.REFUSED, **changes)
     return replace(result, verdict=verdict, proof=proof)

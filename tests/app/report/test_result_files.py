@@ -17,6 +17,7 @@ from algorithms.methods.registry import METHODS, merge
 from app.drawing.palette import LIGHT
 from app.model.merge_inputs import MergeInputs
 from app.report import result_files as report
+from app.report.result_rows import numbers
 
 
 def test_the_report_has_the_keys_that_other_programs_read(result):
@@ -93,6 +94,13 @@ def test_maps_that_share_no_cell_have_no_performance_index(result):
     nothing = np.full_like(result.fusion.mov_cells, UNKNOWN)
     apart = replace(result, fusion=replace(result.fusion, layers=(result.fusion.ref_cells, nothing)))
     assert report.report_of(apart)["performance_index_at_estimate"] is None
+
+
+def test_a_map_that_was_resampled_stands_in_the_report(result, inputs):
+    coarse = replace(result, fusion=replace(result.fusion, resolutions=(0.1, 0.05)))
+    assert report.report_of(coarse)["resampled"] == {"map1": 0.1}
+    assert report.report_of(result)["resampled"] == {}
+    assert ("resampled", "map 1 from cells of 0.1 m to 0.05 m") in numbers(coarse, inputs)
 
 
 def test_transform_yaml_reads_back_to_the_same_transform(result):
