@@ -23,12 +23,6 @@ def _maps(palette: Palette) -> list[Entry]:
     return [_chip("square", colour, f"map {number}") for number, colour in enumerate(palette.maps, 1)]
 
 
-def _anchor(run: RunState) -> str:
-    """What stands where a run puts map 2: the robot that was seen; without a sighting its map's middle."""
-    seen = run.get(steps.ObservationDetail)
-    return "robot 2" if seen is None or seen.encounters else "map 2's middle"
-
-
 def level_scale(detail: AugmentDetail) -> Entry:
     """The colour scale of the levels, from nothing to the peak."""
     stops = [css(tuple(int(part) for part in VIRIDIS[k])) for k in range(0, 256, 51)]  # type: ignore[arg-type]
@@ -70,11 +64,9 @@ def legend(
     if run.reached(Fusion):
         result = run.get(MergeResult)
         in_doubt = result is not None and result.verdict.rival is not None
-        return [
-            *in_hand(palette),
-            _chip("star", palette.answer, _anchor(run)),
-            *([rival] if in_doubt else []),
-        ]
+        seen = run.get(steps.ObservationDetail)
+        name = "robot 2" if seen is None or seen.encounters else "answer"
+        return [*in_hand(palette), _chip("star", palette.answer, name), *([rival] if in_doubt else [])]
     if isinstance(detail, (steps.ProofDetail, ProvenDetail)):
         if not detail.state.proven:
             star["t"] = "best so far"
@@ -89,8 +81,11 @@ def legend(
     if isinstance(detail, (steps.WindowDetail, steps.ShiftDetail)):
         return [*maps, _chip("diamond", particle, "robot 2 under a candidate")]
     if isinstance(detail, steps.PlaneDetail):
-        there = f"{_anchor(run)} at the best place"
-        return [*maps, _chip("diamond", best, there), _chip("diamond", particle, "at others")]
+        return [
+            *maps,
+            _chip("diamond", best, "best place so far"),
+            _chip("diamond", particle, "other places"),
+        ]
     if isinstance(detail, CandidatesDetail) and augmented:
         others = [_chip("diamond", particle, "under another")] if len(detail.candidates) > 1 else []
         return [*maps, _chip("diamond", best, "robot 2 under the best candidate"), *others]

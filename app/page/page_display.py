@@ -10,7 +10,7 @@ import viser
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.methods.merge_result import MergeResult
-from algorithms.methods.steps import AugmentDetail
+from algorithms.methods.steps import AugmentDetail, PlaneDetail
 from algorithms.verdict.contradictions import Contradictions
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.legend import in_hand, legend
@@ -239,7 +239,7 @@ class PageDisplay:
         state, maps, run = self._state, self.views.map, self._state.run
         if state.view != MAP:
             self.draw(live=False)
-        elif run.reached(AugmentDetail):
+        elif run.reached(AugmentDetail) or run.reached(PlaneDetail):
             self.views.run.show(run, state.config, camera=look, live=True)
         else:
             maps.apart()

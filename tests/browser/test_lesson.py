@@ -39,7 +39,7 @@ def shows_what_it_should(tab: Tab) -> None:
     """A title, a text without holes, an equation and a picture that can be seen, something to try."""
     assert tab.page.locator(".mm-lesson h3").inner_text()
     for part in (".mm-equation", "svg.mm-picture"):
-        box = tab.page.locator(part).first.bounding_box()
+        box = settle(tab.page.locator(part).first.bounding_box, part)  # a picture at work is drawn anew
         assert box["width"] > 30
         assert box["height"] > 9
     dock = tab.page.locator(".mm-lesson").locator(
@@ -125,7 +125,7 @@ def test_each_press_counts_however_quickly_they_follow(tab):
     for _ in range(3):
         tab.press("◀ Back")
     at_step(tab, 3)
-    tab.choose("Step", f"{len(STEPS)}. Is it to be believed?")
+    tab.choose("Step", f"{len(STEPS)}. What the sighting buys")
     settle(tab.page.get_by_role("button", name="Next ▶").is_disabled, "the last step")
     assert tab.page.get_by_role("button", name="◀ Back").is_enabled()
 
@@ -161,6 +161,29 @@ def test_the_lesson_goes_on_with_uploaded_maps_light_and_dark(tab, tmp_path, sma
     tab.choose("Sample", "warehouse_r2_r1")
     settle(lambda: "warehouse_r2_r1" in tab.page.locator(".mm-title").inner_text(), "other maps")
     at_step(tab, len(STEPS))
+
+
+def test_what_the_sighting_buys_is_worked_out_while_one_looks_on_and_can_be_left(tab):
+    def verdicts() -> int:
+        words = tab.page.locator("svg.mm-picture").first.locator("text").all_text_contents()
+        return sum(word.endswith((", merged", ", refused")) for word in words)
+
+    enter(tab)
+    tab.choose("Step", f"{len(STEPS)}. What the sighting buys")
+    settle(lambda: " of 120 turns" in tab.text, "the first of the merges")
+    assert tab.mood == "running"
+    tab.press("◀ Back")
+    at_step(tab, len(STEPS) - 1)
+    settle(lambda: tab.mood == "idle", "the merge to be left")
+    tab.press("Next ▶")
+    at_step(tab, len(STEPS))
+    settle(lambda: verdicts() == 3, "all three")
+    settle(lambda: tab.mood == "idle", "the end")
+    where = tab.layer("best")
+    tab.move("on the map", -2)
+    settle(lambda: tab.layer("best") != where, "another of them on the map")
+    tab.press("Leave")
+    settle(lambda: tab.state == "Ready. Press Merge.", "the page of before")
 
 
 def test_merge_leaves_the_lesson_and_merges(tab):

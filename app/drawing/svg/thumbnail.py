@@ -23,7 +23,11 @@ def thumbnail(
     ref: GridMap, mov: GridMap, T_ref_mov: Pose2, palette: Palette, size: tuple[int, int] = SIZE
 ) -> Pixels:
     """(H, W, 3) both maps as they lie under a transform, in the colours of the merged map; row 0 on top."""
-    view = _around(ref, mov, T_ref_mov, *size)
+    return laid_over(_around(ref, mov, T_ref_mov, *size), ref, mov, T_ref_mov, palette)
+
+
+def laid_over(view: RasterView, ref: GridMap, mov: GridMap, T_ref_mov: Pose2, palette: Palette) -> Pixels:
+    """(H, W, 3) what a view sees of both maps as they lie under a transform, coloured as ``thumbnail``."""
     cells = under(ref.cells, ref, view, None, UNKNOWN), under(mov.cells, mov, view, T_ref_mov, UNKNOWN)
     wall = walls(ref, view, None, cells[0]), walls(mov, view, T_ref_mov, cells[1])
     near = cv2.dilate(wall[0].astype(np.uint8), _NEAR) > 0, cv2.dilate(wall[1].astype(np.uint8), _NEAR) > 0

@@ -16,6 +16,7 @@ from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
 from app.model.view_modes import LESSON
 from app.page.lesson.figures.figure_registry import PICTURES
+from app.page.lesson.knowledge_runs import KnowledgeRuns
 from app.page.lesson.lesson_display import LessonDisplay, OnMap
 from app.page.lesson.lesson_run import LessonRun, keep
 from app.page.lesson.lesson_texts import StepText, files, read_step, with_settings
@@ -95,6 +96,7 @@ class LessonController:
     def _end(self) -> None:
         """Close the dock and put the settings back."""
         self._thread.stop()
+        self._lesson.knowledge = None  # its merged maps may be large
         self._tried = None
         self._runs.set_method(*self._own)
         self._dock(False)
@@ -118,16 +120,19 @@ class LessonController:
             if not self.open or not 0 <= index < len(self._files):
                 return
             self._put_back()
+            self._text = None
+            if self._done:  # what may be at work is compared by the step that is left
+                self._thread.stop()
             self._index, self._display.places, self._answered = index, (), set()
             try:
                 self._text = read_step(self._files[index], PICTURES, NUMBERS)
             except MapMergeError as error:
-                self._text = None
                 with self._locks.drawing:
                     self._panel.broken(index, self._files[index].name, str(error))
                     self._show_on_map(OnMap(RunState()), f"Lesson: {error}", look=True)
                 return
             self._show(fresh=True)
+            self._compare()
 
     def move(self, by: int) -> None:
         """Go on or back by so many steps; pressed quickly, each press counts."""
@@ -173,13 +178,32 @@ class LessonController:
 
     def _begin(self) -> None:
         """Run the method on what is loaded, as it is set now."""
-        state = self._state
+        state, had = self._state, self._lesson
         self._thread.stop()
         self._done = False
-        self._lesson = LessonRun(state.inputs, state.config, state.seed)
+        knowledge = had.knowledge if (had.inputs, had.seed) == (state.inputs, state.seed) else None
+        self._lesson = LessonRun(state.inputs, state.config, state.seed, knowledge=knowledge)
         job = state.job()
         if self._lesson.possible and job is not None:
             self._thread.request(job)
+
+    def _compare(self) -> None:
+        """Begin the next of the merges that the step at hand compares, once the lesson's own is over."""
+        text, lesson = self._text, self._lesson
+        picture = PICTURES.get(text.picture) if text is not None and self.open else None
+        if picture is None or not picture.compares or not self._done or not lesson.reached(*picture.needs):
+            return
+        lesson.knowledge = lesson.knowledge or KnowledgeRuns(lesson.inputs, lesson.seed)
+        if lesson.knowledge.next is not None:
+            self._thread.request(lesson.knowledge.next.job)
+
+    def _compared(self, job: MergeJob, run: RunState, failed: str = "") -> bool:
+        """Take in one of these merges, as far as it has come; whether it is one."""
+        one = self._lesson.compared(job)
+        if one is not None:
+            one.run, one.failed = run, failed
+            self._show(fresh=True, moved=True)
+        return one is not None
 
     def _record(self, run: Iterator[Step]) -> Iterator[Step]:
         self._steps = steps = []
@@ -188,14 +212,16 @@ class LessonController:
             yield step
 
     def begun(self, job: MergeJob) -> None:
-        """The run starts."""
+        self._compared(job, run=RunState(job.config))
 
     def show(self, job: MergeJob, run: RunState) -> None:
         """The run goes on: what a picture waits for may be there."""
+        if self._compared(job, run):
+            return
         text, had = self._text, self._lesson
         if text is None or text.picture not in PICTURES or had.reached(*PICTURES[text.picture].needs):
             return
-        early = LessonRun(had.inputs, job.config, job.seed, tuple(self._steps))
+        early = LessonRun(had.inputs, job.config, job.seed, tuple(self._steps), had.knowledge)
         if early.reached(*PICTURES[text.picture].needs):
             self._lesson = early
             self._show(fresh=True)
@@ -207,15 +233,22 @@ class LessonController:
         """Other tabs' runs are at work; the picture says that it is being worked out."""
 
     def ended(self, job: MergeJob, run: RunState) -> None:
-        had = bool(self._lesson.steps)
-        self._lesson = LessonRun(self._lesson.inputs, job.config, job.seed, tuple(self._steps))
-        self._done = True
-        self._show(fresh=not had)
+        if not self._compared(job, run):
+            had = self._lesson
+            self._lesson = LessonRun(had.inputs, job.config, job.seed, tuple(self._steps), had.knowledge)
+            self._done = True
+            self._show(fresh=not had.steps)
+        self._compare()
 
     def stopped(self, job: MergeJob, run: RunState) -> None:
-        """The run is no longer wanted."""
+        """The run is no longer wanted; one that is compared begins anew when its step is opened again."""
+        if (one := self._lesson.compared(job)) is not None:
+            one.run = None
 
     def failed(self, job: MergeJob, run: RunState, error: Exception) -> None:
+        if self._compared(job, run, str(error)):
+            self._compare()
+            return
         self._done = True
         self._panel.picture(f"These maps cannot be merged: {error}")
 

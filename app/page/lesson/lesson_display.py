@@ -30,12 +30,14 @@ class OnMap:
     ink  : what is drawn over it
     turn : by which map 2 is turned beside map 1; None: not at all
     busy : whether it is being worked out
+    done : share of that, where it is known
     """
 
     run: RunState
     ink: list[Item] | None = None
     turn: float | None = None
     busy: bool = False
+    done: float | None = None
 
 
 class LessonDisplay:
@@ -79,7 +81,9 @@ class LessonDisplay:
         self._panel.dials(dials, places)
         self._panel.picture(picture.draw(lesson, places, palette))
         ink = picture.ink(lesson, places, self._display.views.map.layout, palette)
-        return OnMap(picture.run(lesson, places), ink, picture.turn(lesson, places) if picture.turn else None)
+        turn = picture.turn(lesson, places) if picture.turn else None
+        share = lesson.knowledge.done if picture.compares and lesson.knowledge else None
+        return OnMap(picture.run(lesson, places), ink, turn, busy=share is not None, done=share)
 
     def on_map(self, step: OnMap, says: str, look: bool) -> None:
         """Draw the state's run on the map, and what the lesson draws over it.
@@ -91,7 +95,7 @@ class LessonDisplay:
         with self._display.together():
             self._display.show_lesson_step(look, step.turn)
             messages.layer("lesson", step.ink if self._state.view == MAP else None)
-            messages.hud(state=says, mood="running" if step.busy else "idle", progress=None)
+            messages.hud(state=says, mood="running" if step.busy else "idle", progress=step.done)
             self._display.show_legend()
             messages.flush()
 

@@ -20,7 +20,9 @@ from algorithms.optimisation.particle_swarm import settled_within, swarm
 from algorithms.optimisation.search_box import SearchBox, box_around
 from algorithms.spectra.hough_spectra import hough_transform
 from app.model.merge_inputs import MergeInputs
+from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
+from app.page.lesson.knowledge_runs import KnowledgeRun, KnowledgeRuns
 
 D = TypeVar("D")
 
@@ -39,8 +41,17 @@ def keep(steps: list[Step], step: Step) -> None:
 class LessonRun:
     """One run, as far as it has come; all that is drawn from it is worked out once, when asked for."""
 
-    def __init__(self, inputs: MergeInputs, config: Any, seed: int = 0, steps: tuple[Step, ...] = ()) -> None:
+    def __init__(
+        self,
+        inputs: MergeInputs,
+        config: Any,
+        seed: int = 0,
+        steps: tuple[Step, ...] = (),
+        knowledge: KnowledgeRuns | None = None,
+    ) -> None:
+        """``knowledge``: merges of the same pair that a step compares, once a student has come to it."""
         self.inputs, self.config, self.seed, self.steps = inputs, config, seed, steps
+        self.knowledge = knowledge
 
     @property
     def possible(self) -> bool:
@@ -66,6 +77,10 @@ class LessonRun:
         for step in self.steps[: found[index] + 1] if found else ():
             run.add(step)
         return run
+
+    def compared(self, job: MergeJob) -> KnowledgeRun | None:
+        """Of the merges that a step compares the one that a job belongs to."""
+        return self.knowledge.of(job) if self.knowledge is not None else None
 
     # --- worked out once --------------------------------------------------------------------------
 

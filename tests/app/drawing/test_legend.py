@@ -97,7 +97,7 @@ def test_without_a_sighting_no_place_is_called_a_robots(small_case):
     for step in run(PLANE_METHOD, small_case.ref, small_case.mov):
         story.add(step)
         told |= set(words(legend(LIGHT, "Map", story)))
-    assert {"map 2's middle at the best place", "at others", "map 2's middle"} <= told
+    assert {"best place so far", "other places", "answer"} <= told
     assert not any("robot" in entry for entry in told)
 
 

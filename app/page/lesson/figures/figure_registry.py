@@ -27,10 +27,10 @@ from app.drawing.draw_items import Item, path
 from app.drawing.palette import Palette
 from app.drawing.scene_layout import SceneLayout
 from app.model.run_state import RunState
+from app.page.lesson.figures import knowledge_figure, verdict_figure
 from app.page.lesson.figures import map_figures as maps
 from app.page.lesson.figures import search_figures as search
 from app.page.lesson.figures import spectra_figures as spectra
-from app.page.lesson.figures import verdict_figure
 from app.page.lesson.lesson_run import FEW, LessonRun
 
 At = Sequence[int]
@@ -63,6 +63,7 @@ class LessonFigure:
     dials : what can be moved; asked once ``needs`` is there
     ink   : what is drawn over the map besides
     turn  : how far map 2 is turned where it lies beside map 1; None: as the run has it
+    compares : whether it is of the lesson's ``knowledge``, which is worked out while it is looked at
     """
 
     needs: tuple[type, ...]
@@ -71,6 +72,7 @@ class LessonFigure:
     dials: Callable[[LessonRun], tuple[FigureSlider, ...]] = lambda _: ()
     ink: Callable[[LessonRun, At, SceneLayout, Palette], list[Item]] = lambda *_: []
     turn: Callable[[LessonRun, At], float] | None = None
+    compares: bool = False
 
 
 def _up_to(kind: type) -> Callable[[LessonRun, At], RunState]:
@@ -143,6 +145,13 @@ def _swarm_dials(lesson: LessonRun) -> tuple[FigureSlider, ...]:
     return (FigureSlider("move", max(1, len(few) - 1), 1), FigureSlider("particle", FEW, far))
 
 
+def _compared(lesson: LessonRun) -> tuple[FigureSlider, ...]:
+    """Which merge the map shows, once all of them are over."""
+    runs = knowledge_figure.runs_of(lesson)
+    count = len(runs.each)
+    return (FigureSlider("on the map", count, count - 1),) if runs.next is None else ()
+
+
 _HALF = search.TURN_STEPS // 2
 _LINE = FigureSlider("line", spectra.LINES)
 _OFF = FigureSlider("off the best (°)", search.TURN_STEPS, _HALF, -_HALF * search.TURN_STEP, search.TURN_STEP)
@@ -186,6 +195,9 @@ PICTURES: dict[str, LessonFigure] = {
     "answers": LessonFigure((MergeResult,), verdict_figure.answers, _up_to(WeighedDetail)),
     "merged": LessonFigure((MergeResult,), maps.merged, _up_to(Fusion)),
     "verdict": LessonFigure((MergeResult,), verdict_figure.verdict, _up_to(MergeResult)),
+    "knowledge": LessonFigure(
+        (MergeResult,), knowledge_figure.knowledge, knowledge_figure.shown_on_map, _compared, compares=True
+    ),
 }  # fmt: skip
 
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from unittest.mock import Mock
 
 import pytest
 from tabs import noting_tab
 
+from algorithms.common.errors import NoAnswerError
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
+from algorithms.methods.steps import Step
 from app.jobs.job_thread import JobThread
+from app.model.merge_job import MergeJob
+from app.model.run_state import RunState
 from app.model.settings import with_value
 from app.page.lesson import lesson_controller
 from app.page.lesson.lesson_controller import LessonController
@@ -17,6 +23,7 @@ from app.page.modes import Mode
 from app.page.run_controller import RunController
 from app.page.undo.undo_controller import UndoController
 
+COMPARES = "---\ntitle: Two\npicture: knowledge\n---\nSecond."
 TEXTS = {
     "01-first.md": "---\ntitle: One\ntry:\n  - {ask: Look., answer: There.}\n---\nFirst.",
     "02-second.md": (
@@ -119,10 +126,89 @@ def test_without_texts_it_does_not_open_and_says_why(tab, tmp_path, monkeypatch)
     assert "nowhere" in str(tab.notices.report.call_args)
 
 
+@pytest.fixture
+def comparing(tab, tmp_path, monkeypatch, result) -> LessonController:
+    """A lesson at a step that compares merges, its own run over."""
+    for name, text in {**TEXTS, "02-second.md": COMPARES}.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    lesson = make(tab, tmp_path, monkeypatch)
+    lesson.enter()
+    lesson.go(1)
+    own_run_ends(lesson, result)
+    return lesson
+
+
+def own_run_ends(lesson: LessonController, result: MergeResult) -> None:
+    lesson._steps = [Step("verdict", result, 0.0)]
+    lesson.ended(lesson._state.job(), RunState())
+
+
+def asked(lesson: LessonController) -> MergeJob:
+    """What the thread was asked for last."""
+    return lesson._thread.request.call_args.args[0]
+
+
+def ended(lesson: LessonController, result: MergeResult) -> None:
+    """What it was asked for last has come to its end."""
+    job, story = asked(lesson), RunState()
+    lesson.begun(job)
+    story.add(Step("verdict", result, 0.0))
+    lesson.ended(job, story)
+
+
+def test_a_step_that_compares_begins_one_merge_after_another_once_the_lessons_own_is_over(comparing, result):
+    compared = [asked(comparing)]
+    for _ in range(2):
+        ended(comparing, result)
+        compared.append(asked(comparing))
+    assert [len(job.known) for job in compared] == [0, 1, 1]
+    assert compared[-1].known == comparing._state.inputs.observations
+    before = comparing._thread.request.call_count
+    ended(comparing, result)
+    assert comparing._thread.request.call_count == before  # all are over
+    comparing.go(0)
+    comparing.go(1)
+    assert comparing._thread.request.call_count == before  # and stay so
+
+
+def test_leaving_the_step_stops_the_merge_at_work_and_coming_back_begins_that_one_anew(comparing, result):
+    ended(comparing, result)
+    at_work = asked(comparing)
+    comparing.begun(at_work)
+    stops = comparing._thread.stop.call_count
+    comparing.move(-1)
+    assert comparing._thread.stop.call_count > stops
+    comparing.stopped(at_work, RunState())
+    assert comparing._lesson.compared(at_work).run is None
+    requests = comparing._thread.request.call_count
+    comparing.move(1)
+    assert asked(comparing) is at_work
+    assert comparing._thread.request.call_count == requests + 1
+
+
+def test_a_merge_without_an_answer_is_told_in_its_place_and_the_next_one_begins(comparing):
+    first = asked(comparing)
+    comparing.failed(first, RunState(), NoAnswerError("no walls coincide"))
+    assert asked(comparing) is not first
+    assert comparing._lesson.compared(first).over
+    assert "no answer" in comparing._panel.picture.call_args.args[0]
+
+
+def test_what_was_compared_stays_while_settings_move_and_not_on_other_maps(comparing, tab, result):
+    ended(comparing, result)
+    comparing._settings_changed()
+    own_run_ends(comparing, result)
+    assert len(asked(comparing).known) == 1  # the first is over still
+    tab.state.update(inputs=replace(tab.state.inputs))
+    comparing._settings_changed()
+    own_run_ends(comparing, result)
+    assert asked(comparing).known == ()
+
+
 def test_the_lesson_that_ships_opens_with_its_first_step(tab, monkeypatch):
     lesson = make(tab, lesson_folder(), monkeypatch)
     lesson.toggle()
     assert step(tab)[0] == 0
-    assert len(tab.panels.lesson.contents.call_args.args[0]) == 16
+    assert len(tab.panels.lesson.contents.call_args.args[0]) == 17
     lesson.toggle()
     assert not lesson.open
