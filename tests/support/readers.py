@@ -21,8 +21,15 @@ from repository import ROOT
 
 from algorithms.common.errors import MapMergeError
 from algorithms.files.map_file import grey_image, map_from_bytes, parse_meta
-from algorithms.files.observation_file import observations_from_bytes
+from algorithms.files.observation_file import (
+    MOST_OBSERVATIONS,
+    known_from_bytes,
+    known_to_bytes,
+    observations_from_bytes,
+    read_known,
+)
 from algorithms.files.truth_file import read_truth
+from algorithms.observations.pair_problem import Known
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_texts import read_exhibit, read_step
 from app.page.lesson.placeholders import NUMBERS
@@ -39,6 +46,10 @@ SEEN = (
     b"observer: {pose: [31.248, 2.711, 2.96434]}\nobserved: {pose: [24.8295, 34.5772, -0.62006]}\n"
     b"measurement: {range: 2.97, bearing: 0.406, sigma_range: 0.05, sigma_bearing: 0.035}\n"
 )
+INITIAL = b"initial: {pose: [1.5, -2, 0.5], sigma: [2.0, 2.0, 0.17]}\n"
+TURN = b"turn: {yaw: -1.2, sigma: 0.1}\n"
+NEAR = b"near: {map1: [3, 4.5], map2: [0.5, -1], radius: 2}\n"
+KNOWN = b"- " + INITIAL + b"  " + TURN + b"- " + NEAR
 TRUTH = (
     b"T_ref_mov: {x: 1.0, y: -2, theta: 0.5}\n"
     b"tolerance: {distance: 0.5, angle: 0.05}\nexpected: merge\noverlap: 0.4\n"
@@ -73,6 +84,14 @@ def _from_disk(read: Callable[[Path], object]) -> Callable[[bytes], object]:
     return reader
 
 
+def _known_twice(path: Path) -> tuple[Known, ...]:
+    """What a file says is known, which is the same once it has been written again."""
+    known = read_known(path)
+    if len(known) <= MOST_OBSERVATIONS:
+        assert known_from_bytes("again", known_to_bytes(known)) == known
+    return known
+
+
 # name -> what reads it, and files that it is meant for
 READERS: dict[str, tuple[Callable[[bytes], object], list[bytes]]] = {
     "meta": (lambda data: parse_meta("m.yaml", data), [META, META.replace(b"[", b"\n- ")]),
@@ -85,6 +104,7 @@ READERS: dict[str, tuple[Callable[[bytes], object], list[bytes]]] = {
         lambda data: observations_from_bytes("o.yaml", data),
         [SEEN, b"- " + SEEN.replace(b"\n", b"\n  ", 2)],
     ),
+    "known": (_from_disk(_known_twice), [KNOWN, INITIAL, SEEN + NEAR, b"- " + TURN + b"- " + NEAR]),
     "truth": (_from_disk(read_truth), [TRUTH, b"expected: refuse\n"]),
     "step": (
         _from_disk(lambda path: read_step(path, PICTURES, NUMBERS)),
