@@ -182,6 +182,15 @@ EXERCISED_BY = {
         "app.model.merge_inputs",
         "app.report.result_rows",
     },
+    "algorithms/fleets/test_fleet_merge.py": {
+        "algorithms.fleets.island",
+        "algorithms.fleets.pair_hypotheses",
+        "algorithms.observations.fleet",
+    },
+    "app/report/test_fleet_files.py": {
+        "app.cli.commands.fleet",
+        "app.report.fleet_report",
+    },
     "app/report/test_suggestion_files.py": {
         "app.page.panels.suggestions_html",
         "app.report.suggestion_text",

@@ -185,15 +185,15 @@ def parse_meta(source: str, data: bytes) -> MapMeta:
     return MapMeta(image, resolution, Pose2(x, y, yaw), shading)
 
 
-def read_bytes(path: Path, what: str) -> bytes:
-    """The content of a small text file.
+def read_bytes(path: Path, what: str, most: int = fields.MAX_YAML_BYTES) -> bytes:
+    """The content of a small text file; of one that is too long a byte more than it may have.
 
     what   : what the file is about, for the remedy: "a map"
-    raises : InputFileError where it is not there, not readable or too long
+    raises : InputFileError where it is not there, or not readable
     """
     try:
         with path.open("rb") as stream:
-            return stream.read(fields.MAX_YAML_BYTES + 1)  # one more, so that the parser can tell
+            return stream.read(most + 1)  # one more, so that the parser can tell
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         raise unreadable(path, error, f"give the YAML file of {what}") from error
 

@@ -61,7 +61,7 @@ def observations_from_bytes(name: str, data: bytes) -> tuple[Observation, ...]:
     raises : InputFileError, which names the entry where the file is a list
     """
     entries = fields.parse_entries(name, data, "an observation's YAML file", "observation", MOST_OBSERVATIONS)
-    return tuple(_observation(entry) for entry in entries)
+    return tuple(observation_of(entry) for entry in entries)
 
 
 def known_from_bytes(name: str, data: bytes) -> tuple[Known, ...]:
@@ -78,7 +78,7 @@ def _known(f: Fields) -> Iterator[Known]:
     f.refuse_unknown(*SIGHTING, *PRIORS)
     if any(key in f.values for key in SIGHTING) or not any(key in f.values for key in PRIORS):
         sighting = {key: value for key, value in f.values.items() if key in SIGHTING}
-        yield _observation(Fields(f.source, sighting, f.prefix))
+        yield observation_of(Fields(f.source, sighting, f.prefix))
     for key, read in PRIORS.items():
         if key in f.values:
             part = f.section(key, f"give a mapping, as in {EXAMPLES[key]}")
@@ -88,7 +88,8 @@ def _known(f: Fields) -> Iterator[Known]:
                 raise InputFileError(f.source, f.prefix + str(error), f"as in {EXAMPLES[key]}") from error
 
 
-def _initial(f: Fields) -> InitialPose:
+def initial_pose(f: Fields) -> InitialPose:
+    """A rough pose of one frame in another: keys pose, sigma, about; raises InputFileError."""
     f.refuse_unknown("pose", "sigma", "about")
     pose = Pose2(*f.pose("pose", (3,), "give [x, y, yaw] of map 2's frame in map 1's; m, m, rad"))
     sigma, about = [SIGMA_XY, SIGMA_XY, SIGMA_YAW], [0.0, 0.0]
@@ -115,7 +116,7 @@ def _near(f: Fields) -> NearPlace:
 
 
 SIGHTING = ("observer", "observed", "measurement")
-PRIORS: dict[str, Callable[[Fields], Prior]] = {"initial": _initial, "turn": _turn, "near": _near}
+PRIORS: dict[str, Callable[[Fields], Prior]] = {"initial": initial_pose, "turn": _turn, "near": _near}
 EXAMPLES = {
     "initial": "initial: {pose: [x, y, yaw], sigma: [m, m, rad]}",
     "turn": "turn: {yaw: rad, sigma: rad}",
@@ -123,12 +124,16 @@ EXAMPLES = {
 }
 
 
-def _observation(f: Fields) -> Observation:
+def observation_of(f: Fields, more: tuple[str, ...] = ()) -> Observation:
+    """A sighting; raises InputFileError.
+
+    more : keys that observer and observed may have beside pose
+    """
     f.refuse_unknown(*SIGHTING)
     observer = f.section("observer", "add observer: {pose: [x, y, yaw]}, robot 1 in map 1")
-    observer.refuse_unknown("pose")
+    observer.refuse_unknown("pose", *more)
     observed = f.section("observed", "add observed: {pose: [x, y, yaw]}, robot 2 in map 2")
-    observed.refuse_unknown("pose")
+    observed.refuse_unknown("pose", *more)
     m = f.section("measurement", "add measurement: {range: m, bearing: rad}")
     m.refuse_unknown("range", "bearing", "sigma_range", "sigma_bearing", "bearing_back")
     seen_from = observer.pose("pose", (3,), "give [x, y, yaw] of robot 1 in map 1; m, m, rad")

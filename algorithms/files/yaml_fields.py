@@ -156,14 +156,15 @@ class Fields:
             raise self.error(shown(key).strip("'"), "is not a known key", remedy)
 
 
-def parse(source: str, data: bytes, what: str) -> Fields:
+def parse(source: str, data: bytes, what: str, most: int = MAX_YAML_BYTES) -> Fields:
     """The fields of a YAML file.
 
     source : name of the file as the user knows it
     what   : what the file should be, with its article: "a map's YAML file"
+    most   : bytes of it
     raises : InputFileError where it is too long, not YAML, or not a mapping
     """
-    return _mapping(source, _load(source, data, what), what)
+    return _mapping(source, _load(source, data, what, most), what)
 
 
 def parse_entries(source: str, data: bytes, what: str, entry: str, most: int) -> list[Fields]:
@@ -186,8 +187,8 @@ def parse_entries(source: str, data: bytes, what: str, entry: str, most: int) ->
     return [Fields(source, value, f"{entry} {number}: ") for number, value in enumerate(values, 1)]
 
 
-def _load(source: str, data: bytes, what: str) -> Any:
-    if len(data) > MAX_YAML_BYTES:
+def _load(source: str, data: bytes, what: str, most: int = MAX_YAML_BYTES) -> Any:
+    if len(data) > most:
         found = f"has {len(data):,} bytes, which is too long for {what}"
         raise InputFileError(source, found, "give the small YAML file, not the image")
     try:

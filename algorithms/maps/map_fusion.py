@@ -137,7 +137,7 @@ def fuse(
                 cleared += _clear(other, own, at, robots.size / cell, SAME_PLACE / cell)
     merged = layers[0].copy()
     counts = [_merge(merged, layer, merged, [*ConflictRule].index(rule)) for layer in layers[1:]]
-    agreed_free, agreed_walls, conflicting = (sum(count) for count in zip(*counts, strict=True))
+    agreed_free, agreed_walls, conflicting = (sum(count[k] for count in counts) for k in range(3))
     return Fusion(
         GridMap(merged, cell, corner, "merged"),
         layers,

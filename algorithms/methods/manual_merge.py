@@ -90,7 +90,7 @@ class ManualMerge:
         rivals = elsewhere(self.whole, named, self.others, *ELSEWHERE)
         answers = answers or (Answer(T, -inf if value is None else value, BY_HAND),)
         others = (*better_beside(self.whole, named, model), *rivals)
-        found = Found(named, others, self._covariance(named), answers, value, kind=self.kind)
+        found = Found(named, others, self.covariance(named), answers, value, kind=self.kind)
         return finish_merge(self.problem, found, fusion, self.config, method, seed, timings_s)
 
     @cached_property
@@ -109,7 +109,8 @@ class ManualMerge:
         """Of the model that weighs: a transform may come from anywhere where nothing is known near it."""
         return "plane" if isinstance(self.config, PlaneMethodConfig) else model_kind(self.problem)
 
-    def _covariance(self, named: Weighed) -> FloatArray:
+    def covariance(self, named: Weighed) -> FloatArray:
+        """(3, 3) of x, y, theta of an answer; metres and radians."""
         if isinstance(self.config, PlaneMethodConfig):
             return plane_method.covariance_at(self.whole, named, self.problem.pivot, self.config)
         if self.objective is None:

@@ -86,7 +86,7 @@ def test_no_command_is_an_error_that_shows_the_help(capsys):
         (["merge", "--resolution", "0"], "0 is neither one positive number"),
         (["evaluate", ".", "--jobs", "0"], "0 is no whole number from 1 up"),
         (["serve", "--port", "99999"], "99999 is no port"),
-        (["serve", "map1.yaml"], "give MAP1, MAP2 and --observation FILE together"),
+        (["serve", "map1.yaml"], "give MAP1 and MAP2 together"),
     ],
 )
 def test_wrong_usage_ends_with_2_and_one_line_that_says_what_to_do(words, remedy, capsys):

@@ -1,0 +1,86 @@
+"""The fleet file: robots, their maps, and who saw whom."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from algorithms.common.errors import InputFileError, SettingError
+from algorithms.files import yaml_fields as fields
+from algorithms.files.map_file import read_bytes, read_map
+from algorithms.files.observation_file import SIGHTING, initial_pose, observation_of
+from algorithms.files.yaml_fields import Fields, shown
+from algorithms.observations.fleet import MOST_ROBOTS, MOST_SIGHTINGS, Fleet, FleetSighting
+from algorithms.observations.priors import InitialPose
+
+FLEET_FILE = "fleet.yaml"
+MOST_BYTES = 262_144  # of the file: a thousand sightings
+LONGEST_NAME = 64  # letters of a robot's name
+EXAMPLE = "robots: {r1: {map: r1.yaml}, r2: {map: r2.yaml}}"
+
+
+def read_fleet(path: Path | str) -> Fleet:
+    """Read a fleet file, or fleet.yaml of a folder, and the maps that it names beside it.
+
+    raises : InputFileError, TooLargeError
+    """
+    path = Path(path)
+    if path.is_dir():
+        path = path / FLEET_FILE
+    f = fields.parse(str(path), read_bytes(path, "a fleet", MOST_BYTES), "a fleet's YAML file", MOST_BYTES)
+    f.refuse_unknown("anchor", "robots", "sightings")
+    robots = f.section("robots", f"name the robots and their maps, as in {EXAMPLE}")
+    if len(robots.values) > MOST_ROBOTS:
+        raise f.error("robots", f"holds {len(robots.values):,} robots", f"give 2 to {MOST_ROBOTS}")
+    files, known = _robots(robots)
+    sightings = _sightings(f, list(files))
+    anchor = f.text("anchor", "give a robot's name") if "anchor" in f.values else ""
+    maps = {name: read_map(path.parent / file) for name, file in files.items()}
+    try:
+        return Fleet(maps, sightings, known, anchor)
+    except SettingError as error:
+        raise InputFileError(path, str(error), "correct the name, or the list of robots") from error
+
+
+def _robots(robots: Fields) -> tuple[dict[str, str], dict[str, InitialPose]]:
+    """The map file of each robot, and what is roughly known of it, by name."""
+    files, known = {}, {}
+    for name in robots.values:
+        if len(name) > LONGEST_NAME or not name.isprintable() or "/" in name:
+            remedy = f"give 1 to {LONGEST_NAME} letters, without a slash"
+            raise robots.error(shown(name), "is no name for a robot", remedy)
+        robot = robots.section(name, "give {map: FILE.yaml}")
+        robot.refuse_unknown("map", "known")
+        files[name] = robot.text("map", "give the map's YAML file")
+        if "known" in robot.values:
+            known[name] = initial_pose(robot.section("known", "give {pose: [x, y, yaw], sigma: [m, m, rad]}"))
+    return files, known
+
+
+def _sightings(f: Fields, names: list[str]) -> tuple[FleetSighting, ...]:
+    entries = f.values.get("sightings", [])
+    if entries == "":
+        entries = []
+    if not isinstance(entries, list) or len(entries) > MOST_SIGHTINGS:
+        raise f.error("sightings", f"is {shown(entries)}", f"give a list of at most {MOST_SIGHTINGS:,}")
+    sightings = []
+    for number, entry in enumerate(entries, 1):
+        if not isinstance(entry, dict):
+            remedy = "give observer, observed and measurement, as in an observation file"
+            raise f.error(f"sighting {number}", f"is {shown(entry)}, not a mapping", remedy)
+        one = Fields(f.source, entry, f"sighting {number}: ")
+        one.refuse_unknown(*SIGHTING)
+        observer, observed = (_robot_of(one, role, names) for role in ("observer", "observed"))
+        try:
+            sightings.append(FleetSighting(observer, observed, observation_of(one, more=("robot",))))
+        except SettingError as error:
+            raise InputFileError(f.source, f"sighting {number}: {error}", "correct it") from error
+    return tuple(sightings)
+
+
+def _robot_of(sighting: Fields, role: str, names: list[str]) -> str:
+    section = sighting.section(role, f"add {role}: {{robot: NAME, pose: [x, y, yaw]}}")
+    name = section.text("robot", "give the robot's name")
+    if name not in names:
+        found, there = f"is {shown(name)}, which is none of the robots", ", ".join(names[:8])
+        raise section.error("robot", found, f"there are {there}")
+    return name

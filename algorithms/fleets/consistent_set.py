@@ -1,0 +1,189 @@
+"""Which of the pairs' answers are true together: the likeliest set whose loops all come back to themselves.
+
+Of each pair at most one answer is right, or none is. A set of them has the log-odds
+
+    Σ (log-odds of an answer over none of its pair) + Σ over loops log (N(e; 0, Σ) 2π A),
+
+e: how far a loop misses its beginning, Σ its covariance, A the area over which a wrong answer would be
+scattered. An answer that closes a loop within the covariances gains much, since a wrong one seldom does; one
+that does not cannot stand beside the others of its loop. This is the mixed discrete problem; pairwise
+consistency (Mangelson et al., ICRA 2018) asks less, and takes loops of two answers alone, of which a fleet
+with one sighting a pair has none. It is solved by building forests, the likeliest answer first, and again
+with each answer that was left out put in first, as long as that makes the set likelier: the graph has few
+more edges than robots, and what is left out are the few lies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import log, pi, radians
+
+import networkx as nx
+import numpy as np
+
+from algorithms.common.pose import Pose2
+from algorithms.fleets.pair_hypotheses import PairFinding
+from algorithms.fleets.pose_graph import PoseEdge
+from algorithms.fleets.transform_chain import EXACT, UncertainTransform
+
+SLACK = 0.1, radians(1.0)  # metres, radians; how far maps of one building are bent between two meetings
+FARTHEST_OFF = 16.27  # squared deviations, 3 degrees of freedom: one true loop in a thousand misses by more
+LEAST_WEIGHT = -4.6  # log-odds, one in a hundred; what is less likely is not asked whether a loop supports it
+MOST_ROUNDS = 8
+
+Chosen = dict[int, int]
+"""Number of a finding -> number of its answer that is taken."""
+
+
+@dataclass(frozen=True, eq=False)
+class ConsistentSet:
+    """The likeliest set.
+
+    chosen : of which finding which answer
+    score  : log-odds of the set over the empty one
+    """
+
+    chosen: Chosen
+    score: float
+
+
+class AnswerGraph:
+    """All answers of all pairs.
+
+    names    : of the robots
+    findings : of the pairs
+    area     : over which a wrong answer would be scattered; m²
+    """
+
+    def __init__(self, names: Sequence[str], findings: Sequence[PairFinding], area: float) -> None:
+        self._names, self._findings = tuple(names), tuple(findings)
+        self._scattered = log(2 * pi * area)
+        self._chains: dict[tuple[str, tuple[tuple[int, int], ...]], UncertainTransform] = {}
+        self._edges = {
+            (number, k): UncertainTransform(answer.T_ref_mov, answer.covariance).loosened(
+                finding.pivot, *SLACK
+            )
+            for number, finding in enumerate(findings)
+            for k, answer in enumerate(finding.hypotheses)
+        }
+
+    def best(self) -> ConsistentSet:
+        """The likeliest set."""
+        order = sorted(self._edges, key=lambda key: (-self._weight(key), self._called(key)))
+        best = self._built(order)
+        for _ in range(MOST_ROUNDS):
+            left = [key for key in order if best.chosen.get(key[0]) != key[1]]
+            tried = [self._built([key, *order], forced=key) for key in left]
+            better = max(tried, key=lambda each: each.score, default=best)
+            if better.score <= best.score + 1e-9:
+                break
+            best = better
+        return best
+
+    def without(self, number: int, like: ConsistentSet) -> ConsistentSet:
+        """The likeliest set in which a finding's answer is not the one that ``like`` takes."""
+        banned = number, like.chosen[number]
+        order = sorted(self._edges, key=lambda key: (-self._weight(key), self._called(key)))
+        order = [key for key in order if key != banned]
+        tried = [self._built(order)]
+        tried += [self._built([key, *order], forced=key) for key in order if key[0] == number]
+        return max(tried, key=lambda each: each.score)
+
+    def ties(self, chosen: Mapping[int, int]) -> nx.MultiGraph:
+        """The robots, and between them the chosen answers; an edge's key is its finding's number."""
+        graph = nx.MultiGraph()
+        graph.add_nodes_from(self._names)
+        for number in chosen:
+            order = self._findings[number].order
+            graph.add_edge(order.ref, order.mov, key=number)
+        return graph
+
+    def edge(self, number: int, k: int) -> PoseEdge:
+        """An answer of a finding, for the pose graph."""
+        order, held = self._findings[number].order, self._edges[number, k]
+        return PoseEdge(order.ref, order.mov, held.T, held.covariance)
+
+    def along(
+        self, ties: nx.MultiGraph, chosen: Mapping[int, int], root: str, names: Sequence[str]
+    ) -> dict[str, Pose2]:
+        """T_root_robot of each, along the fewest answers."""
+        tree = nx.Graph()
+        tree.add_nodes_from(names)
+        for ref, mov, number in ties.edges(keys=True):
+            tree.add_edge(ref, mov, key=(number, chosen[number]))
+        return {name: self.chain(tree, root, name).T for name in names}
+
+    def _weight(self, key: tuple[int, int]) -> float:
+        return self._findings[key[0]].hypotheses[key[1]].weight
+
+    def _called(self, key: tuple[int, int]) -> tuple[float, ...]:
+        """Breaks ties by what an answer is, so that the order of robots and sightings changes nothing."""
+        answer = self._findings[key[0]].hypotheses[key[1]]
+        return tuple(answer.T_ref_mov.array().tolist())
+
+    def _built(
+        self, order: Sequence[tuple[int, int]], forced: tuple[int, int] | None = None
+    ) -> ConsistentSet:
+        """A set, made by taking one answer after the other that makes it likelier."""
+        tree, chosen, score = nx.Graph(), {}, 0.0
+        tree.add_nodes_from(self._names)
+        roots = nx.utils.UnionFind(self._names)
+        for key in order:
+            number, _ = key
+            if number in chosen:
+                continue
+            pair, gain = self._findings[number].order, self._weight(key)
+            tied = roots[pair.ref] == roots[pair.mov]
+            if tied:
+                gain += self._loop(tree, key)
+            if gain <= (0 if tied else LEAST_WEIGHT) and key != forced:
+                continue
+            chosen[number] = key[1]
+            score += gain
+            if not tied:
+                roots.union(pair.ref, pair.mov)
+                tree.add_edge(pair.ref, pair.mov, key=key)
+        return self._pruned(ConsistentSet(chosen, score))
+
+    def _pruned(self, found: ConsistentSet) -> ConsistentSet:
+        """Without the answers that are unlikely by themselves, and which no loop supports."""
+        chosen, score = dict(found.chosen), found.score
+        while True:
+            links: dict[frozenset[str], list[int]] = {}
+            for number in chosen:
+                pair = self._findings[number].order
+                links.setdefault(frozenset((pair.ref, pair.mov)), []).append(number)
+            bridges = nx.bridges(nx.Graph(tuple(pair) for pair in links))
+            alone = [links[frozenset(bridge)] for bridge in bridges]
+            weak = [numbers[0] for numbers in alone if len(numbers) == 1]
+            weak = [number for number in weak if self._weight((number, chosen[number])) <= 0]
+            if not weak:
+                return ConsistentSet(chosen, score)
+            for number in weak:
+                score -= self._weight((number, chosen.pop(number)))
+
+    def _loop(self, tree: nx.Graph, key: tuple[int, int]) -> float:
+        """What closing a loop adds to the log-odds; −∞ where it does not close."""
+        pair = self._findings[key[0]].order
+        chain = self.chain(tree, pair.ref, pair.mov)
+        off, covariance = chain.difference(self._edges[key])
+        squared = float(off @ np.linalg.solve(covariance, off))
+        if squared > FARTHEST_OFF:
+            return -np.inf
+        _, logdet = np.linalg.slogdet(covariance)
+        return float(self._scattered - 0.5 * (squared + logdet + 3 * log(2 * pi)))
+
+    def chain(self, tree: nx.Graph, start: str, end: str) -> UncertainTransform:
+        """T_start_end along a tree whose edges have the key of an answer."""
+        path = nx.shortest_path(tree, start, end)
+        keys = tuple(tree.edges[step]["key"] for step in pairwise(path))
+        known = self._chains.get((start, keys))
+        if known is None:
+            known = EXACT
+            for at, key in zip(path, keys, strict=False):
+                edge = self._edges[key]
+                known = known.then(edge if self._findings[key[0]].order.ref == at else edge.inverse())
+            self._chains[start, keys] = known
+        return known

@@ -1,0 +1,120 @@
+"""A pair of robots: what its merge says of the transform between them, as its few best answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+from math import hypot, log
+
+import numpy as np
+
+from algorithms.common.errors import MapMergeError
+from algorithms.common.pose import FloatArray, Pose2
+from algorithms.methods import registry
+from algorithms.methods.manual_merge import ManualMerge
+from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.suggestions import suggestions_of
+from algorithms.observations.fleet import Fleet
+from algorithms.observations.observation import encounter
+from algorithms.observations.pair_problem import PairProblem
+from algorithms.verdict.ranking import WINDOW_EDGE
+
+LEAST_LIKELY = 0.01  # an answer that is less likely is not kept
+SUREST = 1e-4  # so likely is it at least that none of the answers is right
+
+
+@dataclass(frozen=True)
+class PairOrder:
+    """Two robots, by name, and which of the fleet's sightings of the second by the first are to be used."""
+
+    ref: str
+    mov: str
+    sightings: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Hypothesis:
+    """One answer of a pair.
+
+    covariance : (3, 3) of x, y, theta of T_ref_mov; metres, radians
+    weight     : log-odds of it over "no answer of this pair is right"
+    """
+
+    T_ref_mov: Pose2
+    covariance: FloatArray
+    probability: float
+    weight: float
+
+
+@dataclass(frozen=True, eq=False)
+class PairFinding:
+    """What came of an order.
+
+    pivot      : (2,) where its answers are compared; metres, mov frame
+    hypotheses : the likeliest first; () where the method found none, or could not be run
+    reason     : the verdict's sentence, or why there is none
+    """
+
+    order: PairOrder
+    pivot: FloatArray
+    hypotheses: tuple[Hypothesis, ...]
+    reason: str
+    accepted: bool = False
+
+
+def pair_orders(fleet: Fleet) -> list[PairOrder]:
+    """A merge for every observer and observed robot, of all its sightings where one transform can agree with
+    them; sightings that cannot be true together are merged one by one, since a lie must spoil no other.
+    """
+    by_pair: dict[tuple[str, str], list[int]] = {}
+    for number, seen in enumerate(fleet.sightings):
+        by_pair.setdefault((seen.observer, seen.observed), []).append(number)
+    orders = []
+    for (ref, mov), numbers in sorted(by_pair.items()):
+        agree = all(_agree(fleet, a, b) for a, b in combinations(numbers, 2))
+        groups = [tuple(numbers)] if agree else [(number,) for number in numbers]
+        orders += [PairOrder(ref, mov, group) for group in groups]
+    return orders
+
+
+def _agree(fleet: Fleet, a: int, b: int) -> bool:
+    """Whether two sightings of one pair leave the two meeting places equally far apart in both maps."""
+    first, second = (encounter(fleet.sightings[number].observation) for number in (a, b))
+    in_ref, in_mov = first.x_ref - second.x_ref, first.x_mov - second.x_mov
+    spread = first.covariance + second.covariance
+    sigma = float(np.linalg.eigvalsh(spread)[-1]) ** 0.5
+    return bool(abs(hypot(*in_ref.tolist()) - hypot(*in_mov.tolist())) <= WINDOW_EDGE * sigma)
+
+
+def find_pair(fleet: Fleet, order: PairOrder, seed: int = 0) -> PairFinding:
+    """Merge a pair; an order that cannot be carried out says why, and costs no other."""
+    seen = tuple(fleet.sightings[number].observation for number in order.sightings)
+    try:
+        problem = PairProblem(fleet.maps[order.ref], fleet.maps[order.mov], seen)
+        method = registry.default_method(problem)
+        config = registry.METHODS[method].defaults
+        result = registry.merge(problem.ref, problem.mov, seen, method, config, seed)
+        return PairFinding(
+            order,
+            problem.pivot,
+            _hypotheses(result, ManualMerge(problem, config)),
+            result.verdict.reason,
+            result.verdict.accepted,
+        )
+    except MapMergeError as error:
+        return PairFinding(order, np.zeros(2), (), str(error))
+
+
+def _hypotheses(result: MergeResult, manual: ManualMerge) -> tuple[Hypothesis, ...]:
+    kept = suggestions_of(result)
+    none = log(max(SUREST, 1.0 - sum(each.probability for each in kept)))
+    return tuple(
+        Hypothesis(
+            each.T_ref_mov,
+            result.covariance if each.number == 1 else manual.covariance(each.weighed),
+            each.probability,
+            log(each.probability) - none,
+        )
+        for each in kept
+        if each.probability >= LEAST_LIKELY
+    )

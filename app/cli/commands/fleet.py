@@ -1,0 +1,143 @@
+"""``mapmeld fleet``: any number of robots, their maps and sightings in, one map out."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator, Sequence
+from functools import partial
+from math import degrees
+from pathlib import Path
+from typing import Any
+
+from algorithms.common.errors import OutputError
+from algorithms.files.atomic_write import check_folder, write_files
+from algorithms.files.fleet_file import FLEET_FILE, read_fleet
+from algorithms.fleets.fleet_merge import FleetResult, PairStep, run_fleet
+from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, find_pair
+from algorithms.maps.grid_map import remarks_on
+from algorithms.observations.fleet import Fleet
+from app.cli.argument_parser import Parser
+from app.cli.executor_flags import add_workers, executor_for
+from app.cli.progress_bar import bar
+from app.evaluation.table_files import aligned
+from app.jobs.executor import Executor, LostTask, SerialExecutor, Shared, Task
+from app.model import verdict_text
+from app.report.fleet_files import fleet_files
+from app.report.fleet_report import summary
+from app.report.result_files import REPORT_FILE
+
+FEW = 3  # pairs that are merged here: a process more takes as long to start
+
+USAGE = "FLEET --out DIR [--json] [--jobs N | --scheduler ADDRESS]"
+DESCRIPTION = f"""\
+Merge the maps of any number of robots, from whatever sightings there are between them.
+
+Examples:
+  mapmeld fleet fleet.yaml --out result
+  mapmeld fleet folder --out result          a folder that holds {FLEET_FILE}
+
+The file names the robots and their maps, and who saw whom:
+  anchor: r1                                 whose frame the result is in; else the first robot's
+  robots:
+    r1: {{map: r1.yaml}}
+    r2: {{map: r2.yaml}}
+  sightings:
+    - observer: {{robot: r1, pose: [31.2, 2.7, 2.964]}}
+      observed: {{robot: r2, pose: [24.8, 34.6]}}
+      measurement: {{range: 2.97, bearing: 0.406}}
+
+Files in the folder of --out:
+  merged.yaml, merged.pgm   the map of all robots that are tied to the anchor, in its frame
+  merged_island2.yaml, …    the maps of robots that are tied to each other alone
+  transforms.yaml           where every robot's frame lies, and the line that publishes it in ROS 2
+  graph.g2o                 the pose graph, for other tools
+  report.html, report.json  the graph over the map; robots, sightings and pairs, with probability and reason
+
+A sighting that contradicts the rest is named and left out. A robot that nothing ties to the anchor is not
+placed: no guess is made.
+
+Exit status: 0 every robot is placed, 1 some are not (what was placed is written), 2 bad input,
+130 interrupted."""
+
+
+def add_arguments(parser: Parser, words: Sequence[str]) -> None:
+    parser.add_argument("fleet", type=Path, metavar="FLEET", help="fleet file, or a folder with one")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the files")
+    parser.add_argument("--json", action="store_true", help="print report.json and nothing else")
+    add_workers(parser, None)
+
+
+def run(args: argparse.Namespace, parser: Parser) -> int:
+    """Merge, write and tell; the exit status."""
+    check_folder(args.out)
+    fleet = read_fleet(args.fleet)
+    _check_inputs(args)
+    for remark in remarks_on(tuple(fleet.maps.values())):
+        print(f"warning: {remark}", file=sys.stderr)
+    executor = executor_for(args.jobs, args.scheduler)
+    result = _with_bar(run_fleet(fleet, partial(run_pairs, executor)))
+    name = args.fleet.resolve().name if args.fleet.is_dir() else args.fleet.stem
+    files = fleet_files(fleet, result, name)
+    write_files({args.out / file: data for file, data in files.items()})
+    if args.json:
+        sys.stdout.write(files[REPORT_FILE].decode())
+    else:
+        print(summary(result, len(fleet.maps)), *_robots(result), *_left_out(result), sep="\n")
+        print(f"written to {args.out}: {', '.join(files)}")
+    return 0 if result.whole else 1
+
+
+def run_pairs(executor: Executor, fleet: Fleet, orders: Sequence[PairOrder]) -> Iterator[PairFinding]:
+    """Merge pairs with whoever works for the executor; the maps travel to each worker once."""
+    if len(orders) <= FEW and not executor.far:
+        executor = SerialExecutor()
+    shared = Shared.of(fleet)
+    for number, answer in executor.run(_work, (Task(order, shared) for order in orders)):
+        if isinstance(answer, LostTask):
+            yield PairFinding(orders[number], _nowhere(), (), answer.reason)
+        else:
+            yield answer
+
+
+def _work(fleet: Fleet, order: PairOrder) -> PairFinding:
+    return find_pair(fleet, order)
+
+
+def _nowhere() -> Any:
+    import numpy as np
+
+    return np.zeros(2)
+
+
+def _check_inputs(args: argparse.Namespace) -> None:
+    """Raise OutputError where the result would take the place of the fleet's own folder."""
+    folder = args.fleet if args.fleet.is_dir() else args.fleet.parent
+    if args.out.resolve() == folder.resolve():
+        raise OutputError(args.out, "holds the fleet's own files", "choose another --out")
+
+
+def _with_bar(steps: Iterator[Any]) -> FleetResult:
+    with bar(unit="pair") as shown:
+        for step in steps:
+            if isinstance(step, PairStep):
+                shown.total = step.total
+                shown.update(step.done - shown.n)
+            else:
+                result = step
+    return result
+
+
+def _robots(result: FleetResult) -> list[str]:
+    """A table of all robots."""
+    rows = [["robot", "map", "x (m)", "y (m)", "turn", "likely"]]
+    for number, island in enumerate(result.islands, 1):
+        for name, T in island.poses.items():
+            likely = verdict_text.likelihood(island.probability[name])
+            where = "merged" if number == 1 else f"island {number}"
+            rows.append([name, where, f"{T.x:.3f}", f"{T.y:.3f}", f"{degrees(T.theta):.2f}°", likely])
+    return aligned(rows)
+
+
+def _left_out(result: FleetResult) -> list[str]:
+    return [f"sighting {each.number + 1} is left out: {each.reason}" for each in result.left_out]

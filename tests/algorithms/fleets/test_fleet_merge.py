@@ -1,0 +1,148 @@
+"""A fleet becomes one map: lies are left out, who is not tied stands alone, two robots merge as a pair."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from algorithms.common.errors import SettingError
+from algorithms.common.pose import Pose2, pose_error
+from algorithms.files.case_folder import Case
+from algorithms.fleets.fleet_merge import FleetResult, PairStep, merge_fleet, run_fleet
+from algorithms.fleets.pair_hypotheses import pair_orders
+from algorithms.maps.grid_map import GridMap
+from algorithms.methods.registry import merge
+from algorithms.observations.fleet import Fleet, FleetSighting
+from algorithms.observations.observation import Observation
+
+MOVED = Pose2(31.0, -7.0, 1.9)
+
+
+def reframed(grid: GridMap, T: Pose2) -> GridMap:
+    """The same map in another frame, whose points T takes to the old one's."""
+    return replace(grid, origin=T.inverse() @ grid.origin)
+
+
+def seen_in(o: Observation, T: Pose2) -> Observation:
+    """The same sighting where the observed robot's map has that other frame."""
+    x, y = T.inverse().apply(np.array([o.observed_x, o.observed_y])).tolist()
+    return replace(o, observed_x=x, observed_y=y, observed_heading=None, bearing_back=None)
+
+
+@pytest.fixture(scope="module")
+def three(small_case: Case) -> Fleet:
+    """Ann saw Bob and Cid; Cid's map is Bob's, in a frame of its own."""
+    (o,) = small_case.observations
+    maps = {"ann": small_case.ref, "bob": small_case.mov, "cid": reframed(small_case.mov, MOVED)}
+    seen = (FleetSighting("ann", "bob", o), FleetSighting("ann", "cid", seen_in(o, MOVED)))
+    return Fleet(maps, seen)
+
+
+@pytest.fixture(scope="module")
+def merged(three: Fleet) -> FleetResult:
+    return merge_fleet(three)
+
+
+def near(a: Pose2, b: Pose2, at: np.ndarray) -> bool:
+    distance, angle = pose_error(a, b, at)
+    return distance < 0.05 and angle < 0.01
+
+
+def test_every_robot_is_placed_where_it_truly_lies(merged, small_case):
+    T, at = small_case.truth.T_ref_mov, small_case.observations[0]
+    pivot = np.array([at.observed_x, at.observed_y])
+    assert merged.whole
+    assert near(merged.placed["bob"], T, pivot)
+    assert near(merged.placed["cid"], T @ MOVED, MOVED.inverse().apply(pivot))
+    assert min(merged.islands[0].probability.values()) > 0.9
+
+
+def test_two_robots_and_one_sighting_merge_as_a_pair_to_the_last_digit(small_case):
+    (o,) = small_case.observations
+    fleet = Fleet({"a": small_case.ref, "b": small_case.mov}, (FleetSighting("a", "b", o),))
+    alone = merge(small_case.ref, small_case.mov, o)
+    result = merge_fleet(fleet)
+    assert result.placed["b"] == alone.T_ref_mov
+    assert np.array_equal(result.islands[0].fusion.merged.cells, alone.fusion.merged.cells)
+    assert result.islands[0].probability["b"] == pytest.approx(alone.verdict.probability, abs=1e-3)
+
+
+def test_the_order_of_robots_and_sightings_changes_nothing(three, merged):
+    again = merge_fleet(Fleet(dict(reversed(three.maps.items())), three.sightings[::-1], anchor="ann"))
+    for name, T in merged.placed.items():
+        assert again.placed[name].array() == pytest.approx(T.array(), abs=1e-9)
+    assert np.array_equal(again.islands[0].fusion.merged.cells, merged.islands[0].fusion.merged.cells)
+
+
+def test_another_anchor_gives_the_same_poses_moved(three, merged):
+    other = merge_fleet(replace(three, anchor="cid"))
+    for name, T in merged.placed.items():
+        moved = merged.placed["cid"] @ other.placed[name]
+        assert moved.array()[:2] == pytest.approx(T.array()[:2], abs=1e-3)
+
+
+def test_a_lie_is_named_and_moves_nobody(three, merged):
+    (first, _) = three.sightings
+    lie = replace(first.observation, observed_x=first.observation.observed_x + 3.0)
+    result = merge_fleet(replace(three, sightings=(*three.sightings, FleetSighting("ann", "bob", lie))))
+    assert [each.number for each in result.left_out] == [2]
+    assert result.left_out[0].distance == pytest.approx(3.0, abs=0.2)
+    assert "ann's sighting of bob" in result.left_out[0].reason
+    for name, T in merged.placed.items():
+        assert result.placed[name].array() == pytest.approx(T.array(), abs=0.02)
+
+
+def test_a_robot_of_another_building_stands_alone(three, strangers):
+    (o,) = strangers.observations
+    maps = {**three.maps, "dan": strangers.mov}
+    result = merge_fleet(Fleet(maps, (*three.sightings, FleetSighting("ann", "dan", o))))
+    assert set(result.placed) == {"ann", "bob", "cid"}
+    assert [set(island.poses) for island in result.islands[1:]] == [{"dan"}]
+    assert not result.whole
+
+
+def test_a_robot_that_nobody_saw_is_looked_for_without_a_sighting(three, merged):
+    result = merge_fleet(replace(three, sightings=three.sightings[:1]))
+    assert result.whole
+    assert result.placed["cid"].array() == pytest.approx(merged.placed["cid"].array(), abs=0.1)
+
+
+def test_sightings_that_cannot_be_true_together_are_merged_one_by_one(three):
+    (first, _) = three.sightings
+    other = replace(first.observation, observer=Pose2(first.observation.observer.x + 4.0, 2.0, 0.3))
+    together = replace(three, sightings=(first, first))
+    apart = replace(three, sightings=(first, FleetSighting("ann", "bob", other)))
+    assert [order.sightings for order in pair_orders(together)] == [(0, 1)]
+    assert [order.sightings for order in pair_orders(apart)] == [(0,), (1,)]
+
+
+def test_each_pair_is_told_as_it_is_done(three):
+    *pairs, last = run_fleet(three)
+    assert all(isinstance(step, PairStep) for step in pairs)
+    assert [step.done for step in pairs] == [1, 2]
+    assert {step.total for step in pairs} == {2}
+    assert isinstance(last, FleetResult)
+
+
+@pytest.mark.parametrize(
+    ("broken", "said"),
+    [
+        (lambda fleet: replace(fleet, anchor="eve"), "anchor names 'eve'"),
+        (lambda fleet: replace(fleet, maps={"ann": fleet.maps["ann"]}), "2 to 50 robots, not 1"),
+        (lambda fleet: replace(fleet, maps={f"r{k}": fleet.maps["ann"] for k in range(51)}), "not 51"),
+        (
+            lambda fleet: replace(fleet, sightings=(replace(fleet.sightings[0], observed="eve"),)),
+            "sighting 1 names 'eve'",
+        ),
+        (
+            lambda fleet: replace(fleet, sightings=(replace(fleet.sightings[0], observed="ann"),)),
+            "cannot have seen itself",
+        ),
+    ],
+)
+def test_a_fleet_that_cannot_be_is_told_in_a_line(three, broken: Callable[[Fleet], Fleet], said):
+    with pytest.raises(SettingError, match=said):
+        broken(three)
