@@ -250,3 +250,21 @@ def test_an_exhibit_fails_as_told_and_its_cure_merges(tab):
     thumb = tab.page.locator(f'[id="{label.get_attribute("for")}"]').get_by_role("slider")
     settle(lambda: thumb.get_attribute("aria-valuenow") == "4.5", "the person's own setting")
     assert not tab.page.get_by_text("Leave the museum").is_visible()
+
+
+def test_an_exhibit_without_its_sighting_is_cured_by_it(tab):
+    tab.press("Instant")
+    tab.press("Museum")
+    tab.choose("Exhibit", "7. The building that has its own twin")
+    settle(lambda: "corridor_r2_r1" in tab.page.locator(".mm-title").inner_text(), "its maps")
+    assert tab.layer("robots") == []  # nobody knows where they stood
+    tab.press("Merge")
+    settle(lambda: "180° from the truth. The verdict saw it." in tab.text, "the failure")
+    assert tab.mood == "refused"
+    tab.press("Cure: Use the sighting")
+    settle(lambda: "Cured: " in tab.text, "the cure")
+    assert tab.number("known") == "nothing → a sighting"
+    assert tab.mood == "accepted"
+    assert tab.layer("robots")
+    tab.press("Leave the museum")
+    settle(lambda: "office_r2_r1" in tab.page.locator(".mm-title").inner_text(), "the maps of before")

@@ -31,7 +31,7 @@ BENT = "bent_r2_r1"
 ALIKE = 8139  # a simulated corridor that looks alike when turned
 SHOWN = (
     "swarm", "merged", "proof", "rival", "why", "curtain", "by_hand", "place", "plain_image", "lesson_hough",
-    "lesson_swarm", "museum", "compared", "swept",
+    "lesson_swarm", "lesson_knowledge", "museum", "compared", "swept",
 )  # fmt: skip
 
 Keep = Callable[[str], None]
@@ -215,11 +215,12 @@ def a_placement(tab: Tab, keep: Keep) -> None:
 def a_lesson(tab: Tab, keep: Keep) -> None:
     """Every step of the lesson."""
     tab.press("Lesson")
-    steps = {4: "lesson_hough", 12: "lesson_swarm"}
+    steps = {4: "lesson_hough", 12: "lesson_swarm", 17: "lesson_knowledge"}
     number = 1
     while True:
         settle(lambda at=number: f"step {at} of" in tab.state, f"step {number}")
         tab.page.wait_for_timeout(1800)
+        settle(lambda: tab.mood == "idle", "what is worked out")
         keep(steps.get(number, f"lesson_{number:02d}"))
         if f"step {number} of {number}:" in tab.state:
             return
@@ -281,7 +282,7 @@ SCENES: dict[Callable[[Tab, Keep], None], tuple[str, ...]] = {
     a_wrong_sighting: ("refused", "refused_download"),
     an_empty_page: ("empty", "plain_image"),
     a_placement: ("place",),
-    a_lesson: ("lesson_hough", "lesson_swarm"),
+    a_lesson: ("lesson_hough", "lesson_swarm", "lesson_knowledge"),
     a_museum: ("museum",),
     a_contest: ("compared",),
     a_sweep: ("swept",),

@@ -18,7 +18,7 @@ from app.page.page_state import PageState
 
 OWN = "Your own settings and results come back when you leave."
 WAIT = "Working it out on these maps …"
-NO_MAPS = "Load two maps and an observation: the lesson is about them."
+NO_MAPS = "The lesson is about two maps and a sighting: load them, or choose the sighting as what you know."
 NOT_HERE = "The method as it is set does not come to this. Choose another method, or put its settings back."
 
 
@@ -71,7 +71,7 @@ class LessonDisplay:
         """
         palette, picture = self._state.palette, PICTURES.get(text.picture)
         if picture is None or not lesson.possible or not lesson.reached(*picture.needs):
-            waiting = "" if picture is None else NO_MAPS if not lesson.inputs.complete else WAIT
+            waiting = "" if picture is None else NO_MAPS if not lesson.inputs.sighted else WAIT
             over = done or not lesson.possible
             self._panel.picture(NOT_HERE if waiting == WAIT and over else waiting)
             self._panel.dials((), ())

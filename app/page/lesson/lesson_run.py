@@ -55,8 +55,8 @@ class LessonRun:
 
     @property
     def possible(self) -> bool:
-        """Whether there are maps, and a method that goes through all the stages."""
-        return self.inputs.complete and isinstance(self.config, PipelineConfig)
+        """Whether there are maps, a sighting, and a method that goes through all the stages."""
+        return self.inputs.sighted and isinstance(self.config, PipelineConfig)
 
     def all(self, kind: type[D]) -> list[D]:
         """Every detail of a kind."""

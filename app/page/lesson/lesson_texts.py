@@ -17,12 +17,16 @@ from algorithms.files.case_folder import read_case
 from algorithms.files.yaml_fields import Fields, parse, shown
 from algorithms.methods.registry import METHODS
 from algorithms.methods.spectra_config import PipelineConfig
+from app.model.knowledge import Choice
+from app.model.merge_inputs import MergeInputs
 from app.model.settings import Path as SettingPath
 from app.model.settings import Setting, settings_of, what_became_of, with_value
 from app.page.lesson import equations
 from app.system import data_paths as paths
 
 Settings = tuple[tuple[SettingPath, Any], ...]
+
+KNOWN: tuple[Choice, ...] = ("sighting", "nothing")  # in an exhibit
 
 FENCE = "---"
 PLACEHOLDER = re.compile(r"\{([A-Za-z_][A-Za-z_0-9]*)\}")
@@ -60,8 +64,8 @@ class Exhibit:
     """One failure of the museum: what to load, how it fails, and what cures it.
 
     case, rough  : name of a sample, and whether its badly measured sighting is taken
-    method, settings : it fails with
-    cure_method, cure_settings : it merges with
+    method, settings, known : it fails with; of what is known that is used
+    cure_method, cure_settings, cure_known : it merges with
     why, cured   : what happened, and why the cure helps; Markdown
     """
 
@@ -71,9 +75,11 @@ class Exhibit:
     rough: bool
     method: str
     settings: Settings
+    known: Choice
     cure: str
     cure_method: str
     cure_settings: Settings
+    cure_known: Choice
     body: str
     why: str
     cured: str
@@ -128,14 +134,15 @@ def read_step(path: Path, pictures: Collection[str], numbers: Collection[str]) -
 def read_exhibit(path: Path) -> Exhibit:
     """Read an exhibit of the museum; raises InputFileError as ``read_step`` does."""
     fields, body = _parts(path)
-    fields.refuse_unknown("title", "case", "rough", "method", "settings", "cure", "why", "cured")
+    fields.refuse_unknown("title", "case", "rough", "method", "settings", "known", "cure", "why", "cured")
     case = fields.text("case", "name a sample")
     if case not in paths.samples():
         raise fields.error("case", f"is {shown(case)}", f"known are {', '.join(paths.samples())}")
-    cure = fields.section("cure", "give {button: …, method: …, settings: {…}}")
-    cure.refuse_unknown("button", "method", "settings")
+    cure = fields.section("cure", "give {button: …, method: …, settings: {…}, known: …}")
+    cure.refuse_unknown("button", "method", "settings", "known")
     method = _method(fields)
     cure_method = _method(cure) if "method" in cure.values else method
+    known = _known(fields, "sighting", method)
     return Exhibit(
         source=str(path),
         title=fields.text("title", "give the exhibit a title"),
@@ -143,18 +150,23 @@ def read_exhibit(path: Path) -> Exhibit:
         rough=fields.flag("rough", "give true or false") if "rough" in fields.values else False,
         method=method,
         settings=_settings(fields, METHODS[method].defaults),
+        known=known,
         cure=cure.text("button", "say in a few words what the cure does"),
         cure_method=cure_method,
         cure_settings=_settings(cure, METHODS[cure_method].defaults),
+        cure_known=_known(cure, known, cure_method),
         body=body,
         why=fields.text("why", "say what happened, and why"),
         cured=fields.text("cured", "say why the cure helps"),
     )
 
 
-def exhibit_case(exhibit: Exhibit) -> Any:
-    """The maps and the sighting of an exhibit; raises InputFileError."""
-    return read_case(paths.samples()[exhibit.case], exhibit.rough)
+def exhibit_inputs(exhibit: Exhibit) -> tuple[MergeInputs, MergeInputs]:
+    """What an exhibit merges, and what its cure does: the same maps; raises InputFileError."""
+    inputs = MergeInputs.of(read_case(paths.samples()[exhibit.case], exhibit.rough))
+    wrong = inputs.knowing(inputs.pool, exhibit.known)
+    same = exhibit.cure_known == exhibit.known
+    return wrong, wrong if same else inputs.knowing(inputs.pool, exhibit.cure_known)
 
 
 def with_settings(config: Any, settings: Settings) -> Any:
@@ -211,6 +223,18 @@ def _method(fields: Fields) -> str:
     if method not in METHODS:
         raise fields.error("method", f"is {shown(method)}", f"known are {', '.join(METHODS)}")
     return method
+
+
+def _known(fields: Fields, usual: Choice, method: str) -> Choice:
+    """What is used of what is known; samples have sightings and nothing else."""
+    remedy = f"known are {', '.join(KNOWN)}"
+    word = fields.text("known", remedy) if "known" in fields.values else usual
+    choice = next((one for one in KNOWN if one == word), None)
+    if choice is None:
+        raise fields.error("known", f"is {shown(word)}", remedy)
+    if choice == "nothing" and METHODS[method].needs_sighting:
+        raise fields.error("known", "is nothing", f"the method {method} needs a sighting")
+    return choice
 
 
 def _settings(fields: Fields, config: Any, key: str = "settings") -> Settings:

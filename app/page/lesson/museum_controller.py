@@ -8,6 +8,7 @@ from typing import Any
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import pose_error
 from algorithms.methods.registry import METHODS
+from app.model.knowledge import CHOICES
 from app.model.merge_inputs import Files, MergeInputs
 from app.model.settings import settings_of, text_for, value_at
 from app.model.status_text import apart_by
@@ -16,7 +17,7 @@ from app.page.inputs_controller import InputsController
 from app.page.lesson.lesson_texts import (
     Exhibit,
     Settings,
-    exhibit_case,
+    exhibit_inputs,
     files,
     museum_folder,
     read_exhibit,
@@ -40,7 +41,7 @@ class MuseumController:
         self._files: list[Path] = []
         self._index = 0
         self._exhibit: Exhibit | None = None
-        self._pair = MergeInputs()
+        self._pair = self._cured_pair = MergeInputs()
         self._panel.connect(self.pick, self.cure, lambda: self.pick(self._index), self.leave)
         tab.state.subscribe("result", self._result_shown)
 
@@ -86,7 +87,7 @@ class MuseumController:
             self._index, self._exhibit = index, None
             try:
                 exhibit = read_exhibit(self._files[index])
-                self._pair = MergeInputs.of(exhibit_case(exhibit))
+                self._pair, self._cured_pair = exhibit_inputs(exhibit)
             except MapMergeError as error:
                 self._panel.broken(index, str(error))
                 return
@@ -106,16 +107,21 @@ class MuseumController:
         """Apply the cure, and merge."""
         with self._state.locks.action:
             if self.open and self._exhibit is not None:
+                exhibit = self._exhibit
                 if self._state.inputs is not self._pair:
                     self.pick(self._index)
-                self._panel.settings(self._changes(self._exhibit))
-                self._runs.set_method(*self._cured(self._exhibit), seed=0)
+                if self._pair is not self._cured_pair:
+                    with self._state.locks.drawing:
+                        self._inputs.show(self._cured_pair)
+                self._panel.settings(self._changes(exhibit))
+                self._runs.set_method(*self._cured(exhibit), seed=0)
                 self._runs.merge()
 
     def _result_shown(self) -> None:
         """A merge came to its end: if it was the exhibit's, or its cure's, say what happened."""
         exhibit, truth, result = self._exhibit, self._pair.truth, self._state.result
-        if exhibit is None or result is None or self._state.inputs is not self._pair:
+        failing, cured = (self._state.inputs is pair for pair in (self._pair, self._cured_pair))
+        if exhibit is None or result is None or not (failing or cured):
             return
         if truth is None or truth.T_ref_mov is None:
             return
@@ -124,11 +130,11 @@ class MuseumController:
         verdict = "accepted" if result.verdict.accepted else "refused"
         ran = result.method, self._state.result_config
         where = apart_by(distance, angle)
-        if ran == self._failing(exhibit) and not right:
+        if failing and ran == self._failing(exhibit) and not right:
             noticed = "The verdict saw it." if verdict == "refused" else "The verdict did not see it."
             self._panel.settings(rows(exhibit, self._state.result_config))
             self._panel.failed(exhibit.why, f"Wrong: {where} from the truth. {noticed}", exhibit.cure)
-        elif ran == self._cured(exhibit) and right:
+        elif cured and ran == self._cured(exhibit) and right:
             self._panel.settings(self._changes(exhibit))
             self._panel.cured(exhibit.cured, f"Cured: {where} from the truth, and {verdict}.")
 
@@ -153,6 +159,8 @@ def rows(exhibit: Exhibit, config: Any) -> list[tuple[str, ...]]:
     """What is loaded and set for an exhibit, as a person reads it."""
     sample = exhibit.case + (", badly measured" if exhibit.rough else "")
     shown = [("sample", sample), ("method", METHODS[exhibit.method].title)]
+    if exhibit.known != exhibit.cure_known:
+        shown.append(("known", CHOICES[exhibit.known]))
     return shown + _settings(exhibit.settings, config)
 
 
@@ -162,6 +170,8 @@ def changes(exhibit: Exhibit, failing: Any, cured: Any) -> list[tuple[str, ...]]
     touched = tuple(dict((*exhibit.settings, *exhibit.cure_settings)).items())
     before, after = dict(_settings(touched, failing)), _settings(touched, cured)
     shown = [("method", _change(*titles))]
+    if exhibit.known != exhibit.cure_known:
+        shown.append(("known", _change(CHOICES[exhibit.known], CHOICES[exhibit.cure_known])))
     shown += [(label, _change(before.get(label, words), words)) for label, words in after]
     return [rows(exhibit, failing)[0], *shown]
 

@@ -78,6 +78,8 @@ def test_what_the_run_has_not_come_to_is_waited_for_and_once_it_is_over_no_more(
 def test_without_maps_or_with_a_method_of_other_stages_nothing_is_waited_for(display, panel, hough, inputs):
     assert drawn(display, panel, hough, LessonRun(MergeInputs(), CONFIG)) == NO_MAPS
     assert drawn(display, panel, hough, LessonRun(inputs, METHODS["mse"].defaults)) == NOT_HERE
+    unseen = LessonRun(inputs.knowing(inputs.pool, "nothing"), CONFIG)  # the sighting is put aside
+    assert drawn(display, panel, hough, unseen) == NO_MAPS
 
 
 def test_a_picture_is_drawn_once_its_stage_is_there_with_its_dials_where_they_begin(

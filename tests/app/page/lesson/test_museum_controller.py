@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
+from math import pi, radians
 from pathlib import Path
 from unittest.mock import Mock
 
@@ -10,13 +12,14 @@ import pytest
 from tabs import noting_tab
 
 from algorithms.common.errors import InputFileError
-from algorithms.common.pose import pose_error
+from algorithms.common.pose import pose_error, wrap_angle
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS, merge
+from app.model.merge_inputs import MergeInputs
 from app.page.inputs_controller import InputsController
 from app.page.lesson.lesson_texts import (
     Exhibit,
-    exhibit_case,
+    exhibit_inputs,
     files,
     museum_folder,
     read_exhibit,
@@ -40,13 +43,24 @@ Press Merge.
 """
 
 
-def off(exhibit: Exhibit, method: str, settings) -> tuple[bool, MergeResult]:
-    """Whether a merge is wrong by the truth, and its result."""
-    case = exhibit_case(exhibit)
+@cache
+def failed(exhibit: Exhibit) -> tuple[bool, MergeResult]:
+    """Whether an exhibit's merge is wrong by the truth, and its result."""
+    return _merged(exhibit_inputs(exhibit)[0], exhibit.method, exhibit.settings)
+
+
+@cache
+def cured(exhibit: Exhibit) -> tuple[bool, MergeResult]:
+    """The same of its cure."""
+    settings = (*exhibit.settings, *exhibit.cure_settings)
+    return _merged(exhibit_inputs(exhibit)[1], exhibit.cure_method, settings)
+
+
+def _merged(pair: MergeInputs, method: str, settings) -> tuple[bool, MergeResult]:
     config = with_settings(METHODS[method].defaults, settings)
-    result = merge(case.ref, case.mov, case.observations, method, config)
-    distance, angle = pose_error(result.T_ref_mov, case.truth.T_ref_mov, result.pivot)
-    return distance > case.truth.tolerance_m or angle > case.truth.tolerance_rad, result
+    result = merge(pair.ref, pair.mov, pair.known, method, config)
+    distance, angle = pose_error(result.T_ref_mov, pair.truth.T_ref_mov, result.pivot)
+    return not pair.truth.allows(distance, angle), result
 
 
 @pytest.fixture(scope="module", params=files(museum_folder()), ids=lambda path: path.stem)
@@ -55,14 +69,24 @@ def exhibit(request) -> Exhibit:
 
 
 def test_an_exhibit_fails_as_it_says(exhibit):
-    wrong, _ = off(exhibit, exhibit.method, exhibit.settings)
+    wrong, _ = failed(exhibit)
     assert wrong
 
 
 def test_its_cure_merges_and_is_accepted(exhibit):
-    wrong, result = off(exhibit, exhibit.cure_method, (*exhibit.settings, *exhibit.cure_settings))
+    wrong, result = cured(exhibit)
     assert not wrong
     assert result.verdict.accepted
+
+
+def test_without_a_sighting_more_wall_agrees_at_the_twin_than_at_the_truth_and_the_verdict_refuses_it():
+    exhibit = read_exhibit(museum_folder() / "07-own-twin.md")
+    (_, twin), (_, right) = failed(exhibit), cured(exhibit)
+    assert twin.encounters == ()
+    turned = wrap_angle(twin.T_ref_mov.theta - right.T_ref_mov.theta)
+    assert abs(turned) == pytest.approx(pi, abs=radians(3))
+    assert twin.weighed[0].evidence.agreeing > 3 * right.weighed[0].evidence.agreeing
+    assert not twin.verdict.accepted
 
 
 def test_the_failures_that_everyone_should_know_are_there():
@@ -114,6 +138,8 @@ def exhibit_of(folder: Path, text: str) -> Exhibit:
         ("{candidates.twins: false}", "{candidates.twins: maybe}", "candidates.twins is 'maybe'"),
         ("button: Twins, ", "", "cure.button is missing"),
         ("title: Mine", "titel: Mine", "did you mean title"),
+        ("method:", "known: everything\nmethod:", "known is 'everything'; known are sighting, nothing"),
+        ("method:", "known: nothing\nmethod:", "known is nothing; the method spectra-swarm needs a sighting"),
         ("Press Merge.", "", "no text below"),
     ],
 )
@@ -164,6 +190,22 @@ def test_an_exhibit_says_what_went_wrong_once_it_has_and_its_cure_that_it_helped
     assert (tab.state.method, tab.state.config) != failing
     merged(tab, result, right=True)
     assert panel.cured.called
+
+
+def test_a_cure_that_is_to_know_more_merges_the_same_maps_with_it(museum, tab, result):
+    museum.enter()
+    museum.pick(6)
+    assert tab.state.inputs.known == ()
+    assert len(tab.state.inputs.aside) == 1  # the sighting is put aside, not gone
+    merged(tab, result, right=False)
+    assert tab.panels.museum.failed.called
+    before = tab.state.inputs
+    museum.cure()
+    assert len(tab.state.inputs.observations) == 1
+    assert tab.state.inputs.maps == before.maps
+    tab.panels.museum.cured.assert_not_called()
+    merged(tab, result, right=True)
+    assert tab.panels.museum.cured.called
 
 
 def test_what_is_merged_on_other_maps_is_none_of_the_museums_business(museum, tab, result, inputs):
