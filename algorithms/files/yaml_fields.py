@@ -37,11 +37,12 @@ class _TextLoader(yaml.BaseLoader):
     """
 
     _aliases = _values = _depth = 0
+    most_values = MAX_VALUES
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
         self._values += 1
         self._aliases += self.check_event(yaml.AliasEvent)
-        if self._values > MAX_VALUES or self._aliases > MAX_ALIASES:
+        if self._values > self.most_values or self._aliases > MAX_ALIASES:
             raise yaml.composer.ComposerError(None, None, "it holds too many values", None)
         if self._depth >= MAX_DEPTH and self.check_event(yaml.CollectionStartEvent):
             raise RecursionError
@@ -192,7 +193,12 @@ def _load(source: str, data: bytes, what: str, most: int = MAX_YAML_BYTES) -> An
         found = f"has {len(data):,} bytes, which is too long for {what}"
         raise InputFileError(source, found, "give the small YAML file, not the image")
     try:
-        return yaml.load(data, Loader=_TextLoader)
+        loader = _TextLoader(data)
+        loader.most_values = MAX_VALUES * most // MAX_YAML_BYTES
+        try:
+            return loader.get_single_data()
+        finally:
+            loader.dispose()
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         found = f"is not YAML ({_cause(error)})"
         raise InputFileError(source, found, f"give {what}, or mend the line") from error
