@@ -72,14 +72,29 @@ class Replay:
         self.context.close()
 
 
-def page_of(case: Case, path: Path, name: str) -> Path:
-    config = METHODS["spectra-proven"].defaults
+def page_of(case: Case, path: Path, name: str, method: str = "spectra-proven") -> Path:
+    config = METHODS[method].defaults
     inputs = replace(MergeInputs.of(case), name=name)
-    steps = run("spectra-proven", case.ref, case.mov, case.observations, config)
-    path.write_bytes(
-        replay_html(record(steps, inputs, config), ReplayMetadata(inputs, "spectra-proven", config, 0))
-    )
+    steps = run(method, case.ref, case.mov, inputs.known, config)
+    path.write_bytes(replay_html(record(steps, inputs, config), ReplayMetadata(inputs, method, config, 0)))
     return path
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_search_over_the_plane_shows_its_surface_beside_the_map(browser, small_case, tmp_path, scheme):
+    unseen = replace(small_case, observations=())
+    replay = Replay(browser, page_of(unseen, tmp_path / "plane.html", "flat", "whole-plane"), scheme)
+    replay.page.get_by_role("button", name="Plane", exact=True).click()
+    dark = "[68, 1, 84]"  # what fits nowhere
+    shown = f"""() => {{
+        const canvas = document.querySelector("#charts"), g = canvas.getContext("2d");
+        const data = g.getImageData(0, 0, canvas.width, canvas.height).data;
+        let count = 0;
+        for (let i = 0; i < data.length; i += 4) count += {dark}.every((value, k) => data[i + k] === value);
+        return count / (data.length / 4);
+    }}"""
+    settle(lambda: replay.page.evaluate(shown) > 0.05, "the surface")
+    replay.end()
 
 
 def test_a_run_saved_from_the_page_plays_as_a_file_without_a_network(tab, browser, tmp_path):
