@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from textwrap import indent
 
 from algorithms.common.errors import InputFileError, SettingError
 from algorithms.files import yaml_fields as fields
 from algorithms.files.map_file import read_bytes, read_map
-from algorithms.files.observation_file import SIGHTING, initial_pose, observation_of
-from algorithms.files.yaml_fields import Fields, shown
+from algorithms.files.observation_file import SIGHTING, initial_pose, known_to_bytes, observation_of
+from algorithms.files.yaml_fields import Fields, quoted, shown
 from algorithms.observations.fleet import MOST_ROBOTS, MOST_SIGHTINGS, Fleet, FleetSighting
 from algorithms.observations.priors import InitialPose
 
@@ -84,3 +86,24 @@ def _robot_of(sighting: Fields, role: str, names: list[str]) -> str:
         found, there = f"is {shown(name)}, which is none of the robots", ", ".join(names[:8])
         raise section.error("robot", found, f"there are {there}")
     return name
+
+
+def fleet_to_bytes(fleet: Fleet, files: Mapping[str, str]) -> bytes:
+    """The content of a fleet file; it reads back to equal values.
+
+    files : of each robot the name of its map's YAML file
+    """
+    lines = [f"anchor: {quoted(fleet.anchor)}", "robots:"]
+    for name in fleet.maps:
+        known = ""
+        if name in fleet.known:
+            inside = known_to_bytes([fleet.known[name]]).decode().split("{", 1)[1].split("}")[0]
+            known = f", known: {{{inside}}}"
+        lines.append(f"  {quoted(name)}: {{map: {quoted(files[name])}{known}}}")
+    lines.append("sightings:" if fleet.sightings else "sightings: []")
+    for seen in fleet.sightings:
+        entry = known_to_bytes([seen.observation]).decode()
+        for role, name in (("observer", seen.observer), ("observed", seen.observed)):
+            entry = entry.replace(f"{role}: {{pose", f"{role}: {{robot: {quoted(name)}, pose", 1)
+        lines.append(f"  - {indent(entry, '    ').strip()}")
+    return ("\n".join(lines) + "\n").encode()

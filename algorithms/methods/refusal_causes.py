@@ -34,6 +34,7 @@ SCALES = (0.5, 2.0, 0.8, 1.25, 0.4, 2.5)  # between cells of 0.02, 0.025, 0.04, 
 PATIENCE = 2  # of the proof, in 10⁵ nodes: how long each change is tried
 MOST_CELLS = 2_000_000  # of a map; a larger one is tried in coarser cells
 FEW_PLACES, FEW_ANSWERS = 30, 3  # of the search over the plane
+SURE = 0.9  # how likely it is at least: of seven changes that are tried on the whole plane one fits by chance
 NO_SWARM = SwarmConfig(particles=10, iterations=1)  # what it finds has no influence on a proven answer
 
 
@@ -128,7 +129,8 @@ def find_cause(
             yield TriedDetail(cause.clause, number, total)
             number += 1
             found = _try(coarse, cause, near, wide)
-            if found is not None and found.verdict.accepted:
+            least = 0.0 if problem.observations else SURE
+            if found is not None and found.verdict.accepted and found.verdict.probability >= least:
                 agreeing.append((found.verdict, cause))
         if agreeing:
             verdict, cause = max(agreeing, key=lambda each: each[0].probability)

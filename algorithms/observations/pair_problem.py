@@ -134,7 +134,9 @@ class PairProblem:
             rings = [is_curved(o, config.deviations) for o in self.observations]
             margin = max(config.margin, LEAST_MARGIN)
             terms += [
-                SightedRing(o, margin) for o, ring in zip(self.observations, rings, strict=True) if ring
+                SightedRing(o, margin, config.deviations)
+                for o, ring in zip(self.observations, rings, strict=True)
+                if ring
             ]
             seen = [at for at, ring in zip(self.encounters, rings, strict=True) if not ring]
         return coupled_window(seen, config, tuple(terms), None if seen else self._middles)

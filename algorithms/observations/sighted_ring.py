@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, exp, hypot, pi
+from math import cos, exp, hypot, inf, pi
 
 import numpy as np
 
@@ -25,10 +25,12 @@ class SightedRing:
     """Where a sighting puts robot 2, in range and bearing instead of x and y.
 
     margin : standard deviation of what range and bearing do not tell; metres
+    most   : deviations from which on a place is of no interest
     """
 
     observation: Observation
     margin: float
+    most: float = inf
 
     @property
     def _across(self) -> float:
@@ -48,7 +50,8 @@ class SightedRing:
         return np.hypot(along, off * away / np.hypot(o.sigma_bearing * away, self._across))
 
     def slack(self, shift: float, turn: float, pivot: FloatArray) -> float:
-        """Bound of how far the deviation changes where the pivot moves and turns by up to so much.
+        """Bound of how far the deviation changes where the pivot moves and turns by up to so much, from or to
+        a place of interest. All of those lie some way off the observer, where the bearing changes slowly.
 
         shift, turn : metres, radians
         pivot       : (2,) metres, mov frame
@@ -56,4 +59,7 @@ class SightedRing:
         o = self.observation
         lever = hypot(o.observed_x - float(pivot[0]), o.observed_y - float(pivot[1]))
         moved = shift + turn * lever
-        return hypot(moved / hypot(o.sigma_range, self.margin), STEEPEST * moved / self._across)
+        thick = hypot(o.sigma_range, self.margin)
+        nearest = max(0.0, o.range - self.most * thick - moved)
+        across = hypot(o.sigma_bearing * nearest, self._across)
+        return hypot(moved / thick, STEEPEST * moved / across)

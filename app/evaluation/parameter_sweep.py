@@ -234,7 +234,7 @@ def bases_of(case: Case, plan: SweepPlan) -> dict[tuple[Any, Any], dict[str, str
     codes = [code(METHODS[plan.method].search.__module__), code(merit.__name__)]
     common = {
         "maps": [_cells_digest(case.ref), _cells_digest(case.mov)],
-        "observations": known_to_bytes(case.observations).decode(),
+        "observations": known_to_bytes(case.known).decode() if case.known else "",
         "truth": None if case.truth is None else truth_to_bytes(case.truth).decode(),
         "method": plan.method,
         "seeds": plan.seeds,

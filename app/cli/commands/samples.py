@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from itertools import product
 from pathlib import Path
 
-from app.cli.argument_parser import Parser
+from app.cli.argument_parser import Parser, whole_number
 
-USAGE = "DIR [--building KIND[,KIND…] --seeds FIRST[-LAST] [--overlap SHARE] [--sightings N] [--wrong-pairs]]"
+USAGE = "DIR [--building KIND[,KIND…] --seeds FIRST[-LAST] [--overlap SHARE] [--sightings N] [--fleet N] ...]"
 DESCRIPTION = """\
 Simulate pairs of maps whose true transform is known: buildings drawn in code, robots with a lidar.
 Without --building those that ship with mapmeld: the same files, bit for bit.
@@ -22,6 +22,8 @@ Examples:
                                      pairs whose robots met at up to three places
   mapmeld samples lies --building office,corridor --seeds 0-3 --wrong-pairs
                                      maps of different buildings: all to be refused
+  mapmeld samples fleets --building office --seeds 0-3 --fleet 6
+                                     four fleets of six robots, for mapmeld fleet and evaluate
   mapmeld evaluate cases             and how the method does on them"""
 
 
@@ -43,6 +45,12 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
         help="how often robot 1 sees robot 2, at most; less where they meet less often (default: 1)",
     )
     parser.add_argument(
+        "--fleet",
+        type=whole_number(2, 50),
+        metavar="N",
+        help="write fleets of N robots instead of pairs; one sighting in five is a lie",
+    )
+    parser.add_argument(
         "--wrong-pairs",
         action="store_true",
         help="pair every robot with those of the other buildings instead: what has to be refused",
@@ -54,13 +62,14 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     from algorithms.files.atomic_write import check_folder
     from algorithms.files.observation_file import MOST_OBSERVATIONS
     from algorithms.simulator.buildings.building_types import BUILDINGS
-    from algorithms.simulator.samples import generate_cases, generate_wrong_pairs, regenerate
+    from algorithms.simulator.samples import generate_cases, generate_fleets, generate_wrong_pairs, regenerate
     from app.cli.progress_bar import bar
 
     if args.building is None:
-        if args.seeds or args.overlap is not None or args.sightings is not None or args.wrong_pairs:
+        asked = (args.seeds, args.overlap, args.sightings, args.fleet)
+        if any(each is not None for each in asked) or args.wrong_pairs:
             parser.error(
-                "--seeds, --overlap, --sightings and --wrong-pairs need --building: "
+                "--seeds, --overlap, --sightings, --fleet and --wrong-pairs need --building: "
                 "the shipped samples are what they are"
             )
         check_folder(args.folder)
@@ -80,7 +89,17 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     buildings = len(kinds) * len(seeds)
     if args.wrong_pairs and buildings < 2:
         parser.error("--wrong-pairs needs two buildings at least: name more kinds or more seeds")
+    drawn = args.overlap is not None or args.sightings is not None or args.wrong_pairs
+    if args.fleet is not None and drawn:
+        parser.error("--fleet draws overlaps and sightings: leave out --overlap, --sightings, --wrong-pairs")
     check_folder(args.folder)
+    if args.fleet is not None:
+        with bar(total=buildings, unit="fleet") as shown:
+            for kind in kinds:
+                for folder in generate_fleets(kind, seeds, args.fleet, args.folder):
+                    print(folder)
+                    shown.update()
+        return 0
     if args.wrong_pairs:
         pairs = generate_wrong_pairs(kinds, seeds, args.folder, args.overlap, sightings)
         with bar(total=4 * buildings * (buildings - 1), unit="pair") as shown:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import degrees, nan, pi, radians
 
 import numpy as np
@@ -18,7 +19,9 @@ from algorithms.observations.sighted_ring import SightedRing, is_curved
 T = Pose2(3.0, -2.0, 0.7)
 AT = (1.5, 4.0)
 HERE = T.apply(np.array(AT)).tolist()
-RING = SightedRing(Observation(Pose2(0.0, 0.0, 0.3), *AT, 6.0, 0.4, sigma_range=1.0, sigma_bearing=pi), 0.1)
+RING = SightedRing(
+    Observation(Pose2(0.0, 0.0, 0.3), *AT, 6.0, 0.4, sigma_range=1.0, sigma_bearing=pi), 0.1, 3
+)
 PRIORS = [
     InitialPose(T, 0.5, 2.0, 0.2),
     TurnPrior(T.theta, 0.1),
@@ -101,3 +104,10 @@ def test_degrees_for_radians_are_told_as_that(make):
 def test_numbers_that_mean_nothing_are_refused(make):
     with pytest.raises(SettingError, match="must be"):
         make()
+
+
+def test_a_ring_far_from_the_observer_is_known_to_be_flat_there():
+    o = RING.observation
+    near, far = (SightedRing(replace(o, range=metres), 0.1, 3) for metres in (2.0, 20.0))
+    pivot = np.array(AT)
+    assert far.slack(0.2, 0.0, pivot) < near.slack(0.2, 0.0, pivot) / 4

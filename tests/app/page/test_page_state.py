@@ -25,7 +25,7 @@ def test_a_subscriber_is_called_after_changes_of_its_topic_alone(inputs):
 
 @pytest.mark.parametrize("lacking", ["maps", "observation"])
 def test_there_is_no_job_while_an_input_is_missing(inputs, lacking):
-    held = MergeInputs.pair(inputs.ref, inputs.mov) if lacking == "observation" else MergeInputs()
+    held = inputs.knowing((), "sighting") if lacking == "observation" else MergeInputs()
     assert PageState(held).job() is None
     job = PageState(inputs, seed=5).job(pace=2.0)
     assert (job.ref, job.mov, job.known) == (inputs.ref, inputs.mov, inputs.observations)

@@ -13,7 +13,6 @@ from algorithms.common.errors import InputFileError, NoAnswerError
 from algorithms.methods.steps import Step
 from algorithms.verdict.decision import Outcome
 from app.jobs.job_thread import JobThread
-from app.model.merge_inputs import MergeInputs
 from app.model.run_state import RunState
 from app.model.settings import with_value
 from app.page import run_controller
@@ -72,7 +71,7 @@ def test_the_same_merge_again_is_no_further_step(tab, controller, result):
 
 
 def test_without_an_observation_nothing_is_run(inputs, controller):
-    tab = noting_tab(MergeInputs.pair(inputs.ref, inputs.mov))
+    tab = noting_tab(inputs.knowing((), "sighting"))
     runs = controller(tab)
     runs.merge()
     assert asked(runs) is None

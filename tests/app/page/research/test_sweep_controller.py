@@ -95,6 +95,6 @@ def test_another_pair_forgets_the_sweep_and_another_setting_does_not(sweep, tab,
 
 
 def test_without_an_observation_nothing_is_swept(sweep, tab, inputs):
-    tab.state.update(inputs=MergeInputs.pair(inputs.ref, inputs.mov))
+    tab.state.update(inputs=inputs.knowing((), "sighting"))
     tab.panels.sweep.connect.call_args.args[0]()
     assert sweep.swept[2] is None
