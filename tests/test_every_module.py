@@ -65,6 +65,9 @@ EXERCISED_BY = {
         "algorithms.optimisation.monte_carlo",
         "algorithms.optimisation.particle_swarm",
     },
+    "algorithms/files/test_fleet_file.py": {
+        "algorithms.files.fleet_truth_file",
+    },
     "algorithms/simulator/test_hardships.py": {
         "algorithms.simulator.changes",
         "algorithms.simulator.odometry_drift",
@@ -188,6 +191,7 @@ EXERCISED_BY = {
         "algorithms.observations.fleet",
     },
     "app/report/test_fleet_files.py": {
+        "app.jobs.fleet_pairs",
         "app.cli.commands.fleet",
         "app.report.fleet_report",
     },

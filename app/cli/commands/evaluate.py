@@ -5,14 +5,16 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, get_args
 
 from algorithms.common.errors import OutputError
 from algorithms.files.atomic_write import check_file, write_file
 from algorithms.files.case_folder import case_folders
+from algorithms.fleets.fleet_merge import FleetResult, run_fleet
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, PLANE_METHOD
+from algorithms.observations.fleet import Fleet
 from algorithms.simulator.rough_priors import Knowledge
 from app.cli.argument_parser import Parser, did_you_mean, whole_number
 from app.cli.executor_flags import add_workers, executor_for
@@ -27,7 +29,9 @@ from app.evaluation.dataset_evaluation import (
     rough_folders,
     totals_of,
 )
+from app.evaluation.fleet_evaluation import evaluate_fleets, fleet_folders, fleet_totals
 from app.evaluation.table_files import aligned, apart_text, json_bytes, text_rows
+from app.jobs.fleet_pairs import run_pairs
 
 USAGE = (
     "DIR [--knowledge K,…] [--rough | --both] [--wrong-pairs N] [--json FILE] "
@@ -65,7 +69,14 @@ With --knowledge the method is told this and nothing else, with a table for each
 The errors depend on the case's name alone: they are the same every time. Where maps share no place, they
 are drawn around a pose that puts robot 2 where it was seen, turned by chance.
 
-Exit status: 0 all cases ran, 1 some case failed with an error, 2 bad input, 130 interrupted."""
+Folders with a fleet.yaml and its truth.yaml are merged as mapmeld fleet does it, and robots are counted:
+  right           placed in the anchor's map where they truly lie
+  refused, loose  not placed, though true sightings tie them to the anchor; and since none does
+  wrong           placed anywhere else: the number that must be 0
+  lies used, truths left out   sightings
+
+Exit status: 0 all cases ran, 1 some case failed with an error or a robot was placed wrong, 2 bad input,
+130 interrupted."""
 
 COUNTS = (
     *("group", "n", "right", "fine", "right_first", "right_among_five", "right_accepted"),
@@ -73,6 +84,19 @@ COUNTS = (
 )
 COLUMNS = {**dict.fromkeys(COUNTS, "{}"), "median_seconds": "{:.2f}"}
 TITLES = {"right_first": "first", "right_among_five": "first five"}
+FLEET_COUNTS = (
+    "group",
+    "fleets",
+    "right",
+    "refused",
+    "loose",
+    "wrong",
+    "lies_used",
+    "truths_left_out",
+    "errors",
+)
+FLEET_COLUMNS = {**dict.fromkeys(FLEET_COUNTS, "{}"), "median_seconds": "{:.2f}"}
+FLEET_TITLES = {"lies_used": "lies used", "truths_left_out": "truths left out", "median_seconds": "median s"}
 SIGHTING: Knowledge = "sighting"
 KINDS: tuple[Knowledge, ...] = get_args(Knowledge)
 
@@ -140,6 +164,9 @@ class Evaluated:
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Run all cases, print the tables; 1 where a case could not be run."""
+    fleets = fleet_folders(args.folder) if args.folder.is_dir() else []
+    if fleets:
+        return _run_fleets(args, fleets)
     folders, configs = case_folders(args.folder), configs_from(args)
     _check(args, configs, parser)
     if args.json is not None:
@@ -168,6 +195,32 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         title = part.knowledge if len(parts) > 1 else ""
         print(*([""] if number else []), *_lines(part, title, args.both), sep="\n")
     return 1 if any(case.error for part in parts for case in (*part.cases, *part.crossed)) else 0
+
+
+def _run_fleets(args: argparse.Namespace, folders: Sequence[Path]) -> int:
+    """Merge every fleet, print the table; 1 where one could not be run, or a robot was placed wrong."""
+    if args.json is not None:
+        check_file(args.json)
+    executor = executor_for(args.jobs, args.scheduler)
+
+    def merged(fleet: Fleet) -> FleetResult:
+        *_, last = run_fleet(fleet, partial(run_pairs, executor))
+        assert isinstance(last, FleetResult)
+        return last
+
+    done = evaluate_fleets(args.folder, folders, merged)
+    found = list(bar(iterable=done, total=len(folders), unit="fleet"))
+    totals = fleet_totals(found)
+    if args.json is not None:
+        write_file(args.json, json_bytes({"fleets": [each.plain() for each in found], "totals": totals}))
+    rows = [{"group": group, **counts} for group, counts in totals.items()]
+    print(*aligned(text_rows(FLEET_COLUMNS, rows, FLEET_TITLES)), sep="\n")
+    for each in found:
+        if each.error:
+            print(f"failed: {each.fleet}: {each.error}")
+        elif each.wrong:
+            print(f"placed wrong: {each.fleet}: {', '.join(each.wrong)}")
+    return 1 if any(each.error or each.wrong for each in found) else 0
 
 
 def _check(args: argparse.Namespace, configs: Mapping[str, Any], parser: Parser) -> None:

@@ -14,20 +14,16 @@ from algorithms.common.errors import OutputError
 from algorithms.files.atomic_write import check_folder, write_files
 from algorithms.files.fleet_file import FLEET_FILE, read_fleet
 from algorithms.fleets.fleet_merge import FleetResult, PairStep, run_fleet
-from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, find_pair
 from algorithms.maps.grid_map import remarks_on
-from algorithms.observations.fleet import Fleet
 from app.cli.argument_parser import Parser
 from app.cli.executor_flags import add_workers, executor_for
 from app.cli.progress_bar import bar
 from app.evaluation.table_files import aligned
-from app.jobs.executor import Executor, LostTask, SerialExecutor, Shared, Task
+from app.jobs.fleet_pairs import run_pairs
 from app.model import verdict_text
 from app.report.fleet_files import fleet_files
 from app.report.fleet_report import summary
 from app.report.result_files import REPORT_FILE
-
-FEW = 3  # pairs that are merged here: a process more takes as long to start
 
 USAGE = "FLEET --out DIR [--json] [--jobs N | --scheduler ADDRESS]"
 DESCRIPTION = f"""\
@@ -86,28 +82,6 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         print(summary(result, len(fleet.maps)), *_robots(result), *_left_out(result), sep="\n")
         print(f"written to {args.out}: {', '.join(files)}")
     return 0 if result.whole else 1
-
-
-def run_pairs(executor: Executor, fleet: Fleet, orders: Sequence[PairOrder]) -> Iterator[PairFinding]:
-    """Merge pairs with whoever works for the executor; the maps travel to each worker once."""
-    if len(orders) <= FEW and not executor.far:
-        executor = SerialExecutor()
-    shared = Shared.of(fleet)
-    for number, answer in executor.run(_work, (Task(order, shared) for order in orders)):
-        if isinstance(answer, LostTask):
-            yield PairFinding(orders[number], _nowhere(), (), answer.reason)
-        else:
-            yield answer
-
-
-def _work(fleet: Fleet, order: PairOrder) -> PairFinding:
-    return find_pair(fleet, order)
-
-
-def _nowhere() -> Any:
-    import numpy as np
-
-    return np.zeros(2)
 
 
 def _check_inputs(args: argparse.Namespace) -> None:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from algorithms.common.errors import InputFileError
+from algorithms.common.pose import Pose2
 from algorithms.files.atomic_write import write_files
-from algorithms.files.fleet_file import FLEET_FILE, read_fleet
+from algorithms.files.fleet_file import FLEET_FILE, fleet_to_bytes, read_fleet
+from algorithms.files.fleet_truth_file import FleetTruth, fleet_truth_to_bytes, read_fleet_truth
 from algorithms.files.map_file import map_to_bytes
+from algorithms.observations.fleet import Fleet, FleetSighting
+from algorithms.observations.priors import InitialPose
 
 SIGHTING = """\
   - observer: {robot: r1, pose: [2.0, 2.0, 0.0]}
@@ -75,3 +80,43 @@ def test_what_is_wrong_is_told_with_its_place(folder, text, said):
         fleet_of(folder, text)
     assert said in str(told.value)
     assert "\n" not in str(told.value)
+
+
+def test_a_fleet_that_was_written_reads_back_equal(folder, small_case):
+    (o,) = small_case.observations
+    maps = {"r1": small_case.ref, "r 2": small_case.mov}
+    known = {"r 2": InitialPose(Pose2(1.0, -2.0, 0.3), 0.5, 0.25, 0.1)}
+    seen = (FleetSighting("r1", "r 2", o), FleetSighting("r 2", "r1", replace(o, bearing_back=None)))
+    data = fleet_to_bytes(Fleet(maps, seen, known, "r 2"), {"r1": "r1.yaml", "r 2": "r2.yaml"})
+    back = fleet_of(folder, data.decode())
+    assert list(back.maps) == list(maps)
+    assert (back.sightings, back.known, back.anchor) == (seen, known, "r 2")
+
+
+def test_a_truth_that_was_written_reads_back_equal(tmp_path):
+    truth = FleetTruth(
+        {"r2": Pose2(1.0, 2.0, -0.5), "r 3": Pose2(0.1, 1e-7, 3.0)},
+        {"r1": (1.0, 2.0), "r2": (-3.0, 0.5)},
+        (("r 3",), ("r4", "r5")),
+        (0, 7),
+        0.25,
+        0.1,
+    )
+    (tmp_path / "truth.yaml").write_bytes(fleet_truth_to_bytes(truth))
+    assert read_fleet_truth(tmp_path / "truth.yaml") == truth
+    assert truth.loose == {"r 3", "r4", "r5"}
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("lies: [a]", "lies is"),
+        ("islands: [r4]", "islands is"),
+        ("at: {r2: [1]}", "at.r2 is"),
+        ("tolerance: {x_m: -1}", "tolerance.x_m is -1 m"),
+    ],
+)
+def test_what_is_wrong_in_a_truth_is_told_with_its_place(tmp_path, line, said):
+    (tmp_path / "truth.yaml").write_text(f"T_anchor_robot: {{r2: {{x: 1, y: 2, theta: 0}}}}\n{line}\n")
+    with pytest.raises(InputFileError, match=said):
+        read_fleet_truth(tmp_path / "truth.yaml")
