@@ -112,7 +112,7 @@ EXERCISED_BY = {
         "app.cli.progress_bar",
         "app.evaluation.comparison_files",
         "app.evaluation.table_files",
-        "app.evaluation.sweep_files",
+        "app.evaluation.sweep.sweep_files",
     },
     "app/cli/test_main.py": {
         "app.cli.argument_parser",
@@ -137,10 +137,10 @@ EXERCISED_BY = {
     "app/evaluation/test_figures.py": {
         "app.evaluation.comparison_figure",
         "app.evaluation.figure_style",
-        "app.evaluation.sweep_figure",
+        "app.evaluation.sweep.sweep_figure",
     },
-    "app/evaluation/test_parameter_sweep.py": {
-        "app.evaluation.checkpoint",
+    "app/evaluation/sweep/test_parameter_sweep.py": {
+        "app.evaluation.sweep.checkpoint",
         "app.system.version",
     },
     "app/jobs/test_executor.py": {

@@ -9,7 +9,7 @@ from typing import Literal
 
 from app.evaluation.method_comparison import ComparedRun, MethodTotals, tally
 from app.evaluation.method_run import MethodRun
-from app.evaluation.parameter_sweep import Spread, SweepPlan, SweepPoint, in_order
+from app.evaluation.sweep.parameter_sweep import Spread, SweepPlan, SweepPoint, in_order
 
 NEXT_TO_NOTHING = 0.005  # of eq. (23): half a hundredth of the overlap
 FLAT = 0.01  # within so much of the best, a curve has come to its end

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from algorithms.methods.registry import METHODS
 from app.evaluation.method_run import MethodRun
-from app.evaluation.parameter_sweep import SweepAxis, SweepPlan
+from app.evaluation.sweep.parameter_sweep import SweepAxis, SweepPlan
 
 METHOD = "spectra-swarm"
 

@@ -20,13 +20,13 @@ from algorithms.methods.registry import METHODS
 from algorithms.verdict.probability_model import shipped_model
 from app.cli.executor_flags import executor_for
 from app.cli.progress_bar import bar
-from app.evaluation import sweep_axes as axes
-from app.evaluation.checkpoint import Checkpoint
 from app.evaluation.comparison_files import case_files, contest_files, remarks, table_rows
 from app.evaluation.method_comparison import ComparedRun, compare_methods, defaults_of, pairs_in, tally
-from app.evaluation.parameter_sweep import SweepPlan, in_order, point_keys, sweep
-from app.evaluation.sweep_figure import sweep_figure
-from app.evaluation.sweep_files import points_csv, runs_csv, times_csv
+from app.evaluation.sweep import sweep_axes as axes
+from app.evaluation.sweep.checkpoint import Checkpoint
+from app.evaluation.sweep.parameter_sweep import SweepPlan, in_order, point_keys, sweep
+from app.evaluation.sweep.sweep_figure import sweep_figure
+from app.evaluation.sweep.sweep_files import points_csv, runs_csv, times_csv
 from app.jobs.executor import Executor
 from app.model.settings import with_value
 from app.system.hardware import machine

@@ -14,10 +14,10 @@ from app.cli.executor_flags import add_workers, executor_for
 from app.cli.map_arguments import case_folder
 from app.cli.progress_bar import bar
 from app.cli.setting_flags import add_method, config_from
-from app.evaluation import sweep_axes as axes
-from app.evaluation.checkpoint import Checkpoint
-from app.evaluation.parameter_sweep import SweepPlan, SweepPoint, done_before, outdated, sweep
-from app.evaluation.sweep_files import JOURNAL_FILE, name_of, sweep_files
+from app.evaluation.sweep import sweep_axes as axes
+from app.evaluation.sweep.checkpoint import Checkpoint
+from app.evaluation.sweep.parameter_sweep import SweepPlan, SweepPoint, done_before, outdated, sweep
+from app.evaluation.sweep.sweep_files import JOURNAL_FILE, name_of, sweep_files
 from app.model.settings import with_value
 
 SWARM = "spectra-swarm"  # the paper's method, whose settings the paper sweeps

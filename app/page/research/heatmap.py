@@ -9,7 +9,7 @@ import numpy as np
 
 from app.drawing.palette import VIRIDIS, Palette, css, viridis
 from app.drawing.svg.svg_canvas import SvgCanvas, worded
-from app.evaluation.parameter_sweep import SweepAxis, SweepPlan
+from app.evaluation.sweep.parameter_sweep import SweepAxis, SweepPlan
 from app.page.research.sweep_curves import Points, field, reading, span, text_of, title_of, word_of
 
 WIDE, RIGHT, TOP = 296.0, 8.0, 24.0

@@ -9,10 +9,10 @@ from algorithms.common.errors import SettingError
 from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS
 from app.drawing.browser_messages import BrowserMessages
-from app.evaluation import sweep_axes as axes
-from app.evaluation.checkpoint import Checkpoint
-from app.evaluation.parameter_sweep import SweepPlan, SweepPoint, done_before, sweep
-from app.evaluation.sweep_files import sweep_files
+from app.evaluation.sweep import sweep_axes as axes
+from app.evaluation.sweep.checkpoint import Checkpoint
+from app.evaluation.sweep.parameter_sweep import SweepPlan, SweepPoint, done_before, sweep
+from app.evaluation.sweep.sweep_files import sweep_files
 from app.jobs.background_job import BackgroundJob, beside_the_page
 from app.jobs.executor import Executor
 from app.model.merge_inputs import MergeInputs

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.evaluation.parameter_sweep import SweepAxis, SweepPlan, SweepPoint
-from app.evaluation.sweep_axes import looks_even_by_factor
+from app.evaluation.sweep.parameter_sweep import SweepAxis, SweepPlan, SweepPoint
+from app.evaluation.sweep.sweep_axes import looks_even_by_factor
 from app.model.settings import text_for
 
 AGREEMENT, RIGHT, ACCEPTED, TIME = "Agreement", "Right", "Accepted", "Time"

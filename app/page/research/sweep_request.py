@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from algorithms.common.errors import SettingError
-from app.evaluation import sweep_axes as axes
-from app.evaluation.parameter_sweep import SweepAxis, SweepPlan
+from app.evaluation.sweep import sweep_axes as axes
+from app.evaluation.sweep.parameter_sweep import SweepAxis, SweepPlan
 from app.model.settings import Setting, value_at
 
 MOST_POINTS = 400  # of a sweep on the page; the command takes any number

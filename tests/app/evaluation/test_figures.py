@@ -18,9 +18,9 @@ from app.evaluation.comparison_figure import NOTHING, RIGHT, WRONG, bars_figure,
 from app.evaluation.figure_style import COLOURS
 from app.evaluation.method_comparison import ComparedRun
 from app.evaluation.method_run import MethodRun
-from app.evaluation.parameter_sweep import SweepPlan, SweepPoint
-from app.evaluation.sweep_axes import axis_from
-from app.evaluation.sweep_figure import sweep_figure
+from app.evaluation.sweep.parameter_sweep import SweepPlan, SweepPoint
+from app.evaluation.sweep.sweep_axes import axis_from
+from app.evaluation.sweep.sweep_figure import sweep_figure
 
 CONFIG = METHODS["spectra-swarm"].defaults
 TRIAL = MethodRun((0.0, 0.0, 0.0), True, "Merged.", 0.9, 0.1, 0.01, True, True, 0.5)
@@ -215,10 +215,10 @@ def test_no_figure_names_the_day_or_the_program_that_made_it(scores):
 def test_matplotlib_is_loaded_where_a_figure_is_drawn_and_nowhere_else():
     code = (
         "import sys\n"
-        "from app.evaluation import comparison_files, method_comparison, parameter_sweep\n"
-        "from app.evaluation import sweep_axes, sweep_files\n"
+        "from app.evaluation import comparison_files, method_comparison\n"
+        "from app.evaluation.sweep import parameter_sweep, sweep_axes, sweep_files\n"
         "print('matplotlib' in sys.modules)\n"
-        "import app.evaluation.sweep_figure\n"
+        "import app.evaluation.sweep.sweep_figure\n"
         "print('matplotlib' in sys.modules, 'matplotlib.pyplot' in sys.modules)"
     )
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from repository import ROOT
 
 from algorithms.methods.registry import METHODS
-from app.evaluation import sweep_axes as axes
 from app.evaluation.method_comparison import ComparedRun, tally
 from app.evaluation.method_run import MethodRun
-from app.evaluation.parameter_sweep import SweepAxis, SweepPlan, SweepPoint
+from app.evaluation.sweep import sweep_axes as axes
+from app.evaluation.sweep.parameter_sweep import SweepAxis, SweepPlan, SweepPoint
 
 CONFIG = METHODS["spectra-swarm"].defaults
 TRIAL = MethodRun((0.0, 0.0, 0.0), True, "Merged.", 0.9, 0.1, 0.01, True, True, 0.5)

@@ -14,7 +14,7 @@ from sweep_plans import plan, untimed
 from algorithms.common.errors import SettingError
 from app.cli.executor_flags import executor_for
 from app.cli.main import main
-from app.evaluation.parameter_sweep import in_order, sweep
+from app.evaluation.sweep.parameter_sweep import in_order, sweep
 from app.jobs import dask_executor as cluster
 from app.jobs.dask_executor import DaskExecutor
 from app.jobs.executor import LostTask, SerialExecutor, Shared, Task

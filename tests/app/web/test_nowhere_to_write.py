@@ -25,7 +25,7 @@ from algorithms.common import parallel_kernels as kernels
 from algorithms.common.errors import OutputError
 from algorithms.files import atomic_write as atomic
 from app.cli.main import main
-from app.evaluation.checkpoint import Checkpoint
+from app.evaluation.sweep.checkpoint import Checkpoint
 from app.jobs.executor import Shared, Task
 from app.jobs.process_executor import ProcessExecutor
 

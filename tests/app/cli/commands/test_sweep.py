@@ -91,7 +91,7 @@ def test_what_is_merged_anew_is_said_with_what_has_changed(case_folder, tmp_path
         "2 of 2 points are in the journal, but were made with other settings: they are"
         in capsys.readouterr().out
     )
-    monkeypatch.setattr("app.evaluation.parameter_sweep.code", lambda _: "changed")
+    monkeypatch.setattr("app.evaluation.sweep.parameter_sweep.code", lambda _: "changed")
     assert main([*words, str(tmp_path), "--swarm.omega", "0.5"]) == 0
     assert (
         "2 of 2 points are in the journal, but were made with other versions: they are"
@@ -100,7 +100,7 @@ def test_what_is_merged_anew_is_said_with_what_has_changed(case_folder, tmp_path
 
 
 def test_an_interrupted_sweep_says_how_far_it_came(case_folder, tmp_path, monkeypatch, capsys):
-    from app.evaluation import parameter_sweep as sweeping
+    from app.evaluation.sweep import parameter_sweep as sweeping
 
     calls = []
 
@@ -119,9 +119,9 @@ def test_an_interrupted_sweep_says_how_far_it_came(case_folder, tmp_path, monkey
 
 
 def test_without_a_range_both_sweeps_of_the_paper_are_made(case_folder, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("app.evaluation.sweep_axes.SQUARED_CELLS", (105, 900))
-    monkeypatch.setattr("app.evaluation.sweep_axes.INTENSITIES", (1.0, 1000.0))
-    monkeypatch.setattr("app.evaluation.sweep_axes.PARTICLE_COUNTS", (10, 20))
+    monkeypatch.setattr("app.evaluation.sweep.sweep_axes.SQUARED_CELLS", (105, 900))
+    monkeypatch.setattr("app.evaluation.sweep.sweep_axes.INTENSITIES", (1.0, 1000.0))
+    monkeypatch.setattr("app.evaluation.sweep.sweep_axes.PARTICLE_COUNTS", (10, 20))
     monkeypatch.chdir(tmp_path)
     assert main(["sweep", str(case_folder), *SMALL, "--jobs", "1"]) == 0
     out = tmp_path / "sweep_flat_1"

@@ -20,7 +20,7 @@ from app.drawing.palette import DARK, LIGHT
 from app.drawing.svg.thumbnail import thumbnail
 from app.evaluation.comparison_files import contest_archive
 from app.evaluation.method_run import MethodRun
-from app.evaluation.parameter_sweep import SweepAxis, SweepPlan, SweepPoint
+from app.evaluation.sweep.parameter_sweep import SweepAxis, SweepPlan, SweepPoint
 from app.jobs import background_job as background
 from app.jobs.background_job import BackgroundJob, beside_the_page
 from app.jobs.executor import Task

@@ -10,8 +10,8 @@ from algorithms.common.errors import SettingError
 from algorithms.maps.map_fusion import ConflictRule
 from algorithms.methods.registry import METHODS
 from algorithms.observations.search_window import WindowConfig
-from app.evaluation import sweep_axes as axes
-from app.evaluation.sweep_axes import axis_from, setting_named, spaced
+from app.evaluation.sweep import sweep_axes as axes
+from app.evaluation.sweep.sweep_axes import axis_from, setting_named, spaced
 from app.model.settings import settings_of, with_value
 
 CONFIG = METHODS["spectra-swarm"].defaults

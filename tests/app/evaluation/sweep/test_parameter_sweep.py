@@ -13,10 +13,10 @@ from sweep_plans import INTENSITY, METHOD, SMALL, SPREAD, plan, trials, untimed
 from algorithms.common.errors import OutputError, SettingError
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import METHODS
-from app.evaluation import parameter_sweep as sweeping
-from app.evaluation.checkpoint import Checkpoint
 from app.evaluation.method_run import MethodRun, run_method, true_fusion
-from app.evaluation.parameter_sweep import Spread, SweepAxis, SweepPlan, in_order, point_keys, sweep
+from app.evaluation.sweep import parameter_sweep as sweeping
+from app.evaluation.sweep.checkpoint import Checkpoint
+from app.evaluation.sweep.parameter_sweep import Spread, SweepAxis, SweepPlan, in_order, point_keys, sweep
 from app.jobs.executor import Executor, SerialExecutor
 from app.system import version
 

@@ -12,8 +12,8 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from app.drawing.palette import LIGHT, css
 from app.evaluation.figure_style import COLOURS, MARKERS, figure_files
-from app.evaluation.parameter_sweep import Spread, SweepAxis, SweepPlan, SweepPoint, in_order
-from app.evaluation.sweep_axes import SPREAD, looks_even_by_factor
+from app.evaluation.sweep.parameter_sweep import Spread, SweepAxis, SweepPlan, SweepPoint, in_order
+from app.evaluation.sweep.sweep_axes import SPREAD, looks_even_by_factor
 
 INDEX = "agreeing share of the overlap, eq. (23)"
 MOST_CURVES = 6  # of a second setting; more can't be told apart

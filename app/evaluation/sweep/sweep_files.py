@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from algorithms.files.case_folder import Case
 from algorithms.methods.registry import METHODS
-from app.evaluation.parameter_sweep import SweepPlan, SweepPoint, in_order
+from app.evaluation.sweep.parameter_sweep import SweepPlan, SweepPoint, in_order
 from app.evaluation.table_files import (
     JUDGED,
     PLACED,
@@ -36,7 +36,7 @@ def sweep_files(case: Case, plan: SweepPlan, points: Sequence[SweepPoint]) -> di
     NAME.json      maps, method, settings, seeds, machine and versions
     NAME.png, .svg the figure; of a single setting also with the times
     """
-    from app.evaluation.sweep_figure import sweep_figure
+    from app.evaluation.sweep.sweep_figure import sweep_figure
 
     name, points = name_of(plan), in_order(plan, points)
     about = {

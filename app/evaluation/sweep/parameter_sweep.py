@@ -17,8 +17,8 @@ from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import METHODS
 from algorithms.methods.stage_runner import StageCache
 from algorithms.verdict import performance_index as merit
-from app.evaluation.checkpoint import Checkpoint
 from app.evaluation.method_run import MethodRun, run_method, true_fusion
+from app.evaluation.sweep.checkpoint import Checkpoint
 from app.jobs.executor import Executor, LostTask, Shared, Task
 from app.model.settings import Path as SettingPath
 from app.model.settings import Setting, settings_of, with_value

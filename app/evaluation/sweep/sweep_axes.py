@@ -7,7 +7,7 @@ from math import isfinite, log, sqrt
 from typing import Any
 
 from algorithms.common.errors import SettingError
-from app.evaluation.parameter_sweep import SEEDS, SweepAxis, SweepPlan
+from app.evaluation.sweep.parameter_sweep import SEEDS, SweepAxis, SweepPlan
 from app.model.settings import Setting, settings_of, what_became_of, with_value
 
 MOST_VALUES = 200  # of one setting

@@ -1,0 +1,1 @@
+"""One setting or two moved over a range: the plan, the points, the journal, tables and figures."""
