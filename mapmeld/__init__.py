@@ -26,11 +26,15 @@ if TYPE_CHECKING:  # type checkers and editors see the names here; at run time e
     from algorithms.common.pose import Pose2 as Pose2
     from algorithms.files.case_folder import Case as Case
     from algorithms.files.case_folder import read_case as read_case
+    from algorithms.files.fleet_file import read_fleet as read_fleet
     from algorithms.files.map_file import read_map as read_map
     from algorithms.files.map_file import write_map as write_map
     from algorithms.files.observation_file import read_known as read_known
     from algorithms.files.observation_file import read_observations as read_observations
     from algorithms.files.observation_file import write_observations as write_observations
+    from algorithms.fleets.fleet_merge import FleetResult as FleetResult
+    from algorithms.fleets.fleet_merge import merge_fleet as merge_fleet
+    from algorithms.fleets.fleet_merge import run_fleet as run_fleet
     from algorithms.maps.grid_map import GridMap as GridMap
     from algorithms.maps.map_fusion import Fusion as Fusion
     from algorithms.methods.merge_result import MergeResult as MergeResult
@@ -39,6 +43,8 @@ if TYPE_CHECKING:  # type checkers and editors see the names here; at run time e
     from algorithms.methods.registry import merge as merge
     from algorithms.methods.registry import run as run
     from algorithms.methods.steps import Step as Step
+    from algorithms.observations.fleet import Fleet as Fleet
+    from algorithms.observations.fleet import FleetSighting as FleetSighting
     from algorithms.observations.observation import Observation as Observation
     from algorithms.observations.priors import InitialPose as InitialPose
     from algorithms.observations.priors import NearPlace as NearPlace
@@ -59,13 +65,16 @@ _MODULES = {
     ),
     "algorithms.common.pose": ("Pose2",),
     "algorithms.files.case_folder": ("Case", "read_case"),
+    "algorithms.files.fleet_file": ("read_fleet",),
     "algorithms.files.observation_file": ("read_known", "read_observations", "write_observations"),
     "algorithms.files.map_file": ("read_map", "write_map"),
+    "algorithms.fleets.fleet_merge": ("FleetResult", "merge_fleet", "run_fleet"),
     "algorithms.maps.grid_map": ("GridMap",),
     "algorithms.maps.map_fusion": ("Fusion",),
     "algorithms.methods.registry": ("METHODS", "Method", "merge", "run"),
     "algorithms.methods.merge_result": ("MergeResult",),
     "algorithms.methods.steps": ("Step",),
+    "algorithms.observations.fleet": ("Fleet", "FleetSighting"),
     "algorithms.observations.observation": ("Observation",),
     "algorithms.observations.priors": ("InitialPose", "NearPlace", "TurnPrior"),
     "algorithms.verdict.decision": ("Outcome", "Verdict"),
