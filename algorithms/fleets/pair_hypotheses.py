@@ -16,7 +16,7 @@ from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.suggestions import suggestions_of
 from algorithms.observations.fleet import Fleet
 from algorithms.observations.observation import encounter
-from algorithms.observations.pair_problem import PairProblem
+from algorithms.observations.pair_problem import Known, PairProblem
 from algorithms.verdict.ranking import WINDOW_EDGE
 
 LEAST_LIKELY = 0.01  # an answer that is less likely is not kept
@@ -64,11 +64,15 @@ class PairFinding:
 
 def pair_orders(fleet: Fleet) -> list[PairOrder]:
     """A merge for every observer and observed robot, of all its sightings where one transform can agree with
-    them; sightings that cannot be true together are merged one by one, since a lie must spoil no other.
+    them; sightings that cannot be true together are merged one by one, since a lie must spoil no other. And
+    one of the anchor and each robot whose pose is roughly known.
     """
     by_pair: dict[tuple[str, str], list[int]] = {}
     for number, seen in enumerate(fleet.sightings):
         by_pair.setdefault((seen.observer, seen.observed), []).append(number)
+    for name in fleet.known:
+        if name != fleet.anchor:
+            by_pair.setdefault((fleet.anchor, name), [])
     orders = []
     for (ref, mov), numbers in sorted(by_pair.items()):
         agree = all(_agree(fleet, a, b) for a, b in combinations(numbers, 2))
@@ -89,11 +93,13 @@ def _agree(fleet: Fleet, a: int, b: int) -> bool:
 def find_pair(fleet: Fleet, order: PairOrder, seed: int = 0) -> PairFinding:
     """Merge a pair; an order that cannot be carried out says why, and costs no other."""
     seen = tuple(fleet.sightings[number].observation for number in order.sightings)
+    rough = fleet.known.get(order.mov) if order.ref == fleet.anchor else None
+    known: tuple[Known, ...] = seen if rough is None else (*seen, rough)
     try:
-        problem = PairProblem(fleet.maps[order.ref], fleet.maps[order.mov], seen)
+        problem = PairProblem.of(fleet.maps[order.ref], fleet.maps[order.mov], known)
         method = registry.default_method(problem)
         config = registry.METHODS[method].defaults
-        result = registry.merge(problem.ref, problem.mov, seen, method, config, seed)
+        result = registry.merge(problem.ref, problem.mov, known, method, config, seed)
         return PairFinding(
             order,
             problem.pivot,

@@ -17,6 +17,7 @@ from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import merge
 from algorithms.observations.fleet import Fleet, FleetSighting
 from algorithms.observations.observation import Observation
+from algorithms.observations.priors import InitialPose
 
 MOVED = Pose2(31.0, -7.0, 1.9)
 
@@ -108,6 +109,15 @@ def test_a_robot_that_nobody_saw_is_looked_for_without_a_sighting(three, merged)
     result = merge_fleet(replace(three, sightings=three.sightings[:1]))
     assert result.whole
     assert result.placed["cid"].array() == pytest.approx(merged.placed["cid"].array(), abs=0.1)
+
+
+def test_a_robot_whose_pose_is_roughly_known_needs_no_sighting(three, merged):
+    T = merged.placed["cid"]
+    rough = InitialPose(Pose2(T.x + 0.5, T.y - 0.5, T.theta + 0.1))
+    fleet = replace(three, sightings=three.sightings[:1], known={"cid": rough})
+    assert [(order.mov, order.sightings) for order in pair_orders(fleet)] == [("bob", (0,)), ("cid", ())]
+    result = merge_fleet(fleet)
+    assert result.placed["cid"].array() == pytest.approx(T.array(), abs=0.1)
 
 
 def test_sightings_that_cannot_be_true_together_are_merged_one_by_one(three):
