@@ -20,6 +20,7 @@ from PIL import Image
 from repository import ROOT
 
 from algorithms.common.errors import MapMergeError
+from algorithms.files.fleet_file import FLEET_FILE, read_fleet
 from algorithms.files.map_file import grey_image, map_from_bytes, parse_meta
 from algorithms.files.observation_file import (
     MOST_OBSERVATIONS,
@@ -29,6 +30,7 @@ from algorithms.files.observation_file import (
     read_known,
 )
 from algorithms.files.truth_file import read_truth
+from algorithms.observations.fleet import Fleet
 from algorithms.observations.pair_problem import Known
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_texts import read_exhibit, read_step
@@ -50,6 +52,11 @@ INITIAL = b"initial: {pose: [1.5, -2, 0.5], sigma: [2.0, 2.0, 0.17]}\n"
 TURN = b"turn: {yaw: -1.2, sigma: 0.1}\n"
 NEAR = b"near: {map1: [3, 4.5], map2: [0.5, -1], radius: 2}\n"
 KNOWN = b"- " + INITIAL + b"  " + TURN + b"- " + NEAR
+FLEET = (
+    b"anchor: b\nrobots:\n  a: {map: m.yaml}\n  b: {map: m.yaml, known: {pose: [1, 2, 0.5]}}\n"
+    b"sightings:\n  - observer: {robot: a, pose: [1, 2, 3]}\n    observed: {robot: b, pose: [4, 5]}\n"
+    b"    measurement: {range: 1, bearing: 0.5}\n"
+)
 TRUTH = (
     b"T_ref_mov: {x: 1.0, y: -2, theta: 0.5}\n"
     b"tolerance: {distance: 0.5, angle: 0.05}\nexpected: merge\noverlap: 0.4\n"
@@ -92,6 +99,16 @@ def _known_twice(path: Path) -> tuple[Known, ...]:
     return known
 
 
+def _fleet(data: bytes) -> Fleet:
+    """What a fleet's file says whose robots' maps lie beside it."""
+    with TemporaryDirectory() as folder:
+        Path(folder, "m.yaml").write_bytes(META)
+        Path(folder, "m.pgm").write_bytes(b"P5\n2 2\n255\n\0\376\315\376")
+        path = Path(folder, FLEET_FILE)
+        path.write_bytes(data)
+        return read_fleet(path)
+
+
 # name -> what reads it, and files that it is meant for
 READERS: dict[str, tuple[Callable[[bytes], object], list[bytes]]] = {
     "meta": (lambda data: parse_meta("m.yaml", data), [META, META.replace(b"[", b"\n- ")]),
@@ -105,6 +122,7 @@ READERS: dict[str, tuple[Callable[[bytes], object], list[bytes]]] = {
         [SEEN, b"- " + SEEN.replace(b"\n", b"\n  ", 2)],
     ),
     "known": (_from_disk(_known_twice), [KNOWN, INITIAL, SEEN + NEAR, b"- " + TURN + b"- " + NEAR]),
+    "fleet": (_fleet, [FLEET, FLEET.replace(b"anchor: b\n", b"")]),
     "truth": (_from_disk(read_truth), [TRUTH, b"expected: refuse\n"]),
     "step": (
         _from_disk(lambda path: read_step(path, PICTURES, NUMBERS)),
