@@ -27,6 +27,20 @@ class Answer:
     stopped: str
 
 
+@dataclass(frozen=True)
+class PlaneScan:
+    """How a plane was searched.
+
+    turn_step : between neighbouring turns; radians
+    cell      : edge of the cells that the shifts are apart; metres
+    climbed   : how many of the best places were climbed
+    """
+
+    turn_step: float
+    cell: float
+    climbed: int
+
+
 @dataclass(frozen=True, eq=False)
 class MergeResult:
     """The answer, and all that is needed to report it; detail of the last step, stage "verdict" or "explain".
@@ -45,6 +59,7 @@ class MergeResult:
     weighed       : T_ref_mov and the other answers that may be right, as the whole maps weigh them
     proof         : how the proof ended; None for a method without one
     search_found_it : whether the optimiser had come to the proven answer; None without a proof
+    scan          : how the plane was searched; None of another search
     timings_s     : seconds spent in each stage, by its name
     """
 
@@ -62,6 +77,7 @@ class MergeResult:
     weighed: tuple[Weighed, ...] = ()
     proof: ProofState | None = None
     search_found_it: bool | None = None
+    scan: PlaneScan | None = None
     timings_s: Mapping[str, float] = field(default_factory=dict)
 
     @property
@@ -79,7 +95,7 @@ class MergeResult:
 
     @property
     def proven_optimal(self) -> bool:
-        """Whether no transform of the whole circle fits better near the encounter than the search's best,
-        which is the first of the answers; the whole maps may have moved it, or named another one.
+        """Whether no transform fits better than the search's best: of the whole circle near the encounter, or
+        of the whole plane. The whole maps may have moved it, or named another one.
         """
         return self.proof is not None and self.proof.proven

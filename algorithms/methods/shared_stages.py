@@ -8,7 +8,7 @@ from typing import Any
 
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.map_fusion import Fusion, fuse
-from algorithms.methods.merge_result import Answer, MergeResult
+from algorithms.methods.merge_result import Answer, MergeResult, PlaneScan
 from algorithms.methods.stage_runner import StageCache, StageRunner
 from algorithms.methods.steps import ObservationDetail, Step
 from algorithms.observations.pair_problem import PairProblem
@@ -38,6 +38,7 @@ class Found:
     doubts: Sequence[str] = ()
     proof: ProofState | None = None
     search_found_it: bool | None = None
+    scan: PlaneScan | None = None
     kind: ModelKind = "sighting"
 
 
@@ -116,5 +117,6 @@ def finish_merge(
         weighed=(found.named, *(found.others or ())),
         proof=found.proof,
         search_found_it=found.search_found_it,
+        scan=found.scan,
         timings_s=timings_s,
     )

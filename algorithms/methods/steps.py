@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import BoolArray, Float32Array
@@ -163,9 +165,14 @@ class PlaneDetail:
 
 @dataclass(frozen=True, eq=False)
 class AnswersDetail:
-    """End of stage "refine", or "climb": what became of every candidate, best value first."""
+    """End of stage "refine", or "climb": what became of every candidate, best value first.
+
+    tops : (P, 3) x, y, theta of T_ref_mov of all places that were climbed, best value first; of a search over
+           the plane, whose answers are the likeliest of them
+    """
 
     answers: tuple[Answer, ...]
+    tops: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
 
 
 @dataclass(frozen=True, eq=False)

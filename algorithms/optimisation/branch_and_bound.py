@@ -19,7 +19,7 @@ from algorithms.common.setting_bounds import Bounds, CheckedConfig
 from algorithms.maps.grid_map import BoolArray
 from algorithms.observations.search_window import CoupledWindow
 from algorithms.optimisation.objective import Objective
-from algorithms.optimisation.open_blocks import BlockSearch
+from algorithms.optimisation.open_blocks import BlockSearch, Roots
 from algorithms.optimisation.transform_lattice import IntArray
 
 NODES = 100_000  # in one unit of patience
@@ -96,6 +96,7 @@ def prove(
     config: ProofConfig,
     floor: float = 0.0,
     worth: float = -np.inf,
+    roots: Roots | None = None,
 ) -> Iterator[ProofState]:
     """Search the whole circle; yield the state every few hundred blocks, the last one ``stopped``.
 
@@ -104,8 +105,9 @@ def prove(
     floor : share of the best value below which a rival is of no interest
     worth : value up to which the best is of no interest either; where none is above it, that is proven
             and no ``best`` is given
+    roots : blocks to begin with, all others being known to hold nothing better than ``worth``
     """
-    search = BlockSearch(objective, window)
+    search = BlockSearch(objective, window, roots)
     lattice = search.lattice
     patience = config.patience * NODES
     answers: list[IntArray] = []  # the best, then its rivals
@@ -121,7 +123,7 @@ def prove(
         poses = lattice.poses(lattice.coordinates(np.array(nodes).reshape(-1, 3), 0))
         return ProofState(
             rival_sought=proven,
-            nodes=search.nodes,
+            nodes=search.bounded,
             best=poses[0] if len(poses) else None,
             best_value=sums[0] if sums else -np.inf,
             ceiling=max(search.top, search.single.top, least),
@@ -151,7 +153,9 @@ def prove(
         while search.open_best(max(leading[0], least), elsewhere if answers else None):
             leading = search.single.best(least)
             if search.nodes > patience:
-                yield state(f"{'proven; rivals ' if proven else ''}not all searched: {search.nodes:,} blocks")
+                yield state(
+                    f"{'proven; rivals ' if proven else ''}not all searched: {search.bounded:,} blocks"
+                )
                 return
             yield state(None)
         if leading[1] is None:
@@ -165,7 +169,7 @@ def prove(
         search.open_again()
         proven, leading = True, search.single.best(least)
     if answers:
-        end = f"proven: {search.nodes:,} blocks bounded" if proven else "proven, but nothing speaks for it"
+        end = f"proven: {search.bounded:,} blocks bounded" if proven else "proven, but nothing speaks for it"
         proven, leading = True, (-np.inf, None)
         yield state(end)
     elif search.empty:

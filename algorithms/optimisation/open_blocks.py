@@ -66,10 +66,31 @@ class OpenBlocks:
         return float(self.bounds[first]), self.nodes[first]
 
 
-class BlockSearch:
-    """The open blocks and what has been found; one of them for both passes."""
+@dataclass(frozen=True, eq=False)
+class Roots:
+    """Blocks to begin with, where others have been left out already.
 
-    def __init__(self, objective: Objective, window: CoupledWindow) -> None:
+    level  : of the blocks
+    nodes, bounds : (P, 3), (P,) the blocks and their bounds
+    known  : (A,) of every sector of the circle, a bound of what was left out
+    blocks : how many have been bounded for it
+    """
+
+    level: int
+    nodes: IntArray
+    bounds: FloatArray
+    known: FloatArray
+    blocks: int
+
+
+class BlockSearch:
+    """The open blocks and what has been found; one of them for both passes.
+
+    nodes   : blocks bounded
+    bounded : the same, with those that were bounded before it began
+    """
+
+    def __init__(self, objective: Objective, window: CoupledWindow, roots: Roots | None = None) -> None:
         self.upper_bounds = UpperBounds(objective, window)
         self.lattice = self.upper_bounds.lattice
         self.levels = self.lattice.levels
@@ -79,8 +100,16 @@ class BlockSearch:
         self.sectors = self.lattice.turns >> self.levels
         self.found = np.full(self.sectors, -np.inf)
         self.known = np.full(self.sectors, -np.inf)  # bound of the blocks that were left out
-        self.nodes = 0
-        self._add(self.lattice.roots(), self.levels, np.inf)
+        self.nodes, self._before = 0, 0
+        if roots is None:
+            self._add(self.lattice.roots(), self.levels, np.inf)
+        else:
+            self.known, self._before = roots.known.copy(), roots.blocks
+            self._add(roots.nodes, roots.level, roots.bounds)
+
+    @property
+    def bounded(self) -> int:
+        return self._before + self.nodes
 
     @property
     def top(self) -> float:

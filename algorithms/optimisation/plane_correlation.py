@@ -117,8 +117,7 @@ class PlaneCorrelation:
         field: Any = cv2.warpAffine(self._field, warp, (side, side), flags=cv2.INTER_LINEAR)
         both: Any = cv2.mulSpectrums(self._field_spectrum, self._spectrum(walls), 0, conjB=True)
         both += cv2.mulSpectrums(self._wall_spectrum, self._spectrum(field), 0, conjB=True)
-        inverse = cv2.DFT_INVERSE | cv2.DFT_REAL_OUTPUT | cv2.DFT_SCALE
-        return np.asarray(cv2.dft(both, dst=both, flags=inverse), dtype=np.float32)
+        return correlated(both)
 
     def poses(self, turn: float, rows: IntArray, cols: IntArray) -> FloatArray:
         """(P, 3) x, y, theta of T_ref_mov at so many places of the surface of a turn."""
@@ -196,11 +195,21 @@ class PlaneCorrelation:
         return field, np.asarray(points, dtype=np.float64), coarse.resolution
 
     def _spectrum(self, raster: Float32Array) -> Float32Array:
-        """``shape``: of a raster with zeros around it, as OpenCV packs it; half as long as scipy takes."""
-        rows, cols = raster.shape
-        out = np.zeros(self.shape, dtype=np.float32)
-        out[:rows, :cols] = raster
-        return np.asarray(cv2.dft(out, dst=out, nonzeroRows=rows), dtype=np.float32)
+        return spectrum(raster, self.shape)
+
+
+def spectrum(raster: Float32Array, shape: tuple[int, int]) -> Float32Array:
+    """``shape``: of a raster with zeros around it, as OpenCV packs it; half as long as scipy takes."""
+    rows, cols = raster.shape
+    out = np.zeros(shape, dtype=np.float32)
+    out[:rows, :cols] = raster
+    return np.asarray(cv2.dft(out, dst=out, nonzeroRows=rows), dtype=np.float32)
+
+
+def correlated(both: Float32Array) -> Float32Array:
+    """The correlation of two rasters from the product of their spectra, which is overwritten."""
+    inverse = cv2.DFT_INVERSE | cv2.DFT_REAL_OUTPUT | cv2.DFT_SCALE
+    return np.asarray(cv2.dft(both, dst=both, flags=inverse), dtype=np.float32)
 
 
 def searched_area(ref: GridMap, mov: GridMap, config: PlaneConfig, window: CoupledWindow) -> float:

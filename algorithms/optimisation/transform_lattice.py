@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from math import ceil, pi, sqrt
+from math import ceil, isfinite, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.common.errors import TooLargeError
-from algorithms.common.pose import FloatArray, chord, rotation, wrap_angles
+from algorithms.common.pose import FloatArray, Pose2, chord, rotation, wrap_angles
 from algorithms.observations.search_window import CoupledWindow
-from algorithms.optimisation.objective import Objective, Side
+from algorithms.optimisation.objective import PAD, Objective, Side
 from algorithms.optimisation.search_box import transforms_about
 
 IntArray = NDArray[np.int64]
@@ -35,7 +35,10 @@ class TransformLattice:
             for side in objective.sides
         ]
         self.reach = max(self.cell, *reaches)
+        self._tables = {side.backward: _table_reach(side, window) for side in objective.sides}
         self.disc = window.disc
+        if not isfinite(self.disc):  # farther off no wall of one map meets anything that the other shows
+            self.disc = self.reach + max(self._tables.values())
         finest = min(side.grid.resolution for side in objective.sides)
         block = 2**LEVELS
         self.turns = block * ceil(2 * pi * self.reach / self.cell / block)
@@ -47,6 +50,10 @@ class TransformLattice:
         self.side = max(1, blocks) * 2**self.levels
         # shifts along the ref grid's own axes: there a block of them is a square of its cells
         self.yaw = objective.sides[0].grid.origin.theta
+
+    def table_reach(self, side: Side) -> float:
+        """How far from what a turn leaves in its place the table of a side holds anything; metres."""
+        return self._tables[side.backward]
 
     @property
     def step(self) -> float:
@@ -84,6 +91,16 @@ class TransformLattice:
         out[:, 2] = wrap_angles(out[:, 2])
         return out
 
+    def nearest(self, T_ref_mov: Pose2) -> IntArray:
+        """(27, 3) the transform nearest to another one and those around it; of one outside, at the edge."""
+        goes_to = T_ref_mov.apply(self.window.pivot) - self.window.place
+        shift = rotation(-self.yaw) @ goes_to / self.cell + self.side // 2
+        around = np.stack(np.meshgrid(*3 * [[-1, 0, 1]], indexing="ij"), axis=-1).reshape(-1, 3)
+        nodes = np.rint(np.append(T_ref_mov.theta / self.step, shift)).astype(np.int64) + around
+        nodes[:, 0] %= self.turns
+        nodes[:, 1:] = np.clip(nodes[:, 1:], 0, self.side - 1)
+        return np.asarray(nodes, dtype=np.int64)
+
     def roots(self) -> IntArray:
         """(P, 3) the coarsest blocks; raises TooLargeError where they are too many."""
         count, sectors = self.side // 2**self.levels, self.turns // 2**self.levels
@@ -119,3 +136,12 @@ def from_pivot(side: Side, points: FloatArray, window: CoupledWindow) -> FloatAr
     """(N, 2) points of a side relative to the place that a turn leaves as it is."""
     pivot = window.place if side.backward else window.pivot
     return np.asarray(points + (side.anchor - pivot), dtype=np.float64)
+
+
+def _table_reach(side: Side, window: CoupledWindow) -> float:
+    """As in ``TransformLattice.table_reach``."""
+    rows, cols = np.nonzero(side.table)
+    at = np.column_stack([cols, rows]) + side.corner - PAD + 0.5
+    pivot = side.grid.grid_coordinates(window.pivot if side.backward else window.place)
+    farthest = float(np.linalg.norm(at - pivot, axis=1).max(initial=0.0))
+    return (farthest + sqrt(0.5)) * side.grid.resolution

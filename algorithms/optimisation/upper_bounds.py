@@ -94,7 +94,8 @@ class _Pyramid:
         lever = np.linalg.norm(from_pivot(side, points, lattice.window), axis=1)
         if side.backward:  # T⁻¹ p = C(−Δθ) (p − Δ): the turn swings the shift, too
             shift *= sqrt(2)
-            lever += lattice.disc + shift
+            # what turns farther out than the table reaches finds nothing, at any turn
+            lever = np.minimum(lever + lattice.disc + shift, lattice.table_reach(side))
         moved = shift + chord(lattice.half_turn(level)) * lever + blur
         radii = np.array(RADII)[np.searchsorted(RADII, np.ceil(moved / side.grid.resolution + HAIR))]
         order = np.argsort(radii, kind="stable")  # neighbours in one table are neighbours in memory

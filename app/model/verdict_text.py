@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import degrees
 
-from algorithms.common.pose import pose_error
+from algorithms.common.pose import Pose2, pose_error
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import CHOSEN, MergeResult
 from algorithms.methods.registry import METHODS
@@ -12,6 +12,7 @@ from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.verdict.decision import NEXT_TO_NO_WALL, SAME_PLACE, Outcome, Verdict
 from algorithms.verdict.probability_model import OTHERS
 
+SAME_TURN = 3.0  # degrees; the best of the lattice and the answer beside it are one
 LEAST_LIKELY = 0.005  # of a rival; what is less likely rounds to nothing
 MOODS = {Outcome.MERGED: "accepted", Outcome.BENT: "bent", Outcome.REFUSED: "refused"}
 """The colour of an outcome: green, amber, vermilion."""
@@ -70,6 +71,24 @@ def resampled(fusion: Fusion) -> str:
     return f"{changed} to {fusion.merged.resolution:g} m" if changed else ""
 
 
+def searched(result: MergeResult) -> str:
+    """How the plane was searched, and what is proven of it; empty for another search."""
+    scan, proof = result.scan, result.proof
+    if scan is None:
+        return ""
+    how = (
+        f"turns in steps of {degrees(scan.turn_step):.3g}°, cells of {scan.cell:.2g} m, "
+        f"the {scan.climbed} best places climbed"
+    )
+    if proof is None or not proof.proven or proof.best is None:
+        why = f" ({proof.stopped})" if proof is not None and proof.stopped else ""
+        return f"searched, not proven{why}: {how}"
+    distance, turn = pose_error(result.T_ref_mov, Pose2.from_array(proof.best), result.pivot)
+    if distance > SAME_PLACE or degrees(turn) > SAME_TURN:
+        return f"proven to a cell: the walls agree best {distance:.1f} m and {degrees(turn):.0f}° from here"
+    return "proven to a cell: at no other place do the walls agree better"
+
+
 def mood(verdict: Verdict) -> str:
     """The colour that a verdict is shown in."""
     return MOODS[verdict.outcome]
@@ -102,7 +121,7 @@ def remedy(result: MergeResult) -> str:
         return "Check the numbers of the sightings, leave the odd one out, or widen the window's margin."
     if proof is not None and fits_nowhere(proof):
         return "Are these maps of one building? Check the observation's numbers, or widen the window."
-    if proof is not None and not proof.proven:
+    if proof is not None and not proof.proven and result.scan is None:
         return "Give the proof more patience, or narrow the window, and merge again."
     if verdict.rival is not None and (verdict.ambiguity or 0.0) > 1:
         if result.by_person:

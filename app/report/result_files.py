@@ -53,7 +53,7 @@ def report_of(
     warnings: Sequence[str] = (),
 ) -> dict[str, Any]:
     """What report.json says: metres and radians; a number that is not finite is null. "resampled" are the
-    cells of maps that were coarser than the merged one's.
+    cells of maps that were coarser than the merged one's, "scan" says how the plane was searched.
 
     load_s   : seconds spent on reading the maps
     inputs   : the files it was made from, as the user named them
@@ -66,6 +66,7 @@ def report_of(
         "objective": result.value,
         "proven_optimal": result.proven_optimal,
         "timings_s": {"load": load_s, **result.timings_s},
+        "scan": result.scan,
         "proof": proof_of(result),
         "answers": [
             {
@@ -111,6 +112,7 @@ def _report(
         "method": method,
         "seed": seed,
         "timings_s": {"load": load_s},
+        "scan": None,
         "proof": None,
         "answers": [],
         "performance_index_at_estimate": None,

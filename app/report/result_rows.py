@@ -107,9 +107,14 @@ def _moved(result: MergeResult) -> list[tuple[str, ...]]:
 
 def _proof(result: MergeResult) -> list[tuple[str, ...]]:
     """Whether there can be a better answer, and whether the search alone had found this one."""
+    rows: list[tuple[str, ...]] = []
+    if result.scan is not None:
+        rows.append(("optimum", verdict_text.searched(result)))
     if result.proof is None:
-        return []
-    rows = [("optimum", verdict_text.optimum(result.proof)), ("blocks bounded", f"{result.proof.nodes:,}")]
+        return rows
+    if result.scan is None:
+        rows.append(("optimum", verdict_text.optimum(result.proof)))
+    rows.append(("blocks bounded", f"{result.proof.nodes:,}"))
     if result.proven_optimal and result.search_found_it is not None:
         rows.append(("found by the search", "yes" if result.search_found_it else "no"))
     return rows

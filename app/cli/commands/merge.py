@@ -204,7 +204,10 @@ def _summary(result: MergeResult, config: Any) -> list[str]:
     lines.append(f"map 2 in map 1: x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°")
     if result.value is not None:
         ended = "" if proof is None else f", {verdict_text.optimum(proof)} ({proof.nodes:,} blocks bounded)"
-        if proof is not None and result.weighed[0].moved:
+        if result.scan is not None:
+            bounded = "" if proof is None else f" ({proof.nodes:,} blocks bounded)"
+            ended = f"; {verdict_text.searched(result)}{bounded}"
+        elif proof is not None and result.weighed[0].moved:
             ended += ", then moved to where the whole maps fit"
         lines.append(f"{measure.name} {measure.text(result.value)}{ended}")
     if rival:

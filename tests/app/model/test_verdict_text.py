@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import radians
 
 import pytest
 from proofs import NO_ROBOTS, proof_state
 
 from algorithms.common.pose import Pose2
-from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.merge_result import MergeResult, PlaneScan
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.verdict.decision import Outcome
 from app.model import verdict_text as words
@@ -30,6 +31,34 @@ def test_the_map_that_was_resampled_is_named_with_its_cells(result):
     assert words.resampled(result.fusion) == ""
     told = words.resampled(replace(result.fusion, resolutions=(cell, 4 * cell)))
     assert told == "map 2 from cells of 0.2 m to 0.05 m"
+
+
+SCAN = PlaneScan(radians(3), 0.0784, 100)
+HOW = "turns in steps of 3°, cells of 0.078 m, the 100 best places climbed"
+
+
+def test_a_search_over_the_plane_says_how_it_was_done_and_that_nothing_is_proven(result):
+    assert words.searched(result) == ""
+    plane = replace(result, scan=SCAN, proof=None)
+    assert words.searched(plane) == f"searched, not proven: {HOW}"
+    given_up = proof_state(proven=False, stopped="not all searched: 12,300 blocks")
+    told = words.searched(replace(plane, proof=given_up))
+    assert told == f"searched, not proven (not all searched: 12,300 blocks): {HOW}"
+
+
+def test_a_proof_over_the_plane_says_whether_its_best_is_the_answer(result):
+    here = proof_state(best=result.T_ref_mov.array())
+    told = words.searched(replace(result, scan=SCAN, proof=here))
+    assert told == "proven to a cell: at no other place do the walls agree better"
+    there = proof_state(best=(result.T_ref_mov @ Pose2(theta=radians(90))).array())
+    told = words.searched(replace(result, scan=SCAN, proof=there))
+    assert told.startswith("proven to a cell: the walls agree best ")
+    assert told.endswith(" m and 90° from here")
+
+
+def test_after_a_search_over_the_plane_more_patience_is_no_remedy(result):
+    plane = replace(refused(result, proof_state(proven=False, ceiling=31.0)), scan=SCAN)
+    assert "patience" not in words.remedy(plane)
 
 
 def refused(result: MergeResult, proof: ProofState | None = None, **changes) -> MergeResult:

@@ -3,7 +3,7 @@
 import io
 import json
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -17,6 +17,7 @@ from algorithms.methods.registry import METHODS, merge
 from app.drawing.palette import LIGHT
 from app.model.merge_inputs import MergeInputs
 from app.report import result_files as report
+from app.report.html_report import report_page
 from app.report.result_rows import numbers
 
 
@@ -50,6 +51,24 @@ def test_a_proof_that_met_nothing_has_no_gap_in_json(result):
     nothing = replace(result.proof, best=None, best_value=-math.inf, proven=False)
     told = report.report_json(report.report_of(replace(result, proof=nothing)))
     assert json.loads(told, parse_constant=pytest.fail)["proof"]["gap"] is None
+
+
+def test_the_report_says_how_the_plane_was_searched_and_what_is_proven_of_it(small_case):
+    inputs = MergeInputs.pair(small_case.ref, small_case.mov, (), "flat")
+    searched = merge(small_case.ref, small_case.mov)
+    proving = replace(METHODS["whole-plane"].defaults, prove=True)
+    proven = merge(small_case.ref, small_case.mov, config=proving)
+    assert report.report_of(searched)["scan"] == asdict(searched.scan)
+    assert report.report_of(searched)["proof"] is None
+    told = report.report_of(proven)
+    assert told["proven_optimal"]
+    assert told["proof"]["nodes"] == proven.proof.nodes > 0
+    assert dict(numbers(searched, inputs))["optimum"].startswith("searched, not proven: turns in steps of 3°")
+    rows = dict(numbers(proven, inputs))
+    assert rows["optimum"].startswith("proven to a cell")
+    assert rows["blocks bounded"] == f"{proven.proof.nodes:,}"
+    page = report_page(proven, inputs, proving, told).decode()
+    assert f"{proven.proof.nodes:,} blocks were bounded" in page
 
 
 def test_a_method_without_a_proof_reports_none(small_case):
