@@ -18,7 +18,7 @@ from algorithms.methods.steps import AnswersDetail, ProofDetail
 from algorithms.optimisation.branch_and_bound import NODES, ProofConfig, ProofState, prove
 from algorithms.optimisation.objective import Lookup
 from algorithms.optimisation.open_blocks import Roots
-from algorithms.optimisation.plane_bounds import PlaneBounds
+from algorithms.optimisation.plane_bounds import PlaneBlocks, PlaneBounds
 from algorithms.optimisation.transform_lattice import IntArray
 from algorithms.optimisation.upper_bounds import UpperBounds
 from algorithms.verdict.whole_maps import WholeMaps
@@ -38,21 +38,23 @@ def prove_plane(whole: WholeMaps, climbed: AnswersDetail) -> Iterator[ProofDetai
     """
     objective, window = replace(whole.crisp, lookup=Lookup.NEAREST), whole.window
     values = UpperBounds(objective, window)
-    bounds = PlaneBounds(objective, values.lattice)
+    blocks = PlaneBlocks(values.lattice)
     tops = [Pose2.from_array(pose) for pose in climbed.tops]
     beside = np.concatenate([values.lattice.nearest(top) for top in tops])
     found = values(beside, 0)
     best, best_value = beside[[found.argmax()]], float(found.max())
     sought = max(0.0, best_value - HAIR)
     known = values.lattice.poses(values.lattice.coordinates(best, 0))[0], best_value
-    so_far = _Bounded(bounds, sought, *known)
-    if bounds.blocks > MOST_BLOCKS:
-        many = f"{bounds.blocks:,} blocks are more than {MOST_BLOCKS:,}"
+    most = sum(float(side.weights.sum()) for side in objective.sides)
+    so_far = _Bounded(blocks, most, sought, *known)
+    if blocks.count > MOST_BLOCKS:
+        many = f"{blocks.count:,} blocks are more than {MOST_BLOCKS:,}"
         yield ProofDetail(so_far.state(many), window)
         return
-    for start in range(0, bounds.turns, TOGETHER):
-        turns = range(start, min(start + TOGETHER, bounds.turns))
-        so_far.add(turns, each_on_a_core(so_far.look, turns))
+    bounds = PlaneBounds(objective, blocks)
+    for start in range(0, len(blocks.left), TOGETHER):
+        turns = blocks.left[start : start + TOGETHER]
+        so_far.add(turns, each_on_a_core(lambda turn: bounds.above(turn, sought), turns))
         if so_far.left > PATIENCE * NODES:
             many = f"{so_far.left:,} blocks or more may hold a better place"
             yield ProofDetail(so_far.state(many), window)
@@ -68,60 +70,56 @@ def prove_plane(whole: WholeMaps, climbed: AnswersDetail) -> Iterator[ProofDetai
 class _Bounded:
     """The sectors that have been bounded.
 
+    most             : what all walls together can be worth
     sought           : what a block must be above
     best, best_value : (3,) x, y, theta of the best that was climbed, on the lattice, and its value
     left             : blocks that may hold something better than what is sought
     """
 
-    def __init__(self, bounds: PlaneBounds, sought: float, best: FloatArray, best_value: float) -> None:
-        self._bounds, self._lattice, self._sought = bounds, bounds.lattice, sought
+    def __init__(
+        self, blocks: PlaneBlocks, most: float, sought: float, best: FloatArray, best_value: float
+    ) -> None:
+        self._blocks, self._lattice, self._sought = blocks, blocks.lattice, sought
         self._best, self._best_value = best, best_value
         self._nodes: list[IntArray] = []
         self._tops: list[FloatArray] = []
         self._known = np.full(self._lattice.turns >> self._lattice.levels, -np.inf)
-        self._ceilings = np.full(len(self._known), bounds.most)
+        self._tops_of = np.full(blocks.turns, -np.inf)
+        self._tops_of[blocks.left] = most
         self._looked_at = 0
         self.left = 0
 
-    def look(self, turn: int) -> Sector | None:
-        """What may be better in a sector; None where the window shuts it out."""
-        return self._bounds.above(turn, self._sought) if self._bounds.within(turn) else None
-
-    def add(self, turns: Sequence[int], sectors: Sequence[Sector | None]) -> None:
-        finer = self._lattice.levels - self._bounds.level
-        self._ceilings[[turn >> finer for turn in turns]] = -np.inf
-        for turn, sector in zip(turns, sectors, strict=True):
-            if sector is None:
-                continue
-            nodes, tops, rest = sector
+    def add(self, turns: Sequence[int], sectors: Sequence[Sector]) -> None:
+        for turn, (nodes, tops, rest) in zip(turns, sectors, strict=True):
             self._nodes.append(nodes)
             self._tops.append(tops)
-            self._looked_at += self._bounds.side**2
+            self._looked_at += self._blocks.side**2
             self.left += len(nodes)
-            at = turn >> finer
+            at = turn >> (self._lattice.levels - self._blocks.level)
             self._known[at] = max(self._known[at], rest)
-            self._ceilings[at] = max(self._ceilings[at], rest, float(tops.max(initial=-np.inf)))
+            self._tops_of[turn] = max(rest, float(tops.max(initial=-np.inf)))
 
     def roots(self) -> Roots:
         nodes = np.concatenate([np.zeros((0, 3), dtype=np.int64), *self._nodes])
         bounds = np.concatenate([np.zeros(0), *self._tops])
-        return Roots(self._bounds.level, nodes, bounds, self._known, self._looked_at)
+        return Roots(self._blocks.level, nodes, bounds, self._known, self._looked_at)
 
     def state(self, stopped: str | None) -> ProofState:
         """Before branch and bound has begun."""
         sectors = len(self._known)
+        ceilings = self._tops_of.reshape(sectors, -1).max(axis=1)
         middles = (np.arange(sectors) + 0.5) * 2**self._lattice.levels * self._lattice.step
         return ProofState(
             rival_sought=False,
             nodes=self._looked_at,
             best=self._best,
             best_value=self._best_value,
-            ceiling=float(self._ceilings.max()),
+            ceiling=float(ceilings.max()),
             rivals=np.zeros((0, 3)),
             rival_values=np.zeros(0),
             floor=self._sought,
             turns=wrap_angles(middles),
-            ceilings=self._ceilings.copy(),
+            ceilings=ceilings,
             found=np.full(sectors, -np.inf),
             stopped=stopped,
             proven=False,

@@ -7,12 +7,14 @@ cell of a raster as coarse as the blocks. One inverse transform bounds the block
 
 from __future__ import annotations
 
+from functools import cached_property
 from math import ceil, sqrt
 from typing import Any
 
 import cv2
 import numpy as np
 
+from algorithms.common.parallel_kernels import each_on_a_core
 from algorithms.common.pose import FloatArray, chord, rotation
 from algorithms.maps.grid_map import Float32Array
 from algorithms.optimisation.objective import PAD, Objective, Side
@@ -22,54 +24,71 @@ from algorithms.optimisation.transform_lattice import IntArray, TransformLattice
 ROUNDING = 1e-5  # of the norms of what is correlated: 32-bit transforms are off by a hundredth of it
 HAIR = 1e-3  # metres; what rounding may shift a point by
 SOUGHT_EDGE = 0.25  # metres; blocks of such an edge are few enough, and their bounds tight enough
-COARSER = 3  # levels above the blocks, at which it is asked whether a turn is left at all
+MOST_SHIFTS = 25_000_000  # blocks of a sector; of more it is not asked which sectors are left
+COARSER = 3  # levels above the blocks, at which it is asked which sectors are left at all
 
 
-class PlaneBounds:
-    """Bounds of the blocks of one level.
+class PlaneBlocks:
+    """The blocks of one level of a lattice.
 
-    level : of the blocks, in the lattice
+    level : in the lattice
     turns : sectors of turns
     side  : blocks along an edge of the plane
-    most  : what all walls together can be worth
     """
 
-    def __init__(self, objective: Objective, lattice: TransformLattice) -> None:
+    def __init__(self, lattice: TransformLattice) -> None:
         self.lattice = lattice
         self.level = min(lattice.levels, max(1, int(np.log2(SOUGHT_EDGE / lattice.cell))))
         self.turns, self.side = lattice.turns >> self.level, lattice.side >> self.level
-        self._edge = 2**self.level * lattice.cell
-        middle = lattice.coordinates(np.zeros((1, 3), dtype=np.int64), self.level)
+
+    @cached_property
+    def left(self) -> list[int]:
+        """The sectors in which the window holds anything."""
+        window = self.lattice.window
+        if (not len(window.x_ref) and not window.priors) or self.side**2 > MOST_SHIFTS:
+            return list(range(self.turns))
+        groups = range(ceil(self.turns / 2**COARSER))
+        found = zip(groups, each_on_a_core(self._is_left, groups), strict=True)
+        held = {group for group, left in found if left}
+        return [turn for turn in range(self.turns) if turn >> COARSER in held]
+
+    @property
+    def count(self) -> int:
+        """How many there are in these sectors."""
+        return int(len(self.left) * self.side**2)
+
+    def _is_left(self, group: int) -> bool:
+        """Whether the window holds any transform of some neighbouring sectors."""
+        coarser = self.level + COARSER
+        across = np.arange(ceil(self.side / 2**COARSER))
+        cols, rows = (axis.ravel() for axis in np.meshgrid(across, across))
+        nodes = np.column_stack([np.full(len(cols), group), cols, rows])
+        poses = self.lattice.poses(self.lattice.coordinates(nodes, coarser))
+        off = self.lattice.nearest_deviations(poses, coarser)
+        return bool((off <= self.lattice.window.k).all(axis=1).any())
+
+
+class PlaneBounds:
+    """Their bounds, a sector at a time."""
+
+    def __init__(self, objective: Objective, blocks: PlaneBlocks) -> None:
+        self.lattice, self.level, self.side = blocks.lattice, blocks.level, blocks.side
+        self._edge = 2**self.level * self.lattice.cell
+        middle = self.lattice.coordinates(np.zeros((1, 3), dtype=np.int64), self.level)
         self._first = middle[0, :2]  # shift of the first block's middle
-        self._swing = chord(lattice.half_turn(self.level))
+        self._swing = chord(self.lattice.half_turn(self.level))
         self._forward, self._backward = objective.sides
         self._reach = max(
             float(np.linalg.norm(self._points(self._forward), axis=1).max(initial=0.0)),
-            lattice.table_reach(self._backward),
+            self.lattice.table_reach(self._backward),
         )
         self._margin = ceil(self._reach / self._edge) + 2  # cells on each side of a turned raster
         span = self.side + 2 * self._margin
         self.shape = (cv2.getOptimalDFTSize(span),) * 2
         field, walls = self._forward_field(span), self._backward_walls(span)
         self._largest = self._turnable_field()
-        self.most = sum(float(side.weights.sum()) for side in objective.sides)
         self._norms = float(np.linalg.norm(field)), float(np.linalg.norm(walls))
         self._spectra = spectrum(field, self.shape), spectrum(walls, self.shape)
-
-    @property
-    def blocks(self) -> int:
-        """How many there are."""
-        return int(self.turns * self.side**2)
-
-    def within(self, turn: int) -> bool:
-        """Whether the window holds any transform of a sector."""
-        coarser = self.level + COARSER
-        across = np.arange(ceil(self.side / 2**COARSER))
-        cols, rows = (axis.ravel() for axis in np.meshgrid(across, across))
-        nodes = np.column_stack([np.full(len(cols), turn >> COARSER), cols, rows])
-        poses = self.lattice.poses(self.lattice.coordinates(nodes, coarser))
-        off = self.lattice.nearest_deviations(poses, coarser)
-        return bool((off <= self.lattice.window.k).all(axis=1).any())
 
     def above(self, turn: int, value: float) -> tuple[IntArray, FloatArray, float]:
         """(P, 3) the blocks of a sector that may hold more than a value, (P,) their bounds, and the largest

@@ -16,25 +16,25 @@ from algorithms.observations.pair_problem import Known, PairProblem
 from algorithms.observations.priors import InitialPose, TurnPrior
 from algorithms.observations.search_window import WindowConfig
 from algorithms.optimisation.objective import Lookup, Objective
-from algorithms.optimisation.plane_bounds import PlaneBounds
+from algorithms.optimisation.plane_bounds import PlaneBlocks, PlaneBounds
 from algorithms.optimisation.transform_lattice import TransformLattice
 from algorithms.verdict.whole_maps import make_whole_maps
 
 COUPLED = WindowConfig("coupled", deviations=3.5)
 
 
-def check_bounds(objective: Objective, bounds: PlaneBounds, seed: int) -> None:
+def check_bounds(objective: Objective, blocks: PlaneBlocks, seed: int) -> None:
     """Every block against all that it holds, or against some of it where that is very much."""
-    lattice = bounds.lattice
+    lattice, bounds = blocks.lattice, PlaneBounds(objective, blocks)
     shape = (lattice.turns, lattice.side, lattice.side)
     rng = np.random.default_rng(seed)
-    for turn in range(bounds.turns)[:: max(1, bounds.turns // 8)]:
+    for turn in range(blocks.turns)[:: max(1, blocks.turns // 8)]:
         told = bounds.bounds(turn)
         numbers = rng.integers(0, shape, (4000, 3))
-        numbers[:, 0] = rng.integers(turn << bounds.level, (turn + 1) << bounds.level, len(numbers))
+        numbers[:, 0] = rng.integers(turn << blocks.level, (turn + 1) << blocks.level, len(numbers))
         values = objective(lattice.poses(lattice.coordinates(numbers, 0)))
-        blocks = numbers >> bounds.level
-        assert (values <= told[blocks[:, 2], blocks[:, 1]]).all()
+        _, cols, rows = (numbers >> blocks.level).T
+        assert (values <= told[rows, cols]).all()
 
 
 @settings(max_examples=60)
@@ -42,28 +42,28 @@ def check_bounds(objective: Objective, bounds: PlaneBounds, seed: int) -> None:
 def test_no_transform_in_a_block_is_better_than_the_blocks_bound(problem: Problem, seed):
     assume(len(problem.objective.sides) == 2)
     objective = replace(problem.objective, window=None)
-    check_bounds(objective, PlaneBounds(objective, TransformLattice(objective, problem.window)), seed)
+    check_bounds(objective, PlaneBlocks(TransformLattice(objective, problem.window)), seed)
 
 
 @settings(max_examples=60)
 @given(small_maps(), small_maps(), seeds)
 def test_nor_on_the_whole_plane_where_nothing_is_known(ref, mov, seed):
     problem = PairProblem(ref, mov)
-    objective, bounds = whole_plane(problem)
-    check_bounds(objective, bounds, seed)
+    objective, blocks = whole_plane(problem)
+    check_bounds(objective, blocks, seed)
 
 
-def whole_plane(problem: PairProblem) -> tuple[Objective, PlaneBounds]:
+def whole_plane(problem: PairProblem) -> tuple[Objective, PlaneBlocks]:
     window = problem.window(COUPLED, curved=True)
     whole = make_whole_maps(problem.ref, problem.mov, NO_ROBOTS, window, 0.25)
     objective = replace(whole.crisp, lookup=Lookup.NEAREST)
-    return objective, PlaneBounds(objective, TransformLattice(objective, window))
+    return objective, PlaneBlocks(TransformLattice(objective, window))
 
 
 @given(small_maps(), small_maps(), st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3))
 def test_beyond_the_lattice_no_wall_meets_anything(ref, mov, dx, dy, turn):
-    objective, bounds = whole_plane(PairProblem(ref, mov))
-    window, disc = bounds.lattice.window, bounds.lattice.disc
+    objective, blocks = whole_plane(PairProblem(ref, mov))
+    window, disc = blocks.lattice.window, blocks.lattice.disc
     far = np.array([dx, dy]) / max(1e-9, float(np.hypot(dx, dy))) * disc * 1.001
     assume(np.hypot(*far) > disc)
     x, y = window.place + far - Pose2(theta=turn).apply(window.pivot)
@@ -76,38 +76,38 @@ T_TRUE = FLAT[3]
 
 def sectors_left(*known: Known) -> tuple[int, bool]:
     """How many sectors of turns what is known leaves, and whether the true one is among them."""
-    _, bounds = whole_plane(PairProblem.of(FLAT[0], FLAT[1], known))
-    left = [bounds.within(turn) for turn in range(bounds.turns)]
-    node = bounds.lattice.nearest(T_TRUE)[13]
-    return sum(left), left[node[0] >> bounds.level]
+    _, blocks = whole_plane(PairProblem.of(FLAT[0], FLAT[1], known))
+    node = blocks.lattice.nearest(T_TRUE)[13]
+    return len(blocks.left), node[0] >> blocks.level in blocks.left
 
 
 def test_what_is_known_leaves_few_sectors_and_always_the_true_one():
-    _, bounds = whole_plane(PairProblem(*FLAT[:2]))
-    assert sectors_left() == (bounds.turns, True)
+    _, blocks = whole_plane(PairProblem(*FLAT[:2]))
+    assert sectors_left() == (blocks.turns, True)
     for known in (TurnPrior(T_TRUE.theta + 0.02, 0.02), InitialPose(T_TRUE, 1.0, 1.0, 0.05)):
         left, true = sectors_left(known)
         assert true
-        assert 0 < left < bounds.turns / 5
+        assert 0 < left < blocks.turns / 5
 
 
 def test_the_walls_of_a_flat_leave_few_blocks_that_may_be_better_than_the_truth():
-    objective, bounds = whole_plane(PairProblem(*FLAT[:2]))
+    objective, blocks = whole_plane(PairProblem(*FLAT[:2]))
     best = objective(
-        bounds.lattice.poses(bounds.lattice.coordinates(bounds.lattice.nearest(T_TRUE), 0))
+        blocks.lattice.poses(blocks.lattice.coordinates(blocks.lattice.nearest(T_TRUE), 0))
     ).max()
     assert best > 10
-    found = [bounds.above(turn, best - 1e-6) for turn in range(bounds.turns)]
+    bounds = PlaneBounds(objective, blocks)
+    found = [bounds.above(turn, best - 1e-6) for turn in range(blocks.turns)]
     nodes = np.concatenate([nodes for nodes, *_ in found])
-    assert 0 < len(nodes) < bounds.blocks / 1000
-    home = (bounds.lattice.nearest(T_TRUE) >> bounds.level).tolist()
+    assert 0 < len(nodes) < blocks.count / 1000
+    home = (blocks.lattice.nearest(T_TRUE) >> blocks.level).tolist()
     assert any(node in home for node in nodes.tolist())
     assert max(rest for *_, rest in found) <= best
 
 
 def test_the_nearest_transforms_of_the_lattice_surround_one():
-    _, bounds = whole_plane(PairProblem(*FLAT[:2]))
-    lattice = bounds.lattice
+    _, blocks = whole_plane(PairProblem(*FLAT[:2]))
+    lattice = blocks.lattice
     poses = lattice.poses(lattice.coordinates(lattice.nearest(T_TRUE), 0))
     off = [Pose2.from_array(pose).inverse() @ T_TRUE for pose in poses]
     assert len(off) == 27
