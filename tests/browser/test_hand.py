@@ -243,47 +243,6 @@ def test_a_hand_is_refined_snapped_left_and_a_reload_keeps_it(tab):
     assert tab.layer("grip") == []
 
 
-def test_what_is_known_is_chosen_and_a_rough_pose_is_dragged(open_tab, sample):
-    own = make_server(port=0, initial=sample)
-    T, layout = sample.truth.T_ref_mov, lay_out(sample.ref, sample.mov, None)
-    try:
-        tab = open_tab(size=(1280, 800), at=own)
-        merge = tab.page.get_by_role("button", name="Merge", exact=True)
-        tab.choose("Known is", "A rough initial pose")
-        settle(
-            lambda: tab.state.startswith("Drag map 2 to where it lies, roughly. Or"),
-            "the pose to be asked for",
-        )
-        assert merge.is_disabled()
-        for label, value in (("Δx (m)", T.x), ("Δy (m)", T.y), ("Δθ (°)", degrees(T.theta) - 5)):
-            box = tab.page.get_by_label(label, exact=True)
-            box.fill(f"{value:.2f}")
-            box.press("Enter")
-            settle(lambda at=label, to=value: field(tab, at) == pytest.approx(to, abs=0.01), "the number")
-        x, y = (float(value) for value in T.apply(layout.anchor_mov) - layout.anchor_ref)
-        lies = "() => [mapmeld.maps[2].x, mapmeld.maps[2].y]"
-        settle(lambda: np.hypot(*(np.array(tab.page.evaluate(lies)) - (x, y))) < 8, "map 2 about its place")
-        at, before = (
-            tab.at_rest() and tab.page.evaluate("() => mapmeld.pixel([0, 0], 'map2')"),
-            field(tab, "Δx (m)"),
-        )
-        drag(tab, [at[0] + 30, at[1] + 30], (12, 0))
-        moved = 12 / tab.page.evaluate(SCALE)
-        settle(
-            lambda: field(tab, "Δx (m)") == pytest.approx(before + moved, abs=0.1), "the number of the drag"
-        )
-        tab.press("Instant")
-        tab.press("Merge")
-        tab.wait_for("accepted")
-        assert tab.number("error to the truth").startswith("0.0")
-        tab.choose("Known is", "Nothing")
-        settle(lambda: "Nothing is known" in tab.state, "nothing")
-        tab.page.get_by_role("button", name="Undo").click()
-        settle(lambda: tab.mood == "accepted", "the merge of before")
-    finally:
-        own.stop()
-
-
 def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab, sample, tmp_path):
     own = make_server(port=0, initial=Case("mine", sample.ref, sample.mov, (), "", None))
     o, at = sample.observations[0], encounter(sample.observations[0])

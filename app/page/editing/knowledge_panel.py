@@ -28,21 +28,21 @@ TELLS: dict[Choice, str] = {
 }
 # number -> label, hint, least, most, step; angles in degrees
 FIELDS: dict[str, tuple[str, str, float, float, float]] = {
-    "x": ("Δx (m)", "Map 2's origin in map 1.", -FARTHEST, FARTHEST, 0.1),
-    "y": ("Δy (m)", "Map 2's origin in map 1.", -FARTHEST, FARTHEST, 0.1),
-    "x1": ("map 1: x (m)", "Of the place in map 1.", -FARTHEST, FARTHEST, 0.1),
-    "y1": ("map 1: y (m)", "Of the place in map 1.", -FARTHEST, FARTHEST, 0.1),
-    "x2": ("map 2: x (m)", "Of the same place in map 2.", -FARTHEST, FARTHEST, 0.1),
-    "y2": ("map 2: y (m)", "Of the same place in map 2.", -FARTHEST, FARTHEST, 0.1),
-    "yaw": ("Δθ (°)", "Of map 2 in map 1, counter-clockwise.", -360, 360, 1),
+    "x": ("Δx (m)", "Map 2's origin in map 1.", -FARTHEST, FARTHEST, 0.01),
+    "y": ("Δy (m)", "Map 2's origin in map 1.", -FARTHEST, FARTHEST, 0.01),
+    "x1": ("map 1: x (m)", "Of the place in map 1.", -FARTHEST, FARTHEST, 0.01),
+    "y1": ("map 1: y (m)", "Of the place in map 1.", -FARTHEST, FARTHEST, 0.01),
+    "x2": ("map 2: x (m)", "Of the same place in map 2.", -FARTHEST, FARTHEST, 0.01),
+    "y2": ("map 2: y (m)", "Of the same place in map 2.", -FARTHEST, FARTHEST, 0.01),
+    "yaw": ("Δθ (°)", "Of map 2 in map 1, counter-clockwise.", -360, 360, 0.1),
     "s_xy": (
         "σ of Δx, Δy (m)",
         "One standard deviation: two thirds of the time it is nearer.",
         *SIGMAS_XY,
-        0.1,
+        0.01,
     ),
-    "s_yaw": ("σ of Δθ (°)", "One standard deviation.", *map(degrees, SIGMAS_YAW), 1),
-    "radius": ("radius (m)", "How far apart the two may be.", *SIGMAS_XY, 0.1),
+    "s_yaw": ("σ of Δθ (°)", "One standard deviation.", *map(degrees, SIGMAS_YAW), 0.1),
+    "radius": ("radius (m)", "How far apart the two may be.", *SIGMAS_XY, 0.01),
 }
 ANGLES = {"yaw", "s_yaw"}
 SMALL = "margin:2px 12px 6px;font-size:12px;line-height:1.45;opacity:.85"
