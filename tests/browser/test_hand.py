@@ -335,7 +335,7 @@ def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab
         told = tab.page.locator("button.mm-entry").first.get_by_role("img")  # a list that is drawn anew
         settle(lambda: told.count() == 1, "the verdict in the history")  # under a click loses it
         tab.page.get_by_role("button", name="load mine", exact=True).click()
-        settle(lambda: "place the robots" in tab.state, "everything undone")
+        settle(lambda: "Nothing is known" in tab.state, "everything undone")
         assert undo.is_disabled()
     finally:
         own.stop()

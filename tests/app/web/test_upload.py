@@ -92,7 +92,7 @@ def test_two_files_that_come_at_a_time_are_a_map_to_the_last_byte(server, tab, s
 @pytest.mark.parametrize("size", [0, 1, LEAST, LEAST + 1, MOST + 1])
 def test_a_file_of_any_length_arrives_as_it_was_and_refused_it_is_kept_nowhere(server, tab, size, came):
     content = bytes(k % 251 for k in range(size))
-    file = WireFile(tab, "Observation: YAML", "seen.yaml", content)
+    file = WireFile(tab, "What is known: YAML", "seen.yaml", content)
     step = LEAST + 7  # of any length between the two bounds
     while file.sent < size:
         file.part(step)
@@ -101,7 +101,7 @@ def test_a_file_of_any_length_arrives_as_it_was_and_refused_it_is_kept_nowhere(s
     until(lambda: tab.mood == "failed", "the words on what is wrong with it")
     assert came == {"seen.yaml": content}
     (client,) = server.get_clients().values()
-    button = client.gui._gui_input_handle_from_uuid[tab.find("Observation: YAML")]
+    button = client.gui._gui_input_handle_from_uuid[tab.find("What is known: YAML")]
     assert button.value.content == b""
 
 
