@@ -339,3 +339,27 @@ def test_robots_are_placed_with_the_mouse_where_there_is_no_observation(open_tab
         assert undo.is_disabled()
     finally:
         own.stop()
+
+
+def test_a_rough_pose_is_typed_and_dragged_and_the_maps_merge_near_it(open_tab, sample):
+    own = make_server(port=0, initial=Case("mine", sample.ref, sample.mov, (), "", None))
+    T = sample.truth.T_ref_mov
+    try:
+        tab = open_tab(size=(1280, 800), at=own)
+        tab.choose("Known is", "A rough initial pose")
+        settle(lambda: tab.state.startswith("Drag map 2"), "map 2 in the hand")
+        for label, value in (("Δx (m)", T.x), ("Δy (m)", T.y), ("Δθ (°)", degrees(T.theta))):
+            box = tab.page.get_by_label(label, exact=True)
+            box.fill(f"{value:.1f}")
+            box.press("Enter")
+            tab.page.wait_for_timeout(200)  # of what is written within 50 ms the page sends only the last
+        middle = tab.at_rest()
+        drag(tab, middle, (9, 0))
+        settle(lambda: field(tab, "Δx (m)") > round(T.x, 1), "the number to follow")
+        assert field(tab, "Δy (m)") == pytest.approx(T.y, abs=0.1)
+        tab.press("Instant")
+        tab.press("Merge")
+        tab.wait_for("accepted")
+        assert tab.number("made") != "chosen by you"
+    finally:
+        own.stop()

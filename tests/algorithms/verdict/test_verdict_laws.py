@@ -124,18 +124,16 @@ def test_rubbing_out_most_of_the_wall_that_agrees_lowers_it(case, likelihood):
 STRANGERS = [(kind, 500 + n) for n, kind in enumerate(3 * ["apartment", "corridor", "home", "office"])]
 
 
-@pytest.mark.parametrize("part", range(4))
+@pytest.mark.parametrize("part", range(2))
 def test_maps_of_different_buildings_are_not_likely_to_belong_together(part):
-    """500 pairs, in four parts: hardly one is as likely as one in twenty. Two office floors of the simulator
+    """264 pairs, in two parts: hardly one is as likely as one in twenty. Two office floors of the simulator
     may be so much alike that the likeliest of all is as likely as two in three.
     """
     told = []
-    for n, (a, b) in enumerate(permutations(STRANGERS, 2)):
-        for k in range(4 if n % 4 == part else 0):
-            if len(told) < 125:
-                first, second = cases_of(*a, 0.3)[k % 2], cases_of(*b, 0.3)[k // 2]
-                forged = mismatch(first, second)
-                told.append(likely(forged.ref, forged.mov, forged.observations[0]))
-    assert len(told) == 125
+    for a, b in list(permutations(STRANGERS, 2))[part::2]:
+        for first, second in zip(cases_of(*a, 0.3), cases_of(*b, 0.3), strict=False):
+            forged = mismatch(first, second)
+            told.append(likely(forged.ref, forged.mov, forged.observations[0]))
+    assert len(told) == 132
     assert np.quantile(told, 0.96) < 0.05
     assert max(told) < 0.65
