@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from textwrap import indent
@@ -11,12 +12,19 @@ from algorithms.files import yaml_fields as fields
 from algorithms.files.map_file import read_bytes, read_map
 from algorithms.files.observation_file import SIGHTING, initial_pose, known_to_bytes, observation_of
 from algorithms.files.yaml_fields import Fields, quoted, shown
-from algorithms.observations.fleet import MOST_ROBOTS, MOST_SIGHTINGS, Fleet, FleetSighting
+from algorithms.observations.fleet import (
+    MOST_ROBOTS,
+    MOST_SIGHTINGS,
+    NAME_RULE,
+    Fleet,
+    FleetSighting,
+    is_name,
+)
 from algorithms.observations.priors import InitialPose
 
 FLEET_FILE = "fleet.yaml"
 MOST_BYTES = 320_000  # of the file: a thousand sightings take less
-LONGEST_NAME = 64  # letters of a robot's name
+OF_A_PAIR = r"  # [^\n]*\brobot [12]\b[^\n]*"  # remarks on two robots that have no names
 EXAMPLE = "robots: {r1: {map: r1.yaml}, r2: {map: r2.yaml}}"
 
 
@@ -47,9 +55,8 @@ def _robots(robots: Fields) -> tuple[dict[str, str], dict[str, InitialPose]]:
     """The map file of each robot, and what is roughly known of it, by name."""
     files, known = {}, {}
     for name in robots.values:
-        if len(name) > LONGEST_NAME or not name.isprintable() or "/" in name:
-            remedy = f"give 1 to {LONGEST_NAME} letters, without a slash"
-            raise robots.error(shown(name), "is no name for a robot", remedy)
+        if not is_name(name):
+            raise robots.error(shown(name), "is no name for a robot", NAME_RULE)
         robot = robots.section(name, "give {map: FILE.yaml}")
         robot.refuse_unknown("map", "known")
         files[name] = robot.text("map", "give the map's YAML file")
@@ -103,6 +110,7 @@ def fleet_to_bytes(fleet: Fleet, files: Mapping[str, str]) -> bytes:
     lines.append("sightings:" if fleet.sightings else "sightings: []")
     for seen in fleet.sightings:
         entry = known_to_bytes([seen.observation]).decode()
+        entry = re.sub(OF_A_PAIR, "", entry.replace("robot 1's heading", "the observer's heading"))
         for role, name in (("observer", seen.observer), ("observed", seen.observed)):
             entry = entry.replace(f"{role}: {{pose", f"{role}: {{robot: {quoted(name)}, pose", 1)
         lines.append(f"  - {indent(entry, '    ').strip()}")

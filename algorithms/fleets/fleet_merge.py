@@ -140,6 +140,22 @@ def joined(fleet: Fleet, findings: Sequence[PairFinding]) -> FleetResult:
         refused[worst] = f"the others' maps deny {deny:.0f} m of its walls and confirm {agree:.0f} m"
 
 
+def poses_so_far(fleet: Fleet, findings: Sequence[PairFinding]) -> dict[str, Pose2]:
+    """T_anchor_robot of each robot that accepted answers tie to the anchor, before all pairs are known."""
+    links = nx.Graph()
+    links.add_node(fleet.anchor)
+    for finding in findings:
+        if finding.accepted and finding.hypotheses:
+            T = finding.hypotheses[0].T_ref_mov
+            links.add_edge(
+                finding.order.ref, finding.order.mov, T={finding.order.ref: T, finding.order.mov: T.inverse()}
+            )
+    poses = {fleet.anchor: Pose2()}
+    for near, far in nx.bfs_edges(links, fleet.anchor):
+        poses[far] = poses[near] @ links.edges[near, far]["T"][near]
+    return poses
+
+
 def _put_together(
     fleet: Fleet, findings: Sequence[PairFinding], use: Sequence[PairFinding], refused: Mapping[str, str]
 ) -> FleetResult:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import hypot, log
+from typing import Any
 
 import numpy as np
 
@@ -90,25 +92,35 @@ def _agree(fleet: Fleet, a: int, b: int) -> bool:
     return bool(abs(hypot(*in_ref.tolist()) - hypot(*in_mov.tolist())) <= WINDOW_EDGE * sigma)
 
 
-def find_pair(fleet: Fleet, order: PairOrder, seed: int = 0) -> PairFinding:
-    """Merge a pair; an order that cannot be carried out says why, and costs no other."""
+def known_of(fleet: Fleet, order: PairOrder) -> tuple[Known, ...]:
+    """What is known of how the maps of an order lie."""
     seen = tuple(fleet.sightings[number].observation for number in order.sightings)
     rough = fleet.known.get(order.mov) if order.ref == fleet.anchor else None
-    known: tuple[Known, ...] = seen if rough is None else (*seen, rough)
+    return seen if rough is None else (*seen, rough)
+
+
+def find_pair(fleet: Fleet, order: PairOrder, seed: int = 0) -> PairFinding:
+    """Merge a pair; an order that cannot be carried out says why, and costs no other."""
+    known = known_of(fleet, order)
     try:
         problem = PairProblem.of(fleet.maps[order.ref], fleet.maps[order.mov], known)
         method = registry.default_method(problem)
         config = registry.METHODS[method].defaults
         result = registry.merge(problem.ref, problem.mov, known, method, config, seed)
-        return PairFinding(
-            order,
-            problem.pivot,
-            _hypotheses(result, ManualMerge(problem, config)),
-            result.verdict.reason,
-            result.verdict.accepted,
-        )
+        return finding_of(order, problem, config, result)
     except MapMergeError as error:
         return PairFinding(order, np.zeros(2), (), str(error))
+
+
+def finding_of(order: PairOrder, problem: PairProblem, config: Any, result: MergeResult) -> PairFinding:
+    """What a merge of the pair says; an answer that a person chose stands alone."""
+    if result.by_person:
+        sure = log((1 - SUREST) / SUREST)
+        answers: Sequence[Hypothesis] = [Hypothesis(result.T_ref_mov, result.covariance, 1 - SUREST, sure)]
+    else:
+        answers = _hypotheses(result, ManualMerge(problem, config))
+    accepted = result.verdict.accepted or result.by_person
+    return PairFinding(order, problem.pivot, tuple(answers), result.verdict.reason, accepted)
 
 
 def _hypotheses(result: MergeResult, manual: ManualMerge) -> tuple[Hypothesis, ...]:

@@ -12,6 +12,13 @@ from algorithms.observations.priors import InitialPose
 
 MOST_ROBOTS = 50
 MOST_SIGHTINGS = 1000
+LONGEST_NAME = 64  # letters of a robot's name
+NAME_RULE = f"give 1 to {LONGEST_NAME} letters, without a slash"
+
+
+def is_name(text: str) -> bool:
+    """Whether a robot can be called so: it goes into names of frames, and is shown to people."""
+    return 1 <= len(text) <= LONGEST_NAME and text.isprintable() and "/" not in text
 
 
 @dataclass(frozen=True)

@@ -9,14 +9,13 @@ from pathlib import Path
 
 from algorithms.files.atomic_write import write_files
 from algorithms.files.case_folder import FIRST_MAP_FILE, SECOND_MAP_FILE
-from algorithms.files.fleet_file import FLEET_FILE, fleet_to_bytes
-from algorithms.files.fleet_truth_file import FleetTruth, fleet_truth_to_bytes
 from algorithms.files.map_file import map_to_bytes
 from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, known_to_bytes
 from algorithms.files.truth_file import TRUTH_FILE, Truth, truth_to_bytes
-from algorithms.simulator.fleet_scenario import SimulatedFleet, simulate_fleet
+from algorithms.simulator.fleet_scenario import simulate_fleet
 from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.robot import Conditions
+from algorithms.simulator.sample_fleets import fleet_files, sample_fleets
 from algorithms.simulator.scenario import SimulatedCase, simulate
 from algorithms.simulator.wrong_pairs import mismatch
 
@@ -100,10 +99,12 @@ def write_case(folder: Path, case: SimulatedCase) -> None:
 
 
 def regenerate(folder: Path) -> list[SimulatedCase]:
-    """Make all shipped samples again, one folder each; the same bytes every time."""
+    """Make all shipped samples and fleets again, one folder each; the same bytes every time."""
     cases = [case for sample in SAMPLES for case in sample.cases()]
     for case in cases:
         write_case(Path(folder) / case.name, case)
+    for name, files in sample_fleets(cases[:2]).items():
+        write_files({Path(folder) / name / file: data for file, data in files.items()})
     return cases
 
 
@@ -117,24 +118,6 @@ def generate_cases(
             folders.append(Path(folder) / name)
             write_case(folders[-1], case)
     return folders
-
-
-def fleet_files(made: SimulatedFleet) -> dict[str, bytes]:
-    """The files of a fleet's folder by name. Equal fleets give equal bytes."""
-    names = list(made.fleet.maps)
-    loose = [name for name in names if name not in made.tied]
-    truth = FleetTruth(
-        {name: T for name, T in made.T_anchor_robot.items() if name != made.fleet.anchor},
-        made.at,
-        tuple((name,) for name in loose),
-        made.lies,
-    )
-    maps = [map_to_bytes(grid, name) for name, grid in made.fleet.maps.items()]
-    return {
-        **{name: data for files in maps for name, data in files.items()},
-        FLEET_FILE: fleet_to_bytes(made.fleet, {name: f"{name}.yaml" for name in names}),
-        TRUTH_FILE: fleet_truth_to_bytes(truth),
-    }
 
 
 def generate_fleets(kind: str, seeds: Iterable[int], robots: int, folder: Path) -> Iterator[Path]:

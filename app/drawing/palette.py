@@ -65,6 +65,18 @@ DARK = replace(
     text=(0xF9, 0xFA, 0xFB),
 )
 
+ROBOTS: tuple[Rgb, ...] = (
+    (0x00, 0x72, 0xB2),
+    (0x00, 0x9E, 0x73),
+    (0xE6, 0x9F, 0x00),
+    (0xCC, 0x79, 0xA7),
+    (0x56, 0xB4, 0xE9),
+    (0xD5, 0x5E, 0x00),
+    (0x6B, 0x4C, 0x9A),
+    (0x8C, 0x6D, 0x31),
+)
+"""Walls of each robot of a fleet, in turn: eight that colour-blind eyes tell apart."""
+
 QUIET: Rgb = (226, 232, 240)  # buttons that are not the point of the page
 STOP: Rgb = (71, 85, 105)  # buttons that stop something
 
@@ -72,6 +84,11 @@ STOP: Rgb = (71, 85, 105)  # buttons that stop something
 VIRIDIS: NDArray[np.uint8] = np.ascontiguousarray(
     cv2.applyColorMap(np.arange(256, dtype=np.uint8)[:, None], cv2.COLORMAP_VIRIDIS)[:, 0, ::-1]
 )
+
+
+def robot_colour(number: int) -> Rgb:
+    """Of the walls of a fleet's robot, by its place in the list from 0."""
+    return ROBOTS[number % len(ROBOTS)]
 
 
 def css(colour: Rgb, alpha: float = 1.0) -> str:

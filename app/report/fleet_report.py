@@ -16,7 +16,7 @@ from algorithms.maps.grid_map import FREE, OCCUPIED_FROM
 from algorithms.observations.fleet import Fleet
 from algorithms.observations.observation import encounter
 from app.drawing.grid_pixels import Pixels
-from app.drawing.palette import LIGHT, Rgb
+from app.drawing.palette import LIGHT, robot_colour
 from app.drawing.scene_layout import known_corners, rect_of
 from app.drawing.svg.map_plot import RasterView, scale_bar, scene
 from app.drawing.svg.svg_canvas import SvgCanvas
@@ -25,17 +25,6 @@ from app.model.status_text import typeset
 from app.system.data_paths import asset
 from app.system.version import versions
 
-COLOURS: tuple[Rgb, ...] = (
-    (0x00, 0x72, 0xB2),
-    (0x00, 0x9E, 0x73),
-    (0xE6, 0x9F, 0x00),
-    (0xCC, 0x79, 0xA7),
-    (0x56, 0xB4, 0xE9),
-    (0xD5, 0x5E, 0x00),
-    (0x6B, 0x4C, 0x9A),
-    (0x8C, 0x6D, 0x31),
-)
-"""Of the robots' walls, in turn: eight that colour-blind eyes tell apart."""
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 WIDE, MOST_HIGH, FINE = 760.0, 760.0, 2.0
 
@@ -124,7 +113,7 @@ def graph_svg(fleet: Fleet, result: FleetResult, island: Island) -> str:
         sheet.dot(*ends[1].tolist(), 4, None, colour, width=2)
     x = 0.0
     for k, (name, T) in enumerate(island.poses.items()):
-        colour = COLOURS[k % len(COLOURS)]
+        colour = robot_colour(k)
         px, py = plot.one(*_middle(fleet, name, T).tolist())
         sheet.text(px, py, name, 13, "middle", colour=colour, bold=True)
         x = sheet.chip(x, high + 14, colour, name)
@@ -152,7 +141,7 @@ def _walls(island: Island, view: RasterView) -> Pixels:
         seen[inside] = wall[rows[inside], cols[inside]] > 0
         known[inside] |= layer[rows[inside], cols[inside]] >= FREE
         count += seen
-        paint.append((seen, COLOURS[k % len(COLOURS)]))
+        paint.append((seen, robot_colour(k)))
     pixels[known] = LIGHT.free
     for seen, colour in paint:
         pixels[seen] = colour

@@ -11,7 +11,7 @@ from typing import Any, get_args
 
 from algorithms.common.errors import OutputError
 from algorithms.files.atomic_write import check_file, write_file
-from algorithms.files.case_folder import case_folders
+from algorithms.files.case_folder import FIRST_MAP_FILE, case_folders
 from algorithms.fleets.fleet_merge import FleetResult, run_fleet
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, PLANE_METHOD
 from algorithms.observations.fleet import Fleet
@@ -163,16 +163,34 @@ class Evaluated:
 
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
-    """Run all cases, print the tables; 1 where a case could not be run."""
+    """Run all cases and fleets, print the tables; 1 where one could not be run."""
     fleets = fleet_folders(args.folder) if args.folder.is_dir() else []
-    if fleets:
-        return _run_fleets(args, fleets)
-    folders, configs = case_folders(args.folder), configs_from(args)
-    _check(args, configs, parser)
+    pairs = [] if fleets and not _holds_cases(args.folder) else case_folders(args.folder)
     if args.json is not None:
         check_file(args.json)
-        if args.json.resolve().parent in {folder.resolve() for folder in folders}:
+        if args.json.resolve().parent in {folder.resolve() for folder in (*pairs, *fleets)}:
             raise OutputError(args.json, "lies in the folder of a case", "choose another place for --json")
+    status, answer = _run_pairs(args, parser, pairs) if pairs else (0, {})
+    if fleets:
+        if pairs:
+            print()
+        failed, told = _run_fleets(args, fleets)
+        status, answer = max(status, failed), {**answer, "by_fleet": told} if pairs else told
+    if args.json is not None:
+        write_file(args.json, json_bytes(answer))
+    return status
+
+
+def _holds_cases(root: Path) -> bool:
+    return next(root.rglob(FIRST_MAP_FILE), None) is not None
+
+
+def _run_pairs(
+    args: argparse.Namespace, parser: Parser, folders: Sequence[Path]
+) -> tuple[int, dict[str, Any]]:
+    """Run every case, print the tables; 1 where one could not be run, and what the JSON file holds."""
+    configs = configs_from(args)
+    _check(args, configs, parser)
     executor = executor_for(args.jobs, args.scheduler)
     wrong = crossings(args.folder, args.wrong_pairs, args.seed) if args.wrong_pairs else []
 
@@ -189,18 +207,15 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         if args.both and seen:
             cases += cases_of(replace(order, rough=True), rough_folders(args.folder), "case")
         parts.append(Evaluated(knowledge, cases, cases_of(order, wrong, "pair") if wrong else []))
-    if args.json is not None:
-        write_file(args.json, json_bytes(_plain(parts, args.both)))
     for number, part in enumerate(parts):
         title = part.knowledge if len(parts) > 1 else ""
         print(*([""] if number else []), *_lines(part, title, args.both), sep="\n")
-    return 1 if any(case.error for part in parts for case in (*part.cases, *part.crossed)) else 0
+    failed = any(case.error for part in parts for case in (*part.cases, *part.crossed))
+    return int(failed), _plain(parts, args.both)
 
 
-def _run_fleets(args: argparse.Namespace, folders: Sequence[Path]) -> int:
+def _run_fleets(args: argparse.Namespace, folders: Sequence[Path]) -> tuple[int, dict[str, Any]]:
     """Merge every fleet, print the table; 1 where one could not be run, or a robot was placed wrong."""
-    if args.json is not None:
-        check_file(args.json)
     executor = executor_for(args.jobs, args.scheduler)
 
     def merged(fleet: Fleet) -> FleetResult:
@@ -211,8 +226,6 @@ def _run_fleets(args: argparse.Namespace, folders: Sequence[Path]) -> int:
     done = evaluate_fleets(args.folder, folders, merged)
     found = list(bar(iterable=done, total=len(folders), unit="fleet"))
     totals = fleet_totals(found)
-    if args.json is not None:
-        write_file(args.json, json_bytes({"fleets": [each.plain() for each in found], "totals": totals}))
     rows = [{"group": group, **counts} for group, counts in totals.items()]
     print(*aligned(text_rows(FLEET_COLUMNS, rows, FLEET_TITLES)), sep="\n")
     for each in found:
@@ -220,7 +233,8 @@ def _run_fleets(args: argparse.Namespace, folders: Sequence[Path]) -> int:
             print(f"failed: {each.fleet}: {each.error}")
         elif each.wrong:
             print(f"placed wrong: {each.fleet}: {', '.join(each.wrong)}")
-    return 1 if any(each.error or each.wrong for each in found) else 0
+    failed = any(each.error or each.wrong for each in found)
+    return int(failed), {"fleets": [each.plain() for each in found], "totals": totals}
 
 
 def _check(args: argparse.Namespace, configs: Mapping[str, Any], parser: Parser) -> None:

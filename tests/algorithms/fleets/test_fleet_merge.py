@@ -7,12 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from repository import ROOT
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.files.case_folder import Case
-from algorithms.fleets.fleet_merge import FleetResult, PairStep, merge_fleet, run_fleet
-from algorithms.fleets.pair_hypotheses import pair_orders
+from algorithms.files.fleet_file import read_fleet
+from algorithms.files.fleet_truth_file import read_fleet_truth
+from algorithms.fleets.fleet_merge import FleetResult, PairStep, merge_fleet, poses_so_far, run_fleet
+from algorithms.fleets.pair_hypotheses import find_pair, pair_orders
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import merge
 from algorithms.observations.fleet import Fleet, FleetSighting
@@ -156,3 +159,44 @@ def test_each_pair_is_told_as_it_is_done(three):
 def test_a_fleet_that_cannot_be_is_told_in_a_line(three, broken: Callable[[Fleet], Fleet], said):
     with pytest.raises(SettingError, match=said):
         broken(three)
+
+
+def all_right(found: FleetResult, folder) -> bool:
+    truth = read_fleet_truth(folder / "truth.yaml")
+    off = [
+        pose_error(T, truth.T_anchor_robot[name], np.array(truth.at[name]))
+        for name, T in found.placed.items()
+        if name in truth.T_anchor_robot
+    ]
+    return all(distance < truth.tolerance_m and angle < truth.tolerance_rad for distance, angle in off)
+
+
+def test_a_twin_that_a_pair_leaves_open_is_decided_by_the_way_round():
+    folder = ROOT / "sample_maps" / "corridor_fleet_loop"
+    fleet = read_fleet(folder)
+    open_pairs = [found for order in pair_orders(fleet) if not (found := find_pair(fleet, order)).accepted]
+    assert [(found.order.ref, found.order.mov) for found in open_pairs] == [("r1", "r2")]
+    likely, twin, *_ = (each.probability for each in open_pairs[0].hypotheses)
+    assert likely < 2 * twin
+    found = merge_fleet(fleet)
+    assert found.whole
+    assert not found.left_out
+    assert all_right(found, folder)
+
+
+def test_a_lie_and_an_island_are_told_in_the_sample_that_has_both():
+    folder = ROOT / "sample_maps" / "home_fleet_island"
+    truth = read_fleet_truth(folder / "truth.yaml")
+    found = merge_fleet(read_fleet(folder))
+    assert [each.number for each in found.left_out] == list(truth.lies)
+    assert [tuple(island.poses) for island in found.islands[1:]] == list(truth.islands)
+    assert all_right(found, folder)
+
+
+def test_while_pairs_are_merged_each_answer_ties_its_robot_to_the_anchor(three, merged):
+    findings = [find_pair(three, order) for order in pair_orders(three)]
+    assert set(poses_so_far(three, ())) == {"ann"}
+    assert set(poses_so_far(three, findings[:1])) == {"ann", "bob"}
+    so_far = poses_so_far(three, findings)
+    for name, T in merged.placed.items():
+        assert near(so_far[name], T, np.zeros(2))

@@ -22,6 +22,7 @@ from algorithms.simulator.path_planning import STEP, PathPlanner
 from algorithms.simulator.portable_random import COSINES, SINES, TRIG_GRID, TURN, normals, radians, stream
 from algorithms.simulator.robot import Conditions, drive, make_body
 from algorithms.simulator.room_tours import TourPlanner
+from algorithms.simulator.sample_fleets import sample_fleets
 from algorithms.simulator.samples import SAMPLES, case_files, generate_cases, write_case
 from algorithms.simulator.scenario import Scenario, simulate
 from algorithms.simulator.sighting import APART, FURTHEST, NEAREST, measured_overlap
@@ -66,8 +67,19 @@ def test_regenerating_a_shipped_sample_gives_the_shipped_bytes(sample):
             assert (SHIPPED / case.name / name).read_bytes() == data, f"{case.name}/{name}"
 
 
-def test_every_shipped_sample_is_there():
-    assert {path.name for path in SHIPPED.iterdir() if path.is_dir()} == set(NAMES)
+@pytest.fixture(scope="module")
+def fleets() -> dict[str, dict[str, bytes]]:
+    return sample_fleets(SAMPLES[0].cases())
+
+
+def test_the_shipped_fleets_are_made_again_byte_for_byte(fleets):
+    for folder, files in fleets.items():
+        for name, data in files.items():
+            assert (SHIPPED / folder / name).read_bytes() == data, f"{folder}/{name}"
+
+
+def test_every_shipped_sample_is_there(fleets):
+    assert {path.name for path in SHIPPED.iterdir() if path.is_dir()} == {*NAMES, *fleets}
 
 
 def test_same_seed_gives_the_same_files(flat):

@@ -13,7 +13,7 @@ from algorithms.files.fleet_truth_file import FleetTruth
 from algorithms.fleets.fleet_merge import merge_fleet
 from algorithms.observations.fleet import Fleet, FleetSighting
 from algorithms.simulator.fleet_scenario import SimulatedFleet
-from algorithms.simulator.samples import fleet_files
+from algorithms.simulator.sample_fleets import fleet_files
 from app.cli.main import main
 from app.evaluation.fleet_evaluation import judged
 

@@ -1,0 +1,175 @@
+"""A fleet on the page: its robots and sightings, what has been found of its pairs, and which pair is open."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from algorithms.common.errors import SettingError
+from algorithms.fleets.fleet_merge import FleetResult
+from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, known_of
+from algorithms.maps.grid_map import GridMap
+from algorithms.observations.fleet import NAME_RULE, Fleet, FleetSighting, is_name
+from algorithms.observations.observation import Observation
+from algorithms.observations.pair_problem import Known
+from algorithms.observations.priors import InitialPose
+from app.model.merge_inputs import MergeInputs
+
+FindingKey = tuple[GridMap, GridMap, tuple[Known, ...]]
+"""What a pair's merge depends on: both maps, which are equal where they are the same, and what is known."""
+
+PLACED, ISLAND, ALONE, REFUSED, WAITING = "placed", "island", "alone", "taken out", "not merged yet"
+
+
+@dataclass(frozen=True, eq=False)
+class FleetState:
+    """Nothing in it is ever changed.
+
+    name   : of the fleet, for people
+    hidden : robots whose maps are not drawn
+    found  : of every pair that was merged with the same maps and knowledge, what came of it
+    result : of all of them together; None before, and where anything has changed since
+    opened : the pair, and its sightings, that the page shows in place of the fleet
+    """
+
+    fleet: Fleet
+    name: str = ""
+    hidden: frozenset[str] = frozenset()
+    found: Mapping[FindingKey, PairFinding] = field(default_factory=dict)
+    result: FleetResult | None = None
+    opened: PairOrder | None = None
+
+    @property
+    def robots(self) -> tuple[str, ...]:
+        """Their names, in their order."""
+        return tuple(self.fleet.maps)
+
+    # --- what a person changes ----------------------------------------------------------------------
+
+    def with_fleet(self, fleet: Fleet) -> FleetState:
+        """Another fleet; what was found of pairs that are still the same stays at hand."""
+        return replace(self, fleet=fleet, hidden=self.hidden & set(fleet.maps), result=None)
+
+    def with_robot(self, name: str, grid: GridMap) -> FleetState:
+        """One robot more; its name gets a number where there is one of that name. Raises SettingError."""
+        return self.with_fleet(replace(self.fleet, maps={**self.fleet.maps, self.unused(name): grid}))
+
+    def unused(self, name: str) -> str:
+        """The name, or with a number behind it where a robot has it."""
+        names = [name, *(f"{name}_{k}" for k in range(2, len(self.robots) + 3))]
+        return next(each for each in names if each not in self.fleet.maps)
+
+    def without_robot(self, name: str) -> FleetState:
+        """One robot less, with all that it saw and that saw it; raises SettingError below two robots."""
+        f = self.fleet
+        maps = {each: grid for each, grid in f.maps.items() if each != name}
+        left = tuple(seen for seen in f.sightings if name not in (seen.observer, seen.observed))
+        stays = f.anchor != name
+        known = {each: prior for each, prior in f.known.items() if stays and each != name}
+        return self.with_fleet(Fleet(maps, left, known, f.anchor if stays else ""))
+
+    def renamed(self, old: str, new: str) -> FleetState:
+        """The same robot under another name; raises SettingError where another has it, or it is none."""
+        if not is_name(new) or new != new.strip():
+            raise SettingError(f"{new!r} is no name for a robot; {NAME_RULE}")
+        if new in self.fleet.maps:
+            raise SettingError(f"there is a robot {new} already")
+
+        def called(name: str) -> str:
+            return new if name == old else name
+
+        f = self.fleet
+        fleet = Fleet(
+            {called(name): grid for name, grid in f.maps.items()},
+            tuple(
+                replace(seen, observer=called(seen.observer), observed=called(seen.observed))
+                for seen in f.sightings
+            ),
+            {called(name): prior for name, prior in f.known.items()},
+            called(f.anchor),
+        )
+        found = {
+            key: replace(
+                each, order=replace(each.order, ref=called(each.order.ref), mov=called(each.order.mov))
+            )
+            for key, each in self.found.items()
+        }
+        hidden = frozenset(map(called, self.hidden))
+        return replace(self, fleet=fleet, found=found, hidden=hidden, result=None)
+
+    def anchored(self, name: str) -> FleetState:
+        """The result is to be in that robot's frame; poses known in the old anchor's are moved into it."""
+        f = self.fleet
+        if name == f.anchor:
+            return self
+        known = {}
+        if name in f.known:  # then the old anchor's is known in the new one's
+            told = f.known[name]
+            known[f.anchor] = replace(told, pose=told.pose.inverse(), about_x=0.0, about_y=0.0)
+        return self.with_fleet(replace(f, anchor=name, known=known))
+
+    def toggled(self, name: str) -> FleetState:
+        """The robot's map is hidden, or shown again."""
+        return replace(self, hidden=self.hidden ^ {name})
+
+    # --- a pair in the page of two maps ---------------------------------------------------------------
+
+    def pair(self, order: PairOrder) -> MergeInputs:
+        """The inputs of two robots: their maps, and what is known of how they lie."""
+        maps, known = self.fleet.maps, known_of(self.fleet, order)
+        inputs = MergeInputs.pair(maps[order.ref], maps[order.mov], name=f"{order.ref} saw {order.mov}")
+        return inputs.knowing(known, None if known else "sighting")
+
+    def open(self, order: PairOrder) -> FleetState:
+        return replace(self, opened=order)
+
+    def closed(self, known: Sequence[Known], finding: PairFinding | None) -> FleetState:
+        """Back from the pair that is open, with what is known of it now, and what a merge said of it.
+
+        Of what is known a fleet keeps sightings, and a rough pose in the anchor's frame.
+        """
+        order, f, state = self.opened, self.fleet, replace(self, opened=None)
+        if order is None:
+            return self
+        if tuple(known) != known_of(f, order):
+            seen = [one for one in known if isinstance(one, Observation)]
+            others = [each for k, each in enumerate(f.sightings) if k not in order.sightings]
+            mine = [FleetSighting(order.ref, order.mov, one) for one in seen]
+            rough = dict(f.known)
+            if order.ref == f.anchor:
+                rough.pop(order.mov, None)
+                for one in known:
+                    if isinstance(one, InitialPose):
+                        rough[order.mov] = one
+            numbers = tuple(range(len(others), len(others) + len(mine)))
+            order = replace(order, sightings=numbers)
+            state = state.with_fleet(replace(f, sightings=(*others, *mine), known=rough))
+        if finding is not None:
+            state = replace(state.with_finding(replace(finding, order=order)), result=None)
+        return state
+
+    # --- what is found --------------------------------------------------------------------------------
+
+    def with_finding(self, finding: PairFinding) -> FleetState:
+        return replace(self, found={**self.found, self._key(finding.order): finding})
+
+    def finding(self, order: PairOrder) -> PairFinding | None:
+        """What was found of it; None where it was not merged yet, or with other maps or sightings."""
+        found = self.found.get(self._key(order))
+        return None if found is None else replace(found, order=order)
+
+    def _key(self, order: PairOrder) -> FindingKey:
+        maps = self.fleet.maps
+        return maps[order.ref], maps[order.mov], known_of(self.fleet, order)
+
+    def standing(self, name: str) -> str:
+        """What has become of a robot."""
+        result = self.result
+        if result is None:
+            return WAITING
+        if name in result.placed:
+            return PLACED
+        if name in result.refused:
+            return REFUSED
+        island = next(island for island in result.islands if name in island.poses)
+        return ISLAND if len(island.poses) > 1 else ALONE
