@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from textwrap import indent
 
@@ -12,6 +12,7 @@ from algorithms.files import yaml_fields as fields
 from algorithms.files.map_file import read_bytes, read_map
 from algorithms.files.observation_file import SIGHTING, initial_pose, known_to_bytes, observation_of
 from algorithms.files.yaml_fields import Fields, quoted, shown
+from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import (
     MOST_ROBOTS,
     MOST_SIGHTINGS,
@@ -36,7 +37,18 @@ def read_fleet(path: Path | str) -> Fleet:
     path = Path(path)
     if path.is_dir():
         path = path / FLEET_FILE
-    f = fields.parse(str(path), read_bytes(path, "a fleet", MOST_BYTES), "a fleet's YAML file", MOST_BYTES)
+    content = read_bytes(path, "a fleet", MOST_BYTES)
+    return fleet_from_bytes(str(path), content, lambda file: read_map(path.parent / file))
+
+
+def fleet_from_bytes(source: str, content: bytes, read: Callable[[str], GridMap]) -> Fleet:
+    """A fleet from the content of its file.
+
+    source : what the file is called before a person
+    read   : reads the map of a name in it
+    raises : InputFileError, TooLargeError
+    """
+    f = fields.parse(source, content, "a fleet's YAML file", MOST_BYTES)
     f.refuse_unknown("anchor", "robots", "sightings")
     robots = f.section("robots", f"name the robots and their maps, as in {EXAMPLE}")
     if len(robots.values) > MOST_ROBOTS:
@@ -44,11 +56,11 @@ def read_fleet(path: Path | str) -> Fleet:
     files, known = _robots(robots)
     sightings = _sightings(f, list(files))
     anchor = f.text("anchor", "give a robot's name") if "anchor" in f.values else ""
-    maps = {name: read_map(path.parent / file) for name, file in files.items()}
+    maps = {name: read(file) for name, file in files.items()}
     try:
         return Fleet(maps, sightings, known, anchor)
     except SettingError as error:
-        raise InputFileError(path, str(error), "correct the name, or the list of robots") from error
+        raise InputFileError(source, str(error), "correct the name, or the list of robots") from error
 
 
 def _robots(robots: Fields) -> tuple[dict[str, str], dict[str, InitialPose]]:

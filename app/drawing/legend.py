@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods import steps
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import AugmentDetail, CandidatesDetail, ProvenDetail
-from app.drawing.palette import VIRIDIS, Palette, Rgb, css
+from app.drawing.palette import ROBOTS, VIRIDIS, Palette, Rgb, css, robot_colour
 from app.model.run_state import RunState
 
 Entry = dict[str, Any]
@@ -27,6 +28,13 @@ def level_scale(detail: AugmentDetail) -> Entry:
     """The colour scale of the levels, from nothing to the peak."""
     stops = [css(tuple(int(part) for part in VIRIDIS[k])) for k in range(0, 256, 51)]  # type: ignore[arg-type]
     return {"s": "scale", "c": stops, "low": "0", "high": f"{detail.ref.peak:.3g}", "t": "level, eq. (4)"}
+
+
+def fleet_legend(palette: Palette, robots: Sequence[str]) -> list[Entry]:
+    """Entries for a fleet's robots, and for what its lines mean; of many robots those with colours alone."""
+    shown = [_chip("square", robot_colour(number), name) for number, name in enumerate(robots[: len(ROBOTS)])]
+    lines = [_chip("line", palette.mov, "saw"), _chip("line", palette.conflict, "left out")]
+    return [*shown, *lines]
 
 
 def in_hand(palette: Palette) -> list[Entry]:

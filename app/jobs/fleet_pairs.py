@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from threading import Event
 
 import numpy as np
 
@@ -13,12 +14,17 @@ from app.jobs.executor import Executor, LostTask, SerialExecutor, Shared, Task
 FEW = 3  # pairs that are merged here: a process more takes as long to start
 
 
-def run_pairs(executor: Executor, fleet: Fleet, orders: Sequence[PairOrder]) -> Iterator[PairFinding]:
-    """Merge pairs; the maps travel to each worker once. A pair whose worker dies has no answer."""
+def run_pairs(
+    executor: Executor, fleet: Fleet, orders: Sequence[PairOrder], stop: Event | None = None
+) -> Iterator[PairFinding]:
+    """Merge pairs; the maps travel to each worker once. A pair whose worker dies has no answer.
+
+    stop : as of ``Executor.run``
+    """
     if len(orders) <= FEW and not executor.far:
         executor = SerialExecutor()
     shared = Shared.of(fleet)
-    for number, answer in executor.run(_work, (Task(order, shared) for order in orders)):
+    for number, answer in executor.run(_work, (Task(order, shared) for order in orders), stop):
         lost = isinstance(answer, LostTask)
         yield PairFinding(orders[number], np.zeros(2), (), answer.reason) if lost else answer
 

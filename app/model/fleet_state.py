@@ -6,8 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from algorithms.common.errors import SettingError
-from algorithms.fleets.fleet_merge import FleetResult
-from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, known_of
+from algorithms.common.pose import Pose2
+from algorithms.fleets.fleet_merge import FleetResult, poses_so_far
+from algorithms.fleets.island import Island
+from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, known_of, pair_orders
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import NAME_RULE, Fleet, FleetSighting, is_name
 from algorithms.observations.observation import Observation
@@ -18,6 +20,7 @@ from app.model.merge_inputs import MergeInputs
 FindingKey = tuple[GridMap, GridMap, tuple[Known, ...]]
 """What a pair's merge depends on: both maps, which are equal where they are the same, and what is known."""
 
+USED, LEFT_OUT = "used", "left out"
 PLACED, ISLAND, ALONE, REFUSED, WAITING = "placed", "island", "alone", "taken out", "not merged yet"
 
 
@@ -43,6 +46,11 @@ class FleetState:
     def robots(self) -> tuple[str, ...]:
         """Their names, in their order."""
         return tuple(self.fleet.maps)
+
+    @property
+    def islands(self) -> tuple[Island, ...]:
+        """The maps that it has become; () before."""
+        return () if self.result is None else self.result.islands
 
     # --- what a person changes ----------------------------------------------------------------------
 
@@ -118,7 +126,8 @@ class FleetState:
         """The inputs of two robots: their maps, and what is known of how they lie."""
         maps, known = self.fleet.maps, known_of(self.fleet, order)
         inputs = MergeInputs.pair(maps[order.ref], maps[order.mov], name=f"{order.ref} saw {order.mov}")
-        return inputs.knowing(known, None if known else "sighting")
+        named = replace(inputs, robots=(order.ref, order.mov))
+        return named.knowing(known, None if known else "sighting")
 
     def open(self, order: PairOrder) -> FleetState:
         return replace(self, opened=order)
@@ -173,3 +182,21 @@ class FleetState:
             return REFUSED
         island = next(island for island in result.islands if name in island.poses)
         return ISLAND if len(island.poses) > 1 else ALONE
+
+    def mood(self, number: int) -> str:
+        """What has become of a sighting: USED, LEFT_OUT, or "" before all are merged."""
+        if self.result is None:
+            return ""
+        return LEFT_OUT if any(each.number == number for each in self.result.left_out) else USED
+
+    def together(self, one: str, other: str) -> bool:
+        """Whether two robots are in one map."""
+        return any({one, other} <= set(island.poses) for island in self.islands)
+
+    def groups(self) -> list[Mapping[str, Pose2]]:
+        """Robots that lie together, the anchor's group first: as they were found, or as far as pairs go."""
+        if self.result is not None:
+            return [island.poses for island in self.result.islands]
+        findings = [found for order in pair_orders(self.fleet) if (found := self.finding(order)) is not None]
+        together = poses_so_far(self.fleet, findings)
+        return [together, *({name: Pose2()} for name in self.robots if name not in together)]

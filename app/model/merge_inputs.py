@@ -64,6 +64,7 @@ class MergeInputs:
     truth        : the known answer of a sample
     choice       : which kind of knowledge is to be used
     aside        : what is known beside, and not used
+    robots       : what the two are called
     """
 
     maps: tuple[MapSlot, ...] = (MapSlot(), MapSlot())
@@ -73,6 +74,7 @@ class MergeInputs:
     priors: tuple[Prior, ...] = ()
     choice: Choice = "nothing"
     aside: tuple[Known, ...] = ()
+    robots: tuple[str, str] = ("robot 1", "robot 2")
 
     @staticmethod
     def pair(

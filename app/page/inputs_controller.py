@@ -33,6 +33,7 @@ class InputsController:
             mode, before = self._modes.close(), self._state.inputs
             with self._state.locks.drawing:
                 if self.show(inputs):
+                    self._state.update(fleet=None)
                     self.follow(before, inputs)
                     self._history.note(self._state.snapshot())
             if mode is not None and mode.reopen is not None:

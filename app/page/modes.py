@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from algorithms.common.pose import FloatArray
+from app.drawing.scene_layout import Rect
 from app.page.undo.page_snapshot import PageSnapshot
 
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """Lesson, map 2 in the hand, robots being placed, or another method's result.
+    """Lesson, map 2 in the hand, robots being placed, another method's result, or a fleet.
 
     end     : called once it is off; what the page shows then is the caller's business
     leave   : puts back what was on the page before; None: there is nothing to put back
@@ -18,6 +20,10 @@ class Mode:
     changed : a setting was changed while it was on
     resume  : goes on as a snapshot says, given whether it was on before; whether it is on now
     reopen  : goes on with other maps; the settings are its own for a while. None: other maps end it
+    merge   : what the button Merge does while it is on; None: the method runs
+    stop    : leaves what it is at; whether there was anything
+    click   : a place of the scene was clicked; None: what the two maps know of it is read out
+    extent  : all that it draws; None: both maps
     """
 
     end: Callable[[], None]
@@ -26,6 +32,10 @@ class Mode:
     changed: Callable[[], None] = lambda: None
     resume: Callable[[PageSnapshot, bool], bool] = lambda snapshot, was_on: False
     reopen: Callable[[], None] | None = None
+    merge: Callable[[], None] | None = None
+    stop: Callable[[], bool] = lambda: False
+    click: Callable[[FloatArray], None] | None = None
+    extent: Callable[[], Rect] | None = None
 
 
 class ModeSwitch:

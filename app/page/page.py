@@ -14,6 +14,7 @@ from app.page.editing.knowledge_controller import KnowledgeController
 from app.page.editing.map_drag_controller import MapDragController
 from app.page.editing.placement_controller import PlacementController
 from app.page.editing.suggestion_controller import SuggestionController
+from app.page.fleet.fleet_controller import FleetController
 from app.page.inputs_controller import InputsController
 from app.page.lesson.lesson_controller import LessonController
 from app.page.lesson.lesson_texts import lesson_folder
@@ -81,9 +82,10 @@ class Page:
         panels.run.connect_learn(teaching.toggle, museum.toggle)
         others = OtherResultController(tab, undo, runs)
         deliver = DownloadTask(client, panels.task)
+        fleet = FleetController(tab, runs, inputs, quota, deliver)
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
         self._sweep = SweepController(state, panels.sweep, messages, events, runs, deliver)
-        self._parts = inputs, events, teaching, drag, self._comparison, self._sweep, zoom, runs.thread
+        self._parts = inputs, events, teaching, drag, self._comparison, self._sweep, zoom, fleet, runs.thread
         uploads.connect(client.client_id, Recipient(partial(panels.run.stoppable, "sending"), notices.report))
         events.on("unsend", stop_upload)
         # the dock of the charts gets its width when that of the lesson, beside which it came, is gone

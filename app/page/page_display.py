@@ -15,6 +15,7 @@ from algorithms.verdict.contradictions import Contradictions
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.legend import in_hand, legend
 from app.drawing.palette import LIGHT
+from app.drawing.scene.fleet_view import FleetView
 from app.drawing.scene.height_view import HeightsView
 from app.drawing.scene.map_comparison import MapComparison
 from app.drawing.scene.map_view import MapView
@@ -42,6 +43,7 @@ class Views:
         self.heights = HeightsView(client, messages)
         self.swarm = SwarmView(messages)
         self.comparison = MapComparison(messages, self.map)
+        self.fleet = FleetView(client.scene, messages)
 
 
 class PageDisplay:
@@ -69,6 +71,7 @@ class PageDisplay:
         """Both maps side by side, as they were loaded."""
         state, panels, inputs = self._state, self._panels, self._state.inputs
         panels.transform.offer(inputs.complete)
+        panels.files.extendable(len(inputs.grids) == len(inputs.maps) and state.fleet is None)
         panels.knowledge.show(inputs, inputs.chosen_prior)
         panels.charts.clear()
         self.views.heights.hide()
@@ -210,6 +213,8 @@ class PageDisplay:
         state, view = self._state, self._state.view
         self._panels.run.view = view
         self.views.map.visible(view == MAP)
+        if view != MAP:
+            self.views.fleet.hide()
         if view != HEIGHTS:
             self.views.heights.hide()
         if view != SWARM:

@@ -12,6 +12,7 @@ from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from algorithms.verdict.contradictions import Contradictions
 from app.drawing.palette import LIGHT, Palette
+from app.model.fleet_state import FleetState
 from app.model.merge_inputs import Files, MergeInputs
 from app.model.merge_job import Goal, MergeJob
 from app.model.run_state import RunState
@@ -19,8 +20,8 @@ from app.model.view_modes import MAP
 from app.page.research.other_result import OtherResult
 from app.page.undo.page_snapshot import PageSnapshot
 
-Topic = Literal["setup", "result", "other", "palette"]
-"""What can be subscribed to: inputs or settings; the result; what is looked at in its place; the colours."""
+Topic = Literal["setup", "result", "other", "palette", "fleet"]
+"""What can be subscribed to: inputs or settings; the result; what is looked at in its place; and so on."""
 
 TOPICS: dict[str, Topic] = {
     "inputs": "setup",
@@ -30,6 +31,7 @@ TOPICS: dict[str, Topic] = {
     "result": "result",
     "other": "other",
     "palette": "palette",
+    "fleet": "fleet",
 }
 
 
@@ -56,6 +58,7 @@ class PageState:
     result, result_config, contradictions : of the last run that came to its end
     hand          : T_ref_mov of map 2 while a person holds it
     other         : another method's result that is looked at
+    fleet         : the fleet that the page shows, or of which it shows a pair; None: there is none
     closed        : the tab is gone
     """
 
@@ -72,6 +75,7 @@ class PageState:
     contradictions: Contradictions | None = None
     hand: Pose2 | None = None
     other: OtherResult | None = None
+    fleet: FleetState | None = None
     view: str = MAP
     palette: Palette = LIGHT
     closed: bool = False
@@ -99,7 +103,14 @@ class PageState:
     def snapshot(self) -> PageSnapshot:
         """What a person has set, before anything has come of it."""
         return PageSnapshot(
-            self.inputs, self.files, self.method, self.config, self.seed, self.goal, self.hand
+            self.inputs,
+            self.files,
+            self.method,
+            self.config,
+            self.seed,
+            self.goal,
+            self.hand,
+            fleet=self.fleet,
         )
 
     def job(self, **how: Any) -> MergeJob | None:

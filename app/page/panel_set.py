@@ -12,6 +12,7 @@ from app.drawing.browser_messages import BrowserMessages
 from app.page.cancellable_task import CancellableTask
 from app.page.editing.knowledge_panel import KnowledgePanel
 from app.page.editing.transform_panel import TransformPanel
+from app.page.fleet.fleet_panel import FleetPanel
 from app.page.lesson.lesson_panel import LessonPanel
 from app.page.lesson.museum_panel import MuseumPanel
 from app.page.page_state import PageState
@@ -45,6 +46,7 @@ class Panels:
         self.task = CancellableTask(messages, state.locks.drawing, partial(self.run.stoppable, "task"))
         self.send = partial(DOWNLOADS.send, client)
         self.files = FilesPanel(gui, sample, self.send, state.locks.action, self.task)
+        self.fleet = FleetPanel(gui)
         self.knowledge = KnowledgePanel(gui)
         self.settings = SettingsPanel(gui, state.locks.action)
         self.export = ExportPanel(client, self.task)

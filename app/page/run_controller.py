@@ -45,7 +45,10 @@ class RunController:
     # --- what a person asks for -------------------------------------------------------------------
 
     def merge(self) -> None:
-        state, panels = self._state, self._panels
+        state, panels, mode = self._state, self._panels, self._modes.current
+        if mode is not None and mode.merge is not None:
+            mode.merge()
+            return
         with state.locks.action, state.locks.drawing:
             self._modes.leave()
             panels.settings.sync()
@@ -65,7 +68,8 @@ class RunController:
 
     def stop(self) -> None:
         """Leave the file that is read, or else what is run, or else the file on its way."""
-        if self._panels.task.stop():
+        mode = self._modes.current
+        if self._panels.task.stop() or (mode is not None and mode.stop()):
             return
         if not self.thread.busy:
             self._stop_upload()

@@ -49,6 +49,11 @@ class ViewController:
             if state.view != MAP:
                 self._show()
                 return
+            mode = self._modes.current
+            if mode is not None and mode.extent is not None:
+                self._messages.look_down(mode.extent(), follow=True)
+                self._messages.flush()
+                return
             laid_over = state.result is not None or state.hand is not None or state.run.reached(RefineDetail)
             self._messages.look_down(maps.extent() if laid_over else maps.layout.view(), follow=True)
             self._messages.flush()
@@ -73,6 +78,10 @@ class ViewController:
         # viser's own frame is turned half round the y axis: see map_layers.py
         place = np.array([right * z / along - x, y - up * z / along])
         if not np.all(np.abs(place) < FAR):
+            return
+        mode = self._modes.current
+        if mode is not None and mode.click is not None:
+            mode.click(place)
             return
         self._messages.hud(readout=self._views.map.read_out(place, self._state.run))
         self._messages.layer("readout", [mark("cross", place, self._state.palette.text, r=6)])

@@ -16,7 +16,7 @@ from algorithms.maps.grid_map import FREE, OCCUPIED_FROM
 from algorithms.observations.fleet import Fleet
 from algorithms.observations.observation import encounter
 from app.drawing.grid_pixels import Pixels
-from app.drawing.palette import LIGHT, robot_colour
+from app.drawing.palette import LIGHT, Rgb, robot_colour
 from app.drawing.scene_layout import known_corners, rect_of
 from app.drawing.svg.map_plot import RasterView, scale_bar, scene
 from app.drawing.svg.svg_canvas import SvgCanvas
@@ -26,6 +26,7 @@ from app.system.data_paths import asset
 from app.system.version import versions
 
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
+ROBOT_COLUMNS = ("robot", "map", "x (m)", "y (m)", "turn", "likely", "")
 WIDE, MOST_HIGH, FINE = 760.0, 760.0, 2.0
 
 
@@ -40,9 +41,7 @@ def fleet_page(fleet: Fleet, result: FleetResult, name: str) -> bytes:
             for number, island in enumerate(result.islands, 1)
             if number == 1 or len(island.poses) > 1
         ),
-        _section(
-            "Robots", _table(_robots(fleet, result), ("robot", "map", "x (m)", "y (m)", "turn", "likely", ""))
-        ),
+        _section("Robots", _table(robot_rows(fleet, result), ROBOT_COLUMNS)),
         _section(
             "Sightings", _table(_sightings(fleet, result), ("", "observer", "observed", "used", "why not"))
         ),
@@ -100,7 +99,7 @@ def graph_svg(fleet: Fleet, result: FleetResult, island: Island) -> str:
     view = RasterView(rect, int(FINE * wide), int(FINE * high))
     sheet = SvgCanvas(high + 30, WIDE)
     plot = scene(sheet, (WIDE - wide) / 2, 0, wide, high, view)
-    plot.image(_walls(island, view))
+    plot.image(_walls(fleet, island, view))
     left = {each.number for each in result.left_out}
     for k, seen in enumerate(fleet.sightings):
         if seen.observer not in island.poses or seen.observed not in island.poses:
@@ -112,8 +111,8 @@ def graph_svg(fleet: Fleet, result: FleetResult, island: Island) -> str:
         sheet.path(ends, colour, 2.0, dash=dash)
         sheet.dot(*ends[1].tolist(), 4, None, colour, width=2)
     x = 0.0
-    for k, (name, T) in enumerate(island.poses.items()):
-        colour = robot_colour(k)
+    for name, T in island.poses.items():
+        colour = _colour(fleet, name)
         px, py = plot.one(*_middle(fleet, name, T).tolist())
         sheet.text(px, py, name, 13, "middle", colour=colour, bold=True)
         x = sheet.chip(x, high + 14, colour, name)
@@ -121,11 +120,15 @@ def graph_svg(fleet: Fleet, result: FleetResult, island: Island) -> str:
     return sheet.svg("Where the robots' maps lie, and who saw whom")
 
 
+def _colour(fleet: Fleet, name: str) -> Rgb:
+    return robot_colour(list(fleet.maps).index(name))
+
+
 def _middle(fleet: Fleet, name: str, T: Pose2) -> FloatArray:
     return np.asarray(T.apply(known_corners(fleet.maps[name]).mean(axis=0)), dtype=np.float64)
 
 
-def _walls(island: Island, view: RasterView) -> Pixels:
+def _walls(fleet: Fleet, island: Island, view: RasterView) -> Pixels:
     """(H, W, 3) floor white, each robot's walls in its colour, those of several dark."""
     fusion = island.fusion
     rows, cols, inside = view.cells(fusion.merged)
@@ -135,13 +138,13 @@ def _walls(island: Island, view: RasterView) -> Pixels:
     scale = fusion.merged.resolution * view.wide / (view.rect[2] - view.rect[0])
     thick = np.ones((max(1, round(1.2 / max(scale, 0.05))),) * 2, dtype=np.uint8)
     paint = []
-    for k, layer in enumerate(fusion.layers):
+    for name, layer in zip(island.poses, fusion.layers, strict=True):
         wall = cv2.dilate((layer >= OCCUPIED_FROM).astype(np.uint8), thick)
         seen = np.zeros(inside.shape, dtype=bool)
         seen[inside] = wall[rows[inside], cols[inside]] > 0
         known[inside] |= layer[rows[inside], cols[inside]] >= FREE
         count += seen
-        paint.append((seen, robot_colour(k)))
+        paint.append((seen, _colour(fleet, name)))
     pixels[known] = LIGHT.free
     for seen, colour in paint:
         pixels[seen] = colour
@@ -149,7 +152,8 @@ def _walls(island: Island, view: RasterView) -> Pixels:
     return pixels
 
 
-def _robots(fleet: Fleet, result: FleetResult) -> Iterable[Sequence[str]]:
+def robot_rows(fleet: Fleet, result: FleetResult) -> Iterable[tuple[str, ...]]:
+    """Where every robot lies, in the frame of its map's root, and how sure that is."""
     for number, island in enumerate(result.islands, 1):
         for name, T in island.poses.items():
             where = "root" if name == island.root else f"± {_deviation(fleet, island, name):.2f} m"

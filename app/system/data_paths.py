@@ -34,3 +34,10 @@ def samples() -> dict[str, Path]:
     from algorithms.files.case_folder import FIRST_MAP_FILE  # it loads what reads maps
 
     return {path.parent.name: path.parent for path in sorted(sample_maps().glob(f"*/{FIRST_MAP_FILE}"))}
+
+
+def fleets() -> dict[str, Path]:
+    """The sample fleets by the name a person reads in the menu."""
+    from algorithms.files.fleet_file import FLEET_FILE  # it loads what reads maps
+
+    return {path.parent.name: path.parent for path in sorted(sample_maps().glob(f"*/{FLEET_FILE}"))}

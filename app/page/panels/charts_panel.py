@@ -116,9 +116,11 @@ class ChartsPanel:
         if empty:
             put(self._hint, content=box(HINTS[self.page], "plain"))
 
-    def tell(self, answer: str) -> None:
-        """Put the answer, as HTML, on its page."""
+    def tell(self, answer: str, turn: bool = False) -> None:
+        """Put the answer, as HTML, on its page; ``turn``: and show that page."""
         self.result.content = self._shown["result"] = answer
+        if turn:
+            self.page = RESULT
         self._show_page()
 
     # --- a run ------------------------------------------------------------------------------------

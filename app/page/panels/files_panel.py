@@ -10,23 +10,24 @@ from threading import RLock
 
 import viser
 
-from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import MapMergeError
 from algorithms.files.case_folder import read_case
+from algorithms.files.fleet_archive import fleet_from_zip
+from algorithms.files.fleet_file import read_fleet
 from algorithms.files.map_file import READABLE_SUFFIXES, map_from_bytes, parse_meta
 from algorithms.files.observation_file import known_from_bytes
 from algorithms.maps.grid_map import GridMap
+from algorithms.observations.fleet import Fleet
 from app.drawing.palette import QUIET
 from app.model.merge_inputs import Files, MapSlot, MergeInputs, Upload
 from app.page.cancellable_task import CancellableTask
-from app.page.panels.html_widgets import put
+from app.page.panels.html_widgets import Action, on_press, put
 from app.page.panels.image_form import ImageForm
+from app.page.panels.uploaded_file import short_name, taken_from, upload_of
 from app.system import data_paths as paths
 from app.system.cancellation import CancellableReader, Cancelled, Check, never_cancelled
 
 NONE = "(choose)"
-NO_FILE = viser.UploadedFile("", b"")  # what a button holds that holds no file any more
-
 # key -> label of the button, what the picker offers
 SLOTS = {
     "yaml1": ("Map 1: YAML", ".yaml,.yml"),
@@ -44,11 +45,6 @@ LARGE = 1_000_000  # bytes; to read less takes no time to speak of
 
 
 Known = dict[tuple[Upload, Upload], GridMap]
-
-
-def _short(name: str) -> str:
-    """The last part of a file's name only, and not much of it: it is shown to a person, nothing else."""
-    return show_hidden(PurePath(name.replace("\\", "/")).name)[:80]
 
 
 def _large(upload: Upload) -> bool:
@@ -76,7 +72,9 @@ def inputs_from(
         text, image = uploads.get(f"yaml{number}"), uploads.get(f"image{number}")
         if text is None:
             return MapSlot(missing=NO_YAML.format(number) if image is not None else "")
-        named = _short(parse_meta(text.name, text.content).image)  # what is wrong with it is reported at once
+        named = short_name(
+            parse_meta(text.name, text.content).image
+        )  # what is wrong with it is reported at once
         if image is None:
             return MapSlot(missing=f"Map {number}'s YAML file is here. Load its image, too: {named}.")
         grid = known.get((text, image))
@@ -120,13 +118,16 @@ class FilesPanel:
         # viser calls back from a thread of its own for each file: two that were dropped together must
         # not be read, and shown, across each other
         self._action, self._task = action, task
-        samples = paths.samples()
+        samples = {**paths.samples(), **paths.fleets()}
         names = [chosen] if chosen and chosen not in samples else []
         with gui.add_folder("Maps", order=10.0):
             start, hint = chosen or NONE, "A pair that came along."
             options = (NONE, *names, *samples)
             self._sample = gui.add_dropdown("Sample", options, initial_value=start, hint=hint)
             self._sample.on_update(lambda _: self._take_sample())
+            hint = "A third robot, and a fourth: all of them become one map."
+            icon = viser.Icon.PLUS
+            self._more = gui.add_button("Add robots", hint=hint, icon=icon, color=QUIET, visible=False)
             self._forms: dict[int, ImageForm] = {}
             with gui.add_folder("Upload your own", expand_by_default=False):
                 self._status = gui.add_html(self._table())
@@ -137,6 +138,9 @@ class FilesPanel:
                         number = int(key[-1])
                         use = partial(self._take, f"yaml{number}")
                         self._forms[number] = ImageForm(gui, number, self._action, use, save)
+                hint = "fleet.yaml and the maps that it names: three robots or more."
+                self._fleet = gui.add_upload_button("Fleet: zip", mime_type=".zip", color=QUIET, hint=hint)
+                self._fleet.on_upload(self._fleet_arrived)
                 self._forget_them = gui.add_button("Forget uploads", color=QUIET, visible=False)
                 self._forget_them.on_click(lambda _: self._forget())
         self._taken = chosen or NONE
@@ -144,6 +148,15 @@ class FilesPanel:
     def connect(self, load: Callable[[MergeInputs], None], report: Callable[[MapMergeError], None]) -> None:
         """What is done with the inputs that were chosen, and where a file cannot be used."""
         self._load, self._report = load, report
+
+    def connect_fleet(self, load: Callable[[Fleet, str], None], more: Action) -> None:
+        """What is done with a fleet that was chosen, and where two maps are to become one."""
+        self._load_fleet = load
+        on_press((self._more, more))
+
+    def extendable(self, yes: bool) -> None:
+        """Whether there are two maps that can become a fleet."""
+        put(self._more, visible=yes)
 
     @property
     def files(self) -> Files:
@@ -168,30 +181,54 @@ class FilesPanel:
     def _take_sample(self) -> None:
         with self._action:
             name = self._sample.value
-            folder = paths.samples().get(name)
-            if folder is None or name == self._taken:
+            pair, fleet = paths.samples().get(name), paths.fleets().get(name)
+            if (pair is None and fleet is None) or name == self._taken:
                 return
             try:
-                case = read_case(folder)
+                case = None if pair is None else read_case(pair)
+                robots = None if fleet is None else read_fleet(fleet)
             except MapMergeError as error:
                 self._sample.value = self._taken
                 self._report(error)
                 return
-            self._taken = name
-            self._uploads.clear()
-            self._offer_forms()
-            self._tell()
-            self._load(MergeInputs.of(case))
+            self._forget_uploads(name)
+            if robots is not None:
+                self._load_fleet(robots, name)
+            elif case is not None:
+                self._load(MergeInputs.of(case))
+
+    def _forget_uploads(self, name: str) -> None:
+        """What is on the page comes from elsewhere now: from a sample of that name."""
+        self._taken = name
+        put(self._sample, value=name)
+        self._uploads.clear()
+        self._offer_forms()
+        self._tell()
+
+    def _fleet_arrived(self, event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
+        file = taken_from(event)
+        if file is None:
+            return
+        with self._action:
+            upload = upload_of(file, "fleet.zip")
+            try:
+                with self._task(f"Reading {upload.name}, {len(upload.content) / 1e6:.3g} MB.") as check:
+                    fleet = fleet_from_zip(upload.name, upload.content)
+                    check()
+            except (Cancelled, MapMergeError) as error:
+                if isinstance(error, MapMergeError):
+                    self._report(error)
+                return
+            self._forget_uploads(NONE)
+            self._load_fleet(fleet, PurePath(upload.name).stem)
 
     def _arrived(self, key: str, event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
-        """Take what the button holds; it would keep that, refused or not, for as long as the tab is there."""
-        held = event.target._impl
-        file, held.value = held.value, NO_FILE
-        if file is not NO_FILE:  # by an earlier call, where two files came at once: the newest counts
+        file = taken_from(event)
+        if file is not None:
             self._take_upload(key, file)
 
     def _take_upload(self, key: str, file: viser.UploadedFile) -> None:
-        self._take(key, Upload(_short(file.name) or key, file.content))
+        self._take(key, upload_of(file, key))
 
     def _take(self, key: str, upload: Upload) -> None:
         with self._action:

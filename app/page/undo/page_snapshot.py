@@ -9,6 +9,7 @@ from typing import Any
 from algorithms.common.pose import Pose2
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
+from app.model.fleet_state import FleetState
 from app.model.knowledge import CHOICES
 from app.model.merge_inputs import Files, MergeInputs
 from app.model.merge_job import Goal
@@ -27,6 +28,7 @@ class PageSnapshot:
     hand    : where map 2 was put by hand, T_ref_mov; None where a method says it
     outcome : of the run that came to its end with all this; None before
     other   : another method's answer that is looked at in its place
+    fleet   : the fleet that is shown, or of which a pair is
     """
 
     inputs: MergeInputs
@@ -38,6 +40,7 @@ class PageSnapshot:
     hand: Pose2 | None = None
     outcome: RunState | None = field(default=None, repr=False)
     other: OtherResult | None = None
+    fleet: FleetState | None = None
 
     @property
     def held(self) -> bool:
@@ -60,6 +63,9 @@ class PageSnapshot:
     def held_bytes(self) -> dict[int, int]:
         """Bytes by the identity of what holds them, so that what two snapshots share counts once."""
         held: list[Any] = [grid.cells for grid in self.inputs.grids]
+        if self.fleet is not None:
+            held += [grid.cells for grid in self.fleet.fleet.maps.values()]
+            held += [island.fusion.merged.cells for island in self.fleet.islands]
         held += [upload.content for upload in self.files.uploads.values()]
         if self.result is not None:
             fusion = self.result.fusion
@@ -70,6 +76,8 @@ class PageSnapshot:
 def change(before: PageSnapshot, after: PageSnapshot) -> tuple[str, Hashable]:
     """What a person did between two snapshots, and what more of the same is called; "" for nothing."""
     old, new = before.inputs, after.inputs
+    if before.fleet is not after.fleet and (before.fleet is None or after.fleet is None):
+        return "another fleet" if after.fleet is not None else f"load {new.name}", None
     if old is not new:
         if old.grids == new.grids:
             if old.choice != new.choice:

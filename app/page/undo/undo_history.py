@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from time import monotonic
 from typing import Any
 
+from app.model.fleet_state import FleetState
 from app.model.run_state import RunState
 from app.page.undo.page_snapshot import PageSnapshot, change
 
@@ -79,6 +80,10 @@ class UndoHistory:
     def amend(self, outcome: RunState) -> None:
         """What was asked for at the step at hand has come out."""
         self._replace(outcome=outcome)
+
+    def amend_fleet(self, fleet: FleetState) -> None:
+        """More is known of the fleet at the step at hand, or it is looked at otherwise."""
+        self._replace(fleet=fleet)
 
     def forget_goal(self) -> None:
         """What was asked for is not wanted any more: who comes back to it finds what it began with."""

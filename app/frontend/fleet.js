@@ -1,0 +1,31 @@
+// The lists of a fleet in the panel: which robot, eye or pair was pressed.
+(() => {
+  const S = window.mapmeld;
+  if (S.fleet) return;
+  S.fleet = true;
+  document.addEventListener("click", (e) => {
+    const button = e.target.closest?.("button[data-mm-robot],button[data-mm-eye],button[data-mm-pair]");
+    if (!button) return;
+    for (const what of ["robot", "eye", "pair"]) {
+      const n = button.getAttribute(`data-mm-${what}`);
+      if (n !== null) S.tell("fleet", { what, n: Number(n) });
+    }
+  });
+  const style = document.createElement("style");
+  style.textContent = `
+    .mm-fleet{display:flex;flex-direction:column;gap:2px;margin:2px 10px 8px;font-size:12.5px;line-height:1.35}
+    .mm-fleet button{border:0;background:none;color:inherit;font:inherit;text-align:left;cursor:pointer;border-radius:5px;padding:4px 6px}
+    .mm-fleet button:hover{background:#6B728022} .mm-fleet button:focus-visible{outline:2px solid #0072B2;outline-offset:-2px}
+    .mm-robot{display:flex;align-items:stretch}
+    .mm-robot>button:first-child{flex:1;display:flex;align-items:baseline;gap:7px;min-width:0}
+    .mm-robot>button[aria-pressed=true]:first-child{background:#0072B21f}
+    .mm-robot i{flex:none;width:10px;height:10px;border-radius:2px} .mm-robot abbr{text-decoration:none;opacity:.7}
+    .mm-robot b{flex:1;overflow-wrap:anywhere} .mm-robot span{opacity:.8;font-size:12px;text-align:right}
+    .mm-pair{display:flex;flex-direction:column;border-left:4px solid #9CA3AF !important;border-radius:3px !important}
+    .mm-pair b{overflow-wrap:anywhere} .mm-pair span{font-size:11.5px;opacity:.8}
+    .mm-pair[data-mood=accepted]{border-left-color:#009E73 !important} .mm-pair[data-mood=refused]{border-left-color:#D55E00 !important}
+    .mm-pair[data-mood=bent]{border-left-color:#E69F00 !important}
+    .mm-robot[data-mood=accepted] span{color:#009E73} .mm-robot[data-mood=refused] span{color:#D55E00}
+    .mm-quiet{margin:2px 12px 8px;font-size:12px;opacity:.8}`;
+  document.head.append(style);
+})();

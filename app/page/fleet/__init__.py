@@ -1,0 +1,1 @@
+"""A fleet of robots in place of two maps."""
