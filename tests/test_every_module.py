@@ -86,6 +86,7 @@ EXERCISED_BY = {
         "algorithms.simulator.portable_random",
         "algorithms.simulator.robot",
         "algorithms.simulator.room_tours",
+        "algorithms.simulator.fleets.sample_fleets",
         "algorithms.simulator.samples",
         "algorithms.simulator.scenario",
         "algorithms.simulator.sighting",
@@ -190,6 +191,9 @@ EXERCISED_BY = {
         "algorithms.fleets.pair_hypotheses",
         "algorithms.observations.fleet",
     },
+    "app/evaluation/test_fleet_evaluation.py": {
+        "app.cli.evaluated_fleets",
+    },
     "app/report/test_fleet_files.py": {
         "app.jobs.fleet_pairs",
         "app.cli.commands.fleet",
@@ -199,6 +203,13 @@ EXERCISED_BY = {
         "app.page.panels.suggestions_html",
         "app.report.suggestion_text",
     },
+    "browser/test_fleet_page.py": {
+        "app.page.fleet.fleet_controller",
+        "app.page.fleet.fleet_display",
+        "app.page.fleet.fleet_panel",
+        "app.page.fleet.fleet_run_controller",
+        "app.page.fleet.robot_files",
+    },
     "browser/test_hand.py": {
         "app.page.editing.knowledge_panel",
     },
@@ -207,6 +218,7 @@ EXERCISED_BY = {
     },
     "app/page/panels/test_threads.py": {
         "app.page.panels.files_panel",
+        "app.page.panels.uploaded_file",
         "app.page.panels.settings_panel",
         "app.web.tab_messages",
     },

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from algorithms.common.pose import FloatArray, Pose2, wrap_angles
 
@@ -39,6 +38,8 @@ def solve(root: str, begin: Mapping[str, Pose2], edges: Sequence[PoseEdge]) -> P
     begin : T_root_robot of every robot, the root's the identity, to start from
     edges : tie all of them to the root
     """
+    from scipy.optimize import least_squares  # it loads what only merges need
+
     names = sorted(name for name in begin if name != root)
     row = {name: k for k, name in enumerate(names)}
     row[root] = len(names)

@@ -12,10 +12,10 @@ from algorithms.files.case_folder import FIRST_MAP_FILE, SECOND_MAP_FILE
 from algorithms.files.map_file import map_to_bytes
 from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, known_to_bytes
 from algorithms.files.truth_file import TRUTH_FILE, Truth, truth_to_bytes
-from algorithms.simulator.fleet_scenario import simulate_fleet
+from algorithms.simulator.fleets.fleet_scenario import simulate_fleet
+from algorithms.simulator.fleets.sample_fleets import fleet_files, sample_fleets
 from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.robot import Conditions
-from algorithms.simulator.sample_fleets import fleet_files, sample_fleets
 from algorithms.simulator.scenario import SimulatedCase, simulate
 from algorithms.simulator.wrong_pairs import mismatch
 

@@ -82,7 +82,7 @@ class Page:
         panels.run.connect_learn(teaching.toggle, museum.toggle)
         others = OtherResultController(tab, undo, runs)
         deliver = DownloadTask(client, panels.task)
-        fleet = FleetController(tab, runs, inputs, quota, deliver)
+        fleet = FleetController(tab, runs, inputs, quota, deliver, robots.begin)
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
         self._sweep = SweepController(state, panels.sweep, messages, events, runs, deliver)
         self._parts = inputs, events, teaching, drag, self._comparison, self._sweep, zoom, fleet, runs.thread

@@ -13,7 +13,7 @@ from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import AugmentDetail, PlaneDetail
 from algorithms.verdict.contradictions import Contradictions
 from app.drawing.browser_messages import BrowserMessages
-from app.drawing.legend import in_hand, legend
+from app.drawing.legend import fleet_legend, in_hand, legend
 from app.drawing.palette import LIGHT
 from app.drawing.scene.fleet_view import FleetView
 from app.drawing.scene.height_view import HeightsView
@@ -21,7 +21,7 @@ from app.drawing.scene.map_comparison import MapComparison
 from app.drawing.scene.map_view import MapView
 from app.drawing.scene.run_view import RunView
 from app.drawing.scene.swarm_view import SwarmView
-from app.drawing.scene_layout import SceneLayout
+from app.drawing.scene_layout import Rect, SceneLayout
 from app.model import status_text, verdict_text
 from app.model.view_modes import HEIGHTS, MAP, SWARM
 from app.page.page_state import PageState
@@ -208,19 +208,21 @@ class PageDisplay:
         self.messages.hud(pressed=self._pressed())
         self.show_legend()
 
-    def show_view(self, draw_map: Callable[[], None] | None = None) -> None:
-        """The chosen view of the newest state; ``draw_map`` draws the map where a mode does."""
+    def show_view(self, draw_map: Callable[[], None] | None = None, extent: Rect | None = None) -> None:
+        """The chosen view of the newest state.
+
+        draw_map : draws the map where a mode does
+        extent   : of what it draws; None: of both maps
+        """
         state, view = self._state, self._state.view
         self._panels.run.view = view
         self.views.map.visible(view == MAP)
-        if view != MAP:
-            self.views.fleet.hide()
         if view != HEIGHTS:
             self.views.heights.hide()
         if view != SWARM:
             self.views.swarm.hide()
         if view == MAP and draw_map is not None:
-            self.messages.look_down(self.views.map.extent())
+            self.messages.look_down(extent or self.views.map.extent())
             draw_map()
             self.messages.hud(pressed=self._pressed())
             self.show_legend()
@@ -234,7 +236,9 @@ class PageDisplay:
     def show_legend(self) -> None:
         """What the colours of the picture mean."""
         state, mode = self._state, self.views.comparison.mode
-        if state.hand is not None and state.view == MAP and mode == "overlay":
+        if self.views.fleet.drawn and state.fleet is not None:
+            self.messages.hud(legend=fleet_legend(state.palette, state.fleet.robots))
+        elif state.hand is not None and state.view == MAP and mode == "overlay":
             self.messages.hud(legend=in_hand(state.palette))
         else:
             self.messages.hud(legend=legend(state.palette, state.view, state.run, mode=mode))

@@ -13,6 +13,7 @@ from app.drawing.scene.map_layers import Mode
 from app.model.view_modes import MAP
 from app.page.tab import Tab
 
+OF_TWO_MAPS = "This view is of two maps. Press a pair of the fleet first."
 FAR = 1e6  # metres from the scene's origin; no map reaches there
 
 
@@ -21,6 +22,7 @@ class ViewController:
 
     def __init__(self, tab: Tab, client: viser.ClientHandle) -> None:
         self._state, self._display, self._modes = tab.state, tab.display, tab.modes
+        self._notices = tab.notices
         self._messages, self._views = tab.display.messages, tab.display.views
         tab.panels.run.connect_view(self.choose, self.fit, self.darken)
         tab.events.on("compare", self.compare, mode=MODES)
@@ -29,6 +31,10 @@ class ViewController:
 
     def choose(self, view: str) -> None:
         with self._state.locks.drawing:
+            mode = self._modes.current
+            if view != MAP and mode is not None and mode.extent is not None:
+                self._notices.show(view, OF_TWO_MAPS, "orange")
+                view = MAP
             self._state.update(view=view)
             self._show()
 
@@ -41,7 +47,10 @@ class ViewController:
 
     def _show(self) -> None:
         mode = self._modes.current
-        self._display.show_view(mode.redraw if mode is not None else None)
+        if mode is None or mode.extent is None:
+            self._display.show_view(mode.redraw if mode is not None else None)
+        else:
+            self._display.show_view(mode.redraw, mode.extent())
 
     def fit(self) -> None:
         with self._state.locks.drawing:

@@ -5,18 +5,17 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from typing import Any, get_args
 
 from algorithms.common.errors import OutputError
 from algorithms.files.atomic_write import check_file, write_file
 from algorithms.files.case_folder import FIRST_MAP_FILE, case_folders
-from algorithms.fleets.fleet_merge import FleetResult, run_fleet
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, PLANE_METHOD
-from algorithms.observations.fleet import Fleet
 from algorithms.simulator.rough_priors import Knowledge
 from app.cli.argument_parser import Parser, did_you_mean, whole_number
+from app.cli.evaluated_fleets import run_fleets
 from app.cli.executor_flags import add_workers, executor_for
 from app.cli.progress_bar import bar
 from app.cli.setting_flags import add_method, configs_from
@@ -29,9 +28,8 @@ from app.evaluation.dataset_evaluation import (
     rough_folders,
     totals_of,
 )
-from app.evaluation.fleet_evaluation import evaluate_fleets, fleet_folders, fleet_totals
+from app.evaluation.fleet_evaluation import fleet_folders
 from app.evaluation.table_files import aligned, apart_text, json_bytes, text_rows
-from app.jobs.fleet_pairs import run_pairs
 
 USAGE = (
     "DIR [--knowledge K,…] [--rough | --both] [--wrong-pairs N] [--json FILE] "
@@ -84,19 +82,6 @@ COUNTS = (
 )
 COLUMNS = {**dict.fromkeys(COUNTS, "{}"), "median_seconds": "{:.2f}"}
 TITLES = {"right_first": "first", "right_among_five": "first five"}
-FLEET_COUNTS = (
-    "group",
-    "fleets",
-    "right",
-    "refused",
-    "loose",
-    "wrong",
-    "lies_used",
-    "truths_left_out",
-    "errors",
-)
-FLEET_COLUMNS = {**dict.fromkeys(FLEET_COUNTS, "{}"), "median_seconds": "{:.2f}"}
-FLEET_TITLES = {"lies_used": "lies used", "truths_left_out": "truths left out", "median_seconds": "median s"}
 SIGHTING: Knowledge = "sighting"
 KINDS: tuple[Knowledge, ...] = get_args(Knowledge)
 
@@ -172,10 +157,10 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
             raise OutputError(args.json, "lies in the folder of a case", "choose another place for --json")
     status, answer = _run_pairs(args, parser, pairs) if pairs else (0, {})
     if fleets:
-        if pairs:
-            print()
-        failed, told = _run_fleets(args, fleets)
-        status, answer = max(status, failed), {**answer, "by_fleet": told} if pairs else told
+        done = run_fleets(args, fleets)
+        print(*([""] if pairs else []), *done.lines(), sep="\n")
+        status = max(status, int(done.failed))
+        answer = {**answer, "by_fleet": done.plain()} if pairs else done.plain()
     if args.json is not None:
         write_file(args.json, json_bytes(answer))
     return status
@@ -212,29 +197,6 @@ def _run_pairs(
         print(*([""] if number else []), *_lines(part, title, args.both), sep="\n")
     failed = any(case.error for part in parts for case in (*part.cases, *part.crossed))
     return int(failed), _plain(parts, args.both)
-
-
-def _run_fleets(args: argparse.Namespace, folders: Sequence[Path]) -> tuple[int, dict[str, Any]]:
-    """Merge every fleet, print the table; 1 where one could not be run, or a robot was placed wrong."""
-    executor = executor_for(args.jobs, args.scheduler)
-
-    def merged(fleet: Fleet) -> FleetResult:
-        *_, last = run_fleet(fleet, partial(run_pairs, executor))
-        assert isinstance(last, FleetResult)
-        return last
-
-    done = evaluate_fleets(args.folder, folders, merged)
-    found = list(bar(iterable=done, total=len(folders), unit="fleet"))
-    totals = fleet_totals(found)
-    rows = [{"group": group, **counts} for group, counts in totals.items()]
-    print(*aligned(text_rows(FLEET_COLUMNS, rows, FLEET_TITLES)), sep="\n")
-    for each in found:
-        if each.error:
-            print(f"failed: {each.fleet}: {each.error}")
-        elif each.wrong:
-            print(f"placed wrong: {each.fleet}: {', '.join(each.wrong)}")
-    failed = any(each.error or each.wrong for each in found)
-    return int(failed), {"fleets": [each.plain() for each in found], "totals": totals}
 
 
 def _check(args: argparse.Namespace, configs: Mapping[str, Any], parser: Parser) -> None:

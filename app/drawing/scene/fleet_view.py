@@ -84,6 +84,11 @@ class FleetView:
         self._messages.layer("sight", _lines(edges, palette))
         self._messages.layer("robots", _names(state, layout))
 
+    @property
+    def drawn(self) -> bool:
+        """Whether a fleet is on the scene."""
+        return bool(self._drawn)
+
     def hide(self) -> None:
         """Take everything of it off the scene."""
         for each in self._drawn.values():

@@ -15,7 +15,7 @@ from app.model.fleet_state import FleetState
 from app.model.merge_inputs import MergeInputs
 from app.page.cancellable_task import DownloadTask
 from app.page.fleet.fleet_display import FleetDisplay
-from app.page.fleet.fleet_run import STOPPED, FleetRun
+from app.page.fleet.fleet_run_controller import STOPPED, FleetRunController
 from app.page.fleet.robot_files import RobotFiles
 from app.page.inputs_controller import InputsController
 from app.page.modes import Mode
@@ -31,16 +31,28 @@ MAKING = "Making the fleet's files."
 
 
 class FleetController:
-    """Of one tab; ``quota`` is shared by all tabs; ``deliver``: sends a file, once it is made."""
+    """Of one tab.
+
+    quota        : is shared by all tabs
+    deliver      : sends a file, once it is made
+    place_robots : begins to place the robots of two maps by hand
+    """
 
     def __init__(
-        self, tab: Tab, runs: RunController, inputs: InputsController, quota: CellQuota, deliver: DownloadTask
+        self,
+        tab: Tab,
+        runs: RunController,
+        inputs: InputsController,
+        quota: CellQuota,
+        deliver: DownloadTask,
+        place_robots: Callable[[], None],
     ) -> None:
         self._state, self._panel, self._locks = tab.state, tab.panels.fleet, tab.state.locks
         self._modes, self._history, self._notices = tab.modes, tab.history, tab.notices
-        self._runs, self._inputs, self._quota, self._deliver = runs, inputs, quota, deliver
+        self._runs, self._inputs, self._quota = runs, inputs, quota
+        self._deliver, self._place_robots = deliver, place_robots
         self._display = FleetDisplay(tab)
-        self._run = FleetRun(tab, self._display)
+        self._run = FleetRunController(tab, self._display)
         self._mode = tab.modes.add(
             Mode(
                 self._end,
@@ -110,6 +122,7 @@ class FleetController:
         self._run.stop()
         with self._locks.drawing:
             self._display.hide()
+            self._show_panel()
 
     def _resume(self, snapshot: PageSnapshot, was_on: bool) -> bool:
         """A step that showed a fleet shows it again."""
@@ -117,6 +130,7 @@ class FleetController:
         if state is None or state.opened is not None or snapshot.inputs.grids:
             return False
         self._modes.enter(self._mode)
+        self._show_panel()
         self._display.show(look=True)
         self._display.say_outcome()
         return True
@@ -124,24 +138,27 @@ class FleetController:
     def _fleet_changed(self) -> None:
         if self._state.fleet is None:
             self._quota.release(self)
-        self._display.show_panel()
+        self._show_panel()
+
+    def _show_panel(self) -> None:
+        self._display.show_panel(self._shown is not None)
 
     # --- what a person does with it ---------------------------------------------------------------------
 
-    def _change(self, make: Callable[[FleetState], FleetState], label: str) -> None:
-        """Another fleet; what cannot be is told."""
+    def _change(self, make: Callable[[FleetState], FleetState], label: str) -> bool:
+        """Another fleet, and whether it can be: what cannot is told."""
         with self._locks.action, self._locks.drawing:
             state = self._shown
             if state is None:
-                return
+                return False
             try:
                 changed = make(state)
             except MapMergeError as error:
-                self._display.show_panel()
                 self._notices.report(error)
-                return
+                return False
             self._run.stop()
             self._take(changed, label)
+            return True
 
     def _add_robot(self, name: str, grid: GridMap) -> None:
         self._change(lambda state: state.with_robot(name, grid), f"add {name}")
@@ -149,7 +166,9 @@ class FleetController:
     def _rename(self, old: str, new: str) -> None:
         if new != old:
             self._panel.choose(new)
-            self._change(lambda state: state.renamed(old, new), f"{old} → {new}")
+            if not self._change(lambda state: state.renamed(old, new), f"{old} → {new}"):
+                self._panel.choose(old)
+                self._show_panel()
 
     def _anchor(self, name: str) -> None:
         self._change(lambda state: state.anchored(name), f"anchor: {name}")
@@ -168,7 +187,7 @@ class FleetController:
                 self._open(pair_orders(state.fleet)[n])
             elif what == "robot":
                 self._panel.choose(state.robots[n])
-                self._display.show_panel()
+                self._show_panel()
             else:
                 looked = state.toggled(state.robots[n])
                 self._state.update(fleet=looked)
@@ -188,7 +207,9 @@ class FleetController:
         if observer == observed:
             self._notices.report(SettingError(f"{observer} cannot have seen itself; choose another robot"))
             return
-        self._open(PairOrder(observer, observed, ()))
+        with self._locks.action:
+            self._open(PairOrder(observer, observed, ()))
+            self._place_robots()
 
     def _open(self, order: PairOrder) -> None:
         with self._locks.action, self._locks.drawing:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from algorithms.common.pose import FloatArray
 from app.drawing.fleet_layout import FleetLayout, lay_out_fleet
-from app.drawing.legend import fleet_legend
 from app.drawing.scene.fleet_view import Edge, edges_of, nearest_edge
 from app.drawing.scene_layout import Rect, rect_of, union
 from app.model.fleet_state import FleetState
-from app.model.view_modes import MAP
 from app.page.fleet.fleet_html import poses_html
 from app.page.tab import Tab
 from app.report.fleet_report import summary
@@ -34,10 +32,7 @@ class FleetDisplay:
             return
         self._layout = layout = lay_out_fleet(state.fleet.maps, state.groups())
         self._edges = edges_of(state, layout)
-        if self._state.view == MAP:
-            self._view.show(state, layout, self._edges, self._state.palette)
-        else:
-            self._view.hide()
+        self._view.show(state, layout, self._edges, self._state.palette)
         if look:
             self._messages.look_down(self.extent, follow=True)
         self._panels.run.merge.disabled = False
@@ -46,10 +41,10 @@ class FleetDisplay:
             case=state.name,
             frames=[[*anchor.tolist(), *box], None],
             measure=True,
-            legend=fleet_legend(self._state.palette, state.robots),
             readout="",
         )
         self._panels.charts.tell(poses_html(state), turn=True)
+        self._page.show_legend()
         self._page.show_buttons()
         self._messages.flush()
 
@@ -70,10 +65,10 @@ class FleetDisplay:
         self._messages.hud(state=words, mood=mood, progress=share)
         self._messages.flush()
 
-    def show_panel(self) -> None:
-        """Have the panel show the fleet, or nothing."""
+    def show_panel(self, on: bool) -> None:
+        """Have the panel show the fleet where the page does (``on``), or one of its pairs, else nothing."""
         state = self._state.fleet
-        if state is None:
+        if state is None or not (on or state.opened is not None):
             self._panels.fleet.show(None)
         elif state.opened is not None:
             said = OPENED.format(state.name, state.opened.ref, state.opened.mov)

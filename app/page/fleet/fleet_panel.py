@@ -12,7 +12,7 @@ from algorithms.fleets.pair_hypotheses import pair_orders
 from app.drawing.palette import LIGHT, QUIET
 from app.model.fleet_state import FleetState
 from app.page.fleet.fleet_html import pairs_html, robots_html
-from app.page.panels.html_widgets import Action, box, on_choice, on_press, put
+from app.page.panels.html_widgets import Action, box, on_press, put
 
 LEAST = 2  # robots of a fleet
 
@@ -30,6 +30,7 @@ class FleetPanel:
             self._pairs = gui.add_html("")
             with gui.add_folder("The chosen robot", expand_by_default=False) as self._one:
                 self._name = gui.add_text("Name", "", hint="It goes into every file.")
+                self._rename = gui.add_button("Rename it", **quiet)  # the field tells every letter
                 hint = "The result is in its frame."
                 self._anchor = gui.add_button("Make it the anchor", hint=hint, **quiet)
                 self._remove = gui.add_button("Remove it", icon=viser.Icon.TRASH, **quiet)
@@ -59,8 +60,8 @@ class FleetPanel:
         sighting: Callable[[str, str], None],
     ) -> None:
         """What is done with the chosen robot, and where one is to have seen another."""
-        on_choice(self._name, lambda: rename(self._chosen, self._name.value))
         on_press(
+            (self._rename, lambda: rename(self._chosen, self._name.value.strip())),
             (self._anchor, lambda: anchor(self._chosen)),
             (self._remove, lambda: remove(self._chosen)),
             (self._place, lambda: sighting(self._observer.value, self._observed.value)),

@@ -17,12 +17,12 @@ from algorithms.files.case_folder import read_case
 from algorithms.observations.observation import bilateral_transform, encounter
 from algorithms.simulator.buildings.building_types import BUILDINGS, build
 from algorithms.simulator.buildings.floor_plan import AIR, DARK, WALL, Building, FloorPlan
+from algorithms.simulator.fleets.sample_fleets import sample_fleets
 from algorithms.simulator.lidar import Lidar, first_hit, scan, sees, true_ranges
 from algorithms.simulator.path_planning import STEP, PathPlanner
 from algorithms.simulator.portable_random import COSINES, SINES, TRIG_GRID, TURN, normals, radians, stream
 from algorithms.simulator.robot import Conditions, drive, make_body
 from algorithms.simulator.room_tours import TourPlanner
-from algorithms.simulator.sample_fleets import sample_fleets
 from algorithms.simulator.samples import SAMPLES, case_files, generate_cases, write_case
 from algorithms.simulator.scenario import Scenario, simulate
 from algorithms.simulator.sighting import APART, FURTHEST, NEAREST, measured_overlap

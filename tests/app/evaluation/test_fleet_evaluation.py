@@ -12,8 +12,8 @@ from algorithms.common.pose import Pose2
 from algorithms.files.fleet_truth_file import FleetTruth
 from algorithms.fleets.fleet_merge import merge_fleet
 from algorithms.observations.fleet import Fleet, FleetSighting
-from algorithms.simulator.fleet_scenario import SimulatedFleet
-from algorithms.simulator.sample_fleets import fleet_files
+from algorithms.simulator.fleets.fleet_scenario import SimulatedFleet
+from algorithms.simulator.fleets.sample_fleets import fleet_files
 from app.cli.main import main
 from app.evaluation.fleet_evaluation import judged
 

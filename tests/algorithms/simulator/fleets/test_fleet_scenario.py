@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from algorithms.observations.observation import encounter
-from algorithms.simulator.fleet_scenario import SimulatedFleet, simulate_fleet
+from algorithms.simulator.fleets.fleet_scenario import SimulatedFleet, simulate_fleet
 
 
 @pytest.fixture(scope="module")

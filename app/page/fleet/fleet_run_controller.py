@@ -25,7 +25,7 @@ class StoppedError(MapMergeError):
     """Nobody waits for the pairs any more."""
 
 
-class FleetRun:
+class FleetRunController:
     """Of one tab; ``executor``: makes what pairs are merged on."""
 
     def __init__(

@@ -11,7 +11,7 @@ from algorithms.files.fleet_truth_file import FleetTruth, fleet_truth_to_bytes
 from algorithms.files.map_file import map_to_bytes
 from algorithms.files.truth_file import TRUTH_FILE
 from algorithms.observations.fleet import Fleet, FleetSighting
-from algorithms.simulator.fleet_scenario import SimulatedFleet, simulate_fleet
+from algorithms.simulator.fleets.fleet_scenario import SimulatedFleet, simulate_fleet
 from algorithms.simulator.scenario import SimulatedCase
 
 VAGUE = 4.0, 1.5  # metres and radians; standard deviations of "somewhere over there"

@@ -1,0 +1,1 @@
+"""Fleets of simulated robots, and those that ship."""

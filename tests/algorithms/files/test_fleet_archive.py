@@ -1,0 +1,84 @@
+"""A fleet as a zip: it reads back to equal values, and what is wrong with one is told in a line."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from repository import ROOT
+
+from algorithms.common.errors import InputFileError, MapMergeError
+from algorithms.files import fleet_archive
+from algorithms.files.fleet_archive import fleet_from_zip, fleet_to_files
+from algorithms.files.fleet_file import read_fleet
+from algorithms.observations.fleet import Fleet
+
+
+def zipped(files: dict[str, bytes]) -> bytes:
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in files.items():
+            archive.writestr(name, data)
+    return content.getvalue()
+
+
+@pytest.fixture(scope="module")
+def fleet() -> Fleet:
+    return read_fleet(ROOT / "sample_maps" / "home_fleet_island")
+
+
+@pytest.fixture(scope="module")
+def files(fleet: Fleet) -> dict[str, bytes]:
+    return fleet_to_files(fleet)
+
+
+def same(a: Fleet, b: Fleet) -> bool:
+    maps = all(np.array_equal(a.maps[name].cells, b.maps[name].cells) for name in a.maps)
+    told = a.sightings == b.sightings and a.known == b.known and a.anchor == b.anchor
+    return list(a.maps) == list(b.maps) and maps and told
+
+
+@pytest.mark.parametrize("folder", ["", "fleet/", "a/b/c/"])
+def test_a_fleet_reads_back_from_its_zip_in_whatever_folder(fleet, files, folder):
+    content = zipped({f"{folder}{name}": data for name, data in files.items()})
+    assert same(fleet_from_zip("fleet.zip", content), fleet)
+
+
+@pytest.mark.parametrize(
+    ("gone", "said"),
+    [
+        ("fleet.yaml", r"holds no fleet\.yaml"),
+        ("robot_2.yaml", r"names robot_2\.yaml, which is not in it"),
+        ("robot_3.pgm", r"names robot_3\.pgm, which is not in it"),
+    ],
+)
+def test_a_file_that_is_missing_is_named(files, gone, said):
+    left = {name: data for name, data in files.items() if name != gone}
+    with pytest.raises(InputFileError, match=said):
+        fleet_from_zip("mine.zip", zipped(left))
+
+
+def test_what_would_unpack_to_too_much_is_refused_before_it_is_unpacked(files, monkeypatch):
+    monkeypatch.setattr(fleet_archive, "MOST_UNPACKED", 10_000)
+    with pytest.raises(InputFileError, match="give at most"):
+        fleet_from_zip("mine.zip", zipped(files))
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.data())
+def test_a_damaged_zip_is_a_fleet_or_one_line_on_what_is_wrong(files, data):
+    content = bytearray(zipped(files))
+    for _ in range(data.draw(st.integers(1, 6))):
+        content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
+    cut = data.draw(st.integers(0, len(content)))
+    said = "mine.zip"
+    try:
+        fleet_from_zip("mine.zip", bytes(content[:cut]))
+    except MapMergeError as error:
+        said = str(error)
+    assert said.startswith("mine.zip")
+    assert "\n" not in said

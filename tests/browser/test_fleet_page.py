@@ -1,0 +1,174 @@
+"""A fleet in a real Chromium: loaded, merged before the eyes, its pairs opened, its robots changed."""
+
+from __future__ import annotations
+
+import zipfile
+
+import pytest
+from driver import READY, Tab, settle
+
+from algorithms.files.case_folder import read_case
+from algorithms.files.fleet_archive import fleet_to_files
+from algorithms.files.fleet_file import read_fleet
+from app.page.application import make_server
+from app.page.fleet.fleet_display import READY as OF_ROBOTS
+from app.report.result_files import zip_bytes
+from app.system.data_paths import fleets, samples
+
+pytestmark = pytest.mark.browser
+
+ISLAND = "home_fleet_island"
+LIE = "r3 saw r4\nleft out: r3's sighting of r4 would put it 3.7 m off"
+
+
+def rows(tab: Tab, what: str) -> list[str]:
+    return tab.page.locator(f"button[data-mm-{what}]").all_inner_texts()
+
+
+def robots(tab: Tab) -> dict[str, str]:
+    """What is said of each robot."""
+    told = (row.replace(" ⚓", "").split("\n") for row in rows(tab, "robot"))
+    return {name: " ".join(words) for name, *words in told}
+
+
+def merged(tab: Tab) -> None:
+    settle(lambda: tab.mood in ("accepted", "refused"), "the fleet")
+
+
+@pytest.fixture
+def island(open_tab) -> Tab:
+    """A tab with six robots, of which two have seen nobody of the others; one sighting is a lie."""
+    tab = open_tab(size=(1400, 900))
+    tab.choose("Sample", ISLAND)
+    settle(lambda: tab.state == OF_ROBOTS.format(6), "the fleet")
+    return tab
+
+
+def test_a_fleet_is_merged_before_the_eyes_and_says_who_lies_and_who_is_alone(island):
+    assert set(robots(island)) == {f"r{k}" for k in range(1, 7)}
+    assert len(rows(island, "pair")) == 6
+    island.press("Merge")
+    settle(lambda: any("right by itself" in row for row in rows(island, "pair")), "the first pair")
+    merged(island)
+    assert island.state.startswith("4 of 6 robots are in the map of r1.")
+    told = robots(island)
+    assert told["r1"] == "the anchor"
+    assert all(told[name].startswith("placed, ") for name in ("r2", "r3", "r4"))
+    assert all(told[name].startswith("island 2") for name in ("r5", "r6"))
+    assert LIE in rows(island, "pair")
+    lines = [item for item in island.layer("sight") if item["k"] == "path"]
+    assert sum(bool(item["d"]) for item in lines) == 1  # the lie alone is dashed
+    assert {item["t"] for item in island.layer("robots")} == set(told)
+    island.press("Heights")
+    settle(lambda: "This view is of two maps." in island.text, "why it stays a map")
+    assert "Map" in island.page.evaluate("() => window.mapmeld.hud.pressed")
+
+    island.page.get_by_role("button", name="Undo").click()  # back to the sample that was there before
+    settle(lambda: island.state == "Ready. Press Merge.", "two maps")
+    assert not rows(island, "robot")
+    island.page.get_by_role("button", name="Redo").click()
+    merged(island)
+    assert LIE in rows(island, "pair")
+    island.page.reload()
+    island.page.wait_for_function(READY)
+    merged(island)
+    assert LIE in rows(island, "pair")
+
+
+def test_a_pair_is_opened_merged_and_put_back_and_a_click_on_its_line_opens_it(open_tab):
+    tab = open_tab(size=(1400, 900))
+    tab.choose("Sample", "corridor_fleet_loop")
+    settle(lambda: tab.state == OF_ROBOTS.format(3), "the fleet")
+    tab.press("Merge")
+    merged(tab)
+    assert tab.state == "3 of 3 robots are in the map of r1."
+    (vague,) = (row for row in rows(tab, "pair") if row.startswith("r1 saw r2"))
+    assert "alone it was refused" in vague
+    tab.press("Instant")
+    tab.page.locator("button[data-mm-pair]", has_text="r1 saw r2").click()
+    settle(lambda: tab.page.locator(".mm-case").inner_text() == "r1 saw r2", "the pair")
+    settle(lambda: tab.mood == "refused", "its own verdict")
+    assert {item.get("t") for item in tab.layer("robots")} >= {"r1"}
+    tab.press("Back to the fleet")
+    settle(lambda: tab.state == "3 of 3 robots are in the map of r1.", "the fleet again")
+    tab.at_rest()
+    line = next(item for item in tab.layer("sight") if item["k"] == "path")
+    middle = [sum(point[axis] for point in line["p"]) / 2 for axis in (0, 1)]
+    tab.page.mouse.click(*tab.page.evaluate("(p) => mapmeld.pixel(p)", middle))
+    settle(lambda: " saw " in tab.page.locator(".mm-case").inner_text(), "the pair of the line")
+
+
+def test_robots_are_renamed_hidden_made_the_anchor_and_removed_and_undo_goes_back(island):
+    island.page.locator("button[data-mm-robot]", has_text="r2").click()
+    island.unfold("The chosen robot")
+    label = island.page.locator("label").get_by_text("Name", exact=True)
+    box = label.locator("xpath=ancestor::div[2]").locator("input")
+    settle(lambda: box.input_value() == "r2", "its name")
+    box.fill("Alice")
+    island.page.wait_for_timeout(200)  # of what is written within 50 ms the page sends only the last
+    island.press("Rename it")
+    settle(lambda: "Alice" in robots(island), "the new name")
+    assert "Alice saw r1\nnot merged yet" in rows(island, "pair")
+    island.press("Make it the anchor")
+    settle(lambda: "Alice ⚓" in " ".join(rows(island, "robot")), "the anchor")
+    island.page.locator("button[data-mm-eye]").nth(1).click()
+    settle(lambda: "Alice" not in {item["t"] for item in island.layer("robots")}, "a hidden map")
+    island.press("Remove it")
+    settle(lambda: "Alice" not in robots(island), "a robot less")
+    assert not [row for row in rows(island, "pair") if "Alice" in row]
+    for _ in range(3):
+        island.page.get_by_role("button", name="Undo").click()
+    settle(lambda: "r2" in robots(island), "the old name")
+
+
+@pytest.fixture
+def fresh():
+    """A server that nothing was merged on."""
+    server = make_server(port=0, initial=read_case(samples()["office_r2_r1"]))
+    yield server
+    server.stop()
+
+
+def test_a_robot_is_added_to_two_maps_and_the_result_and_the_fleet_are_taken_away(open_tab, fresh, tmp_path):
+    tab = open_tab(size=(1400, 900), at=fresh)
+    tab.press("Add robots")
+    settle(lambda: tab.state == OF_ROBOTS.format(2), "a fleet of two")
+    third = samples()["office_r3_r2"]
+    tab.unfold("Add a robot")
+    tab.upload(0, third / "map1.yaml")
+    settle(lambda: "Now load its image, too." in tab.text, "what is missing")
+    tab.upload(1, third / "map1.pgm")
+    settle(lambda: set(robots(tab)) == {"robot 1", "robot 2", "map1"}, "a third robot")
+    tab.press("Merge")
+    merged(tab)
+    assert robots(tab)["robot 2"].startswith("placed, ")
+    with tab.page.expect_download() as download:
+        tab.press("Download the result")
+    download.value.save_as(tmp_path / "result.zip")
+    with zipfile.ZipFile(tmp_path / "result.zip") as archive:
+        assert {"merged.yaml", "transforms.yaml", "graph.g2o", "report.html"} <= set(archive.namelist())
+    with tab.page.expect_download() as download:
+        tab.press("Save the fleet")
+    download.value.save_as(tmp_path / "fleet.zip")
+    other = open_tab(size=(1400, 900))
+    other.unfold("Upload your own")
+    other.page.locator("input[type=file][accept='.zip']").set_input_files(str(tmp_path / "fleet.zip"))
+    settle(lambda: set(robots(other)) == {"robot 1", "robot 2", "map1"}, "the fleet")
+
+
+def test_what_is_no_fleet_is_told_and_a_merge_of_one_can_be_stopped(island, tmp_path):
+    files = fleet_to_files(read_fleet(fleets()[ISLAND]))
+    files.pop("robot_2.pgm")
+    (tmp_path / "bad.zip").write_bytes(zip_bytes(files))
+    before = rows(island, "robot")
+    island.unfold("Upload your own")
+    island.page.locator("input[type=file][accept='.zip']").set_input_files(str(tmp_path / "bad.zip"))
+    settle(lambda: "names robot_2.pgm, which is not in it" in island.text, "what is wrong")
+    assert rows(island, "robot") == before
+    island.press("Merge")
+    settle(island.page.get_by_role("button", name="Stop", exact=True).is_enabled, "Stop")
+    island.press("Stop")
+    settle(lambda: island.state.startswith("Stopped."), "the stop")
+    island.press("Merge")
+    merged(island)
+    assert LIE in rows(island, "pair")
