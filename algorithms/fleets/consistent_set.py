@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from math import log, pi, radians
 
 import networkx as nx
@@ -26,12 +25,16 @@ import numpy as np
 from algorithms.common.pose import Pose2
 from algorithms.fleets.pair_hypotheses import PairFinding
 from algorithms.fleets.pose_graph import PoseEdge
+from algorithms.fleets.spanning_forest import SpanningForest
 from algorithms.fleets.transform_chain import EXACT, UncertainTransform
 
 SLACK = 0.1, radians(1.0)  # metres, radians; how far maps of one building are bent between two meetings
 FARTHEST_OFF = 16.27  # squared deviations, 3 degrees of freedom: one true loop in a thousand misses by more
 LEAST_WEIGHT = -4.6  # log-odds, one in a hundred; what is less likely is not asked whether a loop supports it
 MOST_ROUNDS = 8
+
+Answer = tuple[int, int]
+"""Number of a finding, and of one of its answers."""
 
 Chosen = dict[int, int]
 """Number of a finding -> number of its answer that is taken."""
@@ -60,7 +63,7 @@ class AnswerGraph:
     def __init__(self, names: Sequence[str], findings: Sequence[PairFinding], area: float) -> None:
         self._names, self._findings = tuple(names), tuple(findings)
         self._scattered = log(2 * pi * area)
-        self._chains: dict[tuple[str, tuple[tuple[int, int], ...]], UncertainTransform] = {}
+        self._loops: dict[tuple[Answer, tuple[Answer, ...]], float] = {}
         self._edges = {
             (number, k): UncertainTransform(answer.T_ref_mov, answer.covariance).loosened(
                 finding.pivot, *SLACK
@@ -105,37 +108,34 @@ class AnswerGraph:
         order, held = self._findings[number].order, self._edges[number, k]
         return PoseEdge(order.ref, order.mov, held.T, held.covariance)
 
-    def along(
-        self, ties: nx.MultiGraph, chosen: Mapping[int, int], root: str, names: Sequence[str]
-    ) -> dict[str, Pose2]:
+    def along(self, chosen: Mapping[int, int], root: str, names: Sequence[str]) -> dict[str, Pose2]:
         """T_root_robot of each, along the fewest answers."""
-        tree = nx.Graph()
-        tree.add_nodes_from(names)
-        for ref, mov, number in ties.edges(keys=True):
-            tree.add_edge(ref, mov, key=(number, chosen[number]))
-        return {name: self.chain(tree, root, name).T for name in names}
+        ties = self.ties(chosen)
+        tree: SpanningForest[Answer] = SpanningForest(self._names)
+        for near, far in nx.bfs_edges(ties, root):
+            number = min(ties[near][far])
+            tree.link(near, far, (number, chosen[number]))
+        return {name: self._chain(tree, root, name).T for name in names}
 
-    def _weight(self, key: tuple[int, int]) -> float:
+    def _weight(self, key: Answer) -> float:
         return self._findings[key[0]].hypotheses[key[1]].weight
 
-    def _called(self, key: tuple[int, int]) -> tuple[float, ...]:
+    def _called(self, key: Answer) -> tuple[float, ...]:
         """Breaks ties by what an answer is, so that the order of robots and sightings changes nothing."""
         answer = self._findings[key[0]].hypotheses[key[1]]
         return tuple(answer.T_ref_mov.array().tolist())
 
-    def _built(
-        self, order: Sequence[tuple[int, int]], forced: tuple[int, int] | None = None
-    ) -> ConsistentSet:
+    def _built(self, order: Sequence[Answer], forced: Answer | None = None) -> ConsistentSet:
         """A set, made by taking one answer after the other that makes it likelier."""
-        tree, chosen, score = nx.Graph(), {}, 0.0
-        tree.add_nodes_from(self._names)
-        roots = nx.utils.UnionFind(self._names)
+        tree: SpanningForest[Answer] = SpanningForest(self._names)
+        chosen: Chosen = {}
+        score = 0.0
         for key in order:
             number, _ = key
             if number in chosen:
                 continue
             pair, gain = self._findings[number].order, self._weight(key)
-            tied = roots[pair.ref] == roots[pair.mov]
+            tied = tree.root(pair.ref) == tree.root(pair.mov)
             if tied:
                 gain += self._loop(tree, key)
             if gain <= (0 if tied else LEAST_WEIGHT) and key != forced:
@@ -143,14 +143,13 @@ class AnswerGraph:
             chosen[number] = key[1]
             score += gain
             if not tied:
-                roots.union(pair.ref, pair.mov)
-                tree.add_edge(pair.ref, pair.mov, key=key)
+                tree.link(pair.ref, pair.mov, key)
         return self._pruned(ConsistentSet(chosen, score))
 
     def _pruned(self, found: ConsistentSet) -> ConsistentSet:
         """Without the answers that are unlikely by themselves, and which no loop supports."""
         chosen, score = dict(found.chosen), found.score
-        while True:
+        while any(self._weight(key) <= 0 for key in chosen.items()):
             links: dict[frozenset[str], list[int]] = {}
             for number in chosen:
                 pair = self._findings[number].order
@@ -160,30 +159,30 @@ class AnswerGraph:
             weak = [numbers[0] for numbers in alone if len(numbers) == 1]
             weak = [number for number in weak if self._weight((number, chosen[number])) <= 0]
             if not weak:
-                return ConsistentSet(chosen, score)
+                break
             for number in weak:
                 score -= self._weight((number, chosen.pop(number)))
+        return ConsistentSet(chosen, score)
 
-    def _loop(self, tree: nx.Graph, key: tuple[int, int]) -> float:
+    def _loop(self, tree: SpanningForest[Answer], key: Answer) -> float:
         """What closing a loop adds to the log-odds; −∞ where it does not close."""
         pair = self._findings[key[0]].order
-        chain = self.chain(tree, pair.ref, pair.mov)
-        off, covariance = chain.difference(self._edges[key])
-        squared = float(off @ np.linalg.solve(covariance, off))
-        if squared > FARTHEST_OFF:
-            return -np.inf
-        _, logdet = np.linalg.slogdet(covariance)
-        return float(self._scattered - 0.5 * (squared + logdet + 3 * log(2 * pi)))
-
-    def chain(self, tree: nx.Graph, start: str, end: str) -> UncertainTransform:
-        """T_start_end along a tree whose edges have the key of an answer."""
-        path = nx.shortest_path(tree, start, end)
-        keys = tuple(tree.edges[step]["key"] for step in pairwise(path))
-        known = self._chains.get((start, keys))
+        way = tuple(link for _, link in tree.way(pair.ref, pair.mov))
+        known = self._loops.get((key, way))
         if known is None:
-            known = EXACT
-            for at, key in zip(path, keys, strict=False):
-                edge = self._edges[key]
-                known = known.then(edge if self._findings[key[0]].order.ref == at else edge.inverse())
-            self._chains[start, keys] = known
+            off, covariance = self._chain(tree, pair.ref, pair.mov).difference(self._edges[key])
+            squared = float(off @ np.linalg.solve(covariance, off))
+            known = -np.inf
+            if squared <= FARTHEST_OFF:
+                _, logdet = np.linalg.slogdet(covariance)
+                known = float(self._scattered - 0.5 * (squared + logdet + 3 * log(2 * pi)))
+            self._loops[key, way] = known
         return known
+
+    def _chain(self, tree: SpanningForest[Answer], start: str, end: str) -> UncertainTransform:
+        """T_start_end along a tree."""
+        found = EXACT
+        for at, key in tree.way(start, end):
+            edge = self._edges[key]
+            found = found.then(edge if self._findings[key[0]].order.ref == at else edge.inverse())
+        return found

@@ -79,7 +79,7 @@ def island_of(
     if len(names) > 1:
         ties = graph.ties(chosen)
         edges = [graph.edge(number, k) for number, k in sorted(chosen.items())]
-        solution = solve(root, graph.along(ties, chosen, root, names), edges)
+        solution = solve(root, graph.along(chosen, root, names), edges)
         probability = {name: _tied(ties, likely, root, name) for name in names}
     poses = {name: solution.poses[name] for name in names}
     fusion = fuse([maps[name] for name in names], list(poses.values()))

@@ -48,17 +48,35 @@ def solve(root: str, begin: Mapping[str, Pose2], edges: Sequence[PoseEdge]) -> P
     measured = np.array([edge.T_ref_mov.array() for edge in edges])
     whitening = np.linalg.inv(np.linalg.cholesky(np.array([edge.covariance for edge in edges])))
 
-    def misses(flat: FloatArray) -> FloatArray:
-        """Standard deviations by which each edge is missed."""
+    def seen(flat: FloatArray) -> tuple[FloatArray, ...]:
+        """Of each edge cos and sin of the ref robot's turn, and where it has the mov robot, in its frame."""
         poses = np.vstack([flat.reshape(-1, 3), np.zeros(3)])
         ref, mov = poses[ends[:, 0]], poses[ends[:, 1]]
         c, s = np.cos(ref[:, 2]), np.sin(ref[:, 2])
-        x, y = (mov - ref)[:, :2].T
-        turn = wrap_angles(mov[:, 2] - ref[:, 2] - measured[:, 2])
-        off = np.column_stack([c * x + s * y - measured[:, 0], -s * x + c * y - measured[:, 1], turn])
+        x, y, turn = (mov - ref).T
+        return c, s, c * x + s * y, -s * x + c * y, turn
+
+    def misses(flat: FloatArray) -> FloatArray:
+        """Standard deviations by which each edge is missed."""
+        _, _, x, y, turn = seen(flat)
+        off = np.column_stack([x, y, turn]) - measured
+        off[:, 2] = wrap_angles(off[:, 2])
         return np.asarray(np.einsum("eij,ej->ei", whitening, off).ravel(), dtype=np.float64)
 
-    found = least_squares(misses, first.ravel(), x_scale="jac")
+    def jacobian(flat: FloatArray) -> FloatArray:
+        """(3 E, 3 N) of ``misses``."""
+        c, s, x, y, _ = seen(flat)
+        zero, one = np.zeros_like(c), np.ones_like(c)
+        by_mov = np.stack([c, s, zero, -s, c, zero, zero, zero, one], axis=1).reshape(-1, 3, 3)
+        by_ref = -by_mov
+        by_ref[:, 0, 2], by_ref[:, 1, 2] = y, -x
+        blocks = np.zeros((len(edges), 3, len(names) + 1, 3))
+        numbers = np.arange(len(edges))
+        blocks[numbers, :, ends[:, 0]] = whitening @ by_ref
+        blocks[numbers, :, ends[:, 1]] += whitening @ by_mov
+        return blocks[:, :, :-1].reshape(3 * len(edges), 3 * len(names))
+
+    found = least_squares(misses, first.ravel(), jacobian, method="lm", x_scale="jac")
     spread = np.linalg.inv(found.jac.T @ found.jac)
     poses = {name: Pose2.from_array(found.x[3 * k : 3 * k + 3]) for name, k in row.items() if name != root}
     covariances = {

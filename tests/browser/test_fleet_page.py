@@ -60,7 +60,8 @@ def test_a_fleet_is_merged_before_the_eyes_and_says_who_lies_and_who_is_alone(is
     assert sum(bool(item["d"]) for item in lines) == 1  # the lie alone is dashed
     assert {item["t"] for item in island.layer("robots")} == set(told)
     island.press("Heights")
-    settle(lambda: "This view is of two maps." in island.text, "why it stays a map")
+    notice = island.page.locator(".mantine-Notification-root", has_text="This view is of two maps.")
+    settle(lambda: notice.count() == 1, "why it stays a map")
     assert "Map" in island.page.evaluate("() => window.mapmeld.hud.pressed")
 
     island.page.get_by_role("button", name="Undo").click()  # back to the sample that was there before

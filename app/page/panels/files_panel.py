@@ -125,9 +125,6 @@ class FilesPanel:
             options = (NONE, *names, *samples)
             self._sample = gui.add_dropdown("Sample", options, initial_value=start, hint=hint)
             self._sample.on_update(lambda _: self._take_sample())
-            hint = "A third robot, and a fourth: all of them become one map."
-            icon = viser.Icon.PLUS
-            self._more = gui.add_button("Add robots", hint=hint, icon=icon, color=QUIET, visible=False)
             self._forms: dict[int, ImageForm] = {}
             with gui.add_folder("Upload your own", expand_by_default=False):
                 self._status = gui.add_html(self._table())
@@ -143,6 +140,9 @@ class FilesPanel:
                 self._fleet.on_upload(self._fleet_arrived)
                 self._forget_them = gui.add_button("Forget uploads", color=QUIET, visible=False)
                 self._forget_them.on_click(lambda _: self._forget())
+            hint = "A third robot, and a fourth: all of them become one map."
+            icon = viser.Icon.PLUS
+            self._more = gui.add_button("Add robots", hint=hint, icon=icon, color=QUIET, visible=False)
         self._taken = chosen or NONE
 
     def connect(self, load: Callable[[MergeInputs], None], report: Callable[[MapMergeError], None]) -> None:
@@ -200,7 +200,6 @@ class FilesPanel:
     def _forget_uploads(self, name: str) -> None:
         """What is on the page comes from elsewhere now: from a sample of that name."""
         self._taken = name
-        put(self._sample, value=name)
         self._uploads.clear()
         self._offer_forms()
         self._tell()
@@ -220,6 +219,7 @@ class FilesPanel:
                     self._report(error)
                 return
             self._forget_uploads(NONE)
+            put(self._sample, value=NONE)
             self._load_fleet(fleet, PurePath(upload.name).stem)
 
     def _arrived(self, key: str, event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
