@@ -195,7 +195,6 @@ EXERCISED_BY = {
         "app.cli.evaluated_fleets",
     },
     "app/report/test_fleet_files.py": {
-        "app.jobs.fleet_pairs",
         "app.cli.commands.fleet",
         "app.report.fleet_report",
     },

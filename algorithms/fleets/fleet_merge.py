@@ -66,8 +66,14 @@ class FleetResult:
 
     @property
     def whole(self) -> bool:
-        """Whether every robot is in the anchor's map."""
-        return len(self.islands) == 1
+        """Whether every robot is in the anchor's map, and none by force."""
+        return len(self.islands) == 1 and not self.forced
+
+    @property
+    def forced(self) -> frozenset[str]:
+        """Robots of pairs whose answer is not likely enough, and which was taken all the same."""
+        weak = (number for number, likely in self.likely.items() if likely < ACCEPT_FROM)
+        return frozenset(self.findings[number].order.mov for number in weak)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,19 +93,20 @@ def in_turn(fleet: Fleet, orders: Sequence[PairOrder]) -> Iterator[PairFinding]:
     return map(partial(find_pair, fleet), orders)
 
 
-def run_fleet(fleet: Fleet, run_pairs: RunPairs = in_turn) -> Iterator[FleetStep]:
+def run_fleet(fleet: Fleet, run_pairs: RunPairs = in_turn, force: bool = False) -> Iterator[FleetStep]:
     """Yield a step for every pair that was merged; the last step is the FleetResult.
 
+    force  : take the likeliest answers however unlikely they are, and take no robot out again
     raises : TooLargeError where a merged map would be over the bound
     """
     findings = yield from _merged(fleet, pair_orders(fleet), run_pairs, [])
-    result = joined(fleet, findings)
+    result = joined(fleet, findings, force)
     lonely = [island.root for island in result.islands[1:] if len(island.poses) == 1]
     if lonely:
         orders = [PairOrder(island.root, name, ()) for name in lonely for island in result.islands[:1]]
         charted = Fleet({**fleet.maps, fleet.anchor: result.islands[0].fusion.merged}, anchor=fleet.anchor)
         findings = yield from _merged(charted, orders, run_pairs, findings)
-        result = joined(fleet, findings)
+        result = joined(fleet, findings, force)
     yield result
 
 
@@ -121,8 +128,13 @@ def _merged(
     return [*before, *(found[order] for order in orders)]
 
 
-def joined(fleet: Fleet, findings: Sequence[PairFinding]) -> FleetResult:
-    """The answers of all pairs, put together; robots whose walls the rest denies are taken out again."""
+def joined(fleet: Fleet, findings: Sequence[PairFinding], force: bool = False) -> FleetResult:
+    """The answers of all pairs, put together; robots whose walls the rest denies are taken out again.
+
+    force : as of ``run_fleet``
+    """
+    if force:
+        return _put_together(fleet, findings, findings, {}, accept_from=0.0)
     refused: dict[str, str] = {}
     while True:
         use = [f for f in findings if not {f.order.ref, f.order.mov} & set(refused)]
@@ -157,12 +169,16 @@ def poses_so_far(fleet: Fleet, findings: Sequence[PairFinding]) -> dict[str, Pos
 
 
 def _put_together(
-    fleet: Fleet, findings: Sequence[PairFinding], use: Sequence[PairFinding], refused: Mapping[str, str]
+    fleet: Fleet,
+    findings: Sequence[PairFinding],
+    use: Sequence[PairFinding],
+    refused: Mapping[str, str],
+    accept_from: float = ACCEPT_FROM,
 ) -> FleetResult:
     graph = AnswerGraph(list(fleet.maps), use, _area(fleet))
     best = graph.best()
     likely = {number: probability_of(graph, best, number) for number in best.chosen}
-    sure = {number: k for number, k in best.chosen.items() if likely[number] >= ACCEPT_FROM}
+    sure = {number: k for number, k in best.chosen.items() if likely[number] >= accept_from}
     parts = nx.connected_components(graph.ties(sure))
     islands = []
     for part in sorted(parts, key=lambda part: (fleet.anchor not in part, -len(part), min(part))):

@@ -71,6 +71,8 @@ def summary(result: FleetResult, total: int) -> str:
     if alone:
         said.append(f"Nothing ties {', '.join(alone)} to the rest.")
     said += [f"{name} was taken out again: {why}." for name, why in result.refused.items()]
+    if result.forced:
+        said.append(f"By force, and not likely to be right: {', '.join(sorted(result.forced))}.")
     if result.left_out:
         count = len(result.left_out)
         said.append(f"{count} sighting{'s are' if count > 1 else ' is'} left out.")

@@ -25,7 +25,7 @@ from app.report.fleet_files import fleet_files
 from app.report.fleet_report import summary
 from app.report.result_files import REPORT_FILE
 
-USAGE = "FLEET --out DIR [--json] [--jobs N | --scheduler ADDRESS]"
+USAGE = "FLEET --out DIR [--force] [--json] [--jobs N | --scheduler ADDRESS]"
 DESCRIPTION = f"""\
 Merge the maps of any number of robots, from whatever sightings there are between them.
 
@@ -51,7 +51,8 @@ Files in the folder of --out:
   report.html, report.json  the graph over the map; robots, sightings and pairs, with probability and reason
 
 A sighting that contradicts the rest is named and left out. A robot that nothing ties to the anchor is not
-placed: no guess is made.
+placed: no guess is made. With --force the likeliest answers are taken, however
+unlikely they are, and said to be unlikely.
 
 Exit status: 0 every robot is placed, 1 some are not (what was placed is written), 2 bad input,
 130 interrupted."""
@@ -60,6 +61,7 @@ Exit status: 0 every robot is placed, 1 some are not (what was placed is written
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("fleet", type=Path, metavar="FLEET", help="fleet file, or a folder with one")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the files")
+    parser.add_argument("--force", action="store_true", help="place robots however unlikely that is")
     parser.add_argument("--json", action="store_true", help="print report.json and nothing else")
     add_workers(parser, None)
 
@@ -72,7 +74,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     for remark in remarks_on(tuple(fleet.maps.values())):
         print(f"warning: {remark}", file=sys.stderr)
     executor = executor_for(args.jobs, args.scheduler)
-    result = _with_bar(run_fleet(fleet, partial(run_pairs, executor)))
+    result = _with_bar(run_fleet(fleet, partial(run_pairs, executor), args.force))
     name = args.fleet.resolve().name if args.fleet.is_dir() else args.fleet.stem
     files = fleet_files(fleet, result, name)
     write_files({args.out / file: data for file, data in files.items()})

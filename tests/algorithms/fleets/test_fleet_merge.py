@@ -200,3 +200,28 @@ def test_while_pairs_are_merged_each_answer_ties_its_robot_to_the_anchor(three, 
     so_far = poses_so_far(three, findings)
     for name, T in merged.placed.items():
         assert near(so_far[name], T, np.zeros(2))
+
+
+def test_by_force_the_likeliest_answer_is_taken_and_said_to_be_unlikely():
+    fleet = read_fleet(ROOT / "sample_maps" / "corridor_fleet_loop")
+    maps = {name: fleet.maps[name] for name in ("r1", "r2")}
+    vague = Fleet(
+        maps, tuple(seen for seen in fleet.sightings if {seen.observer, seen.observed} <= set(maps))
+    )
+    assert set(merge_fleet(vague).placed) == {"r1"}
+    *_, forced = run_fleet(vague, force=True)
+    assert set(forced.placed) == {"r1", "r2"}
+    assert forced.forced == {"r2"}
+    assert not forced.whole
+
+
+@pytest.mark.parametrize("off", [0.0, 0.08])
+def test_a_true_sighting_more_moves_no_robot_by_more_than_its_covariance_says(three, merged, small_case, off):
+    """From another place, to where the first one puts Cid; ``off``: metres by which it is wrong."""
+    (o,) = small_case.observations
+    again = seen_in(replace(o, range=o.range + off), MOVED)
+    more = merge_fleet(replace(three, sightings=(*three.sightings, FleetSighting("ann", "cid", again))))
+    for name, T in more.placed.items():
+        moved = T.array() - merged.placed[name].array()
+        if name != "ann":
+            assert moved @ np.linalg.solve(merged.islands[0].covariances[name], moved) < 9.0
