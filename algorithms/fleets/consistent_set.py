@@ -85,14 +85,12 @@ class AnswerGraph:
             best = better
         return best
 
-    def without(self, number: int, like: ConsistentSet) -> ConsistentSet:
-        """The likeliest set in which a finding's answer is not the one that ``like`` takes."""
-        banned = number, like.chosen[number]
+    def others(self, number: int, like: ConsistentSet) -> list[ConsistentSet]:
+        """The likeliest set without a finding, and those with each of its answers that ``like`` has not."""
         order = sorted(self._edges, key=lambda key: (-self._weight(key), self._called(key)))
-        order = [key for key in order if key != banned]
-        tried = [self._built(order)]
-        tried += [self._built([key, *order], forced=key) for key in order if key[0] == number]
-        return max(tried, key=lambda each: each.score)
+        rest = [key for key in order if key[0] != number]
+        mine = [key for key in order if key[0] == number and key[1] != like.chosen[number]]
+        return [self._built(rest), *(self._built([key, *rest], forced=key) for key in mine)]
 
     def ties(self, chosen: Mapping[int, int]) -> nx.MultiGraph:
         """The robots, and between them the chosen answers; an edge's key is its finding's number."""

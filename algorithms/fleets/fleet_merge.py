@@ -101,7 +101,7 @@ def run_fleet(fleet: Fleet, run_pairs: RunPairs = in_turn, force: bool = False) 
     """
     findings = yield from _merged(fleet, pair_orders(fleet), run_pairs, [])
     result = joined(fleet, findings, force)
-    lonely = [island.root for island in result.islands[1:] if len(island.poses) == 1]
+    lonely = _unseen(result)
     if lonely:
         orders = [PairOrder(island.root, name, ()) for name in lonely for island in result.islands[:1]]
         charted = Fleet({**fleet.maps, fleet.anchor: result.islands[0].fusion.merged}, anchor=fleet.anchor)
@@ -115,6 +115,20 @@ def merge_fleet(fleet: Fleet) -> FleetResult:
     *_, last = run_fleet(fleet)
     assert isinstance(last, FleetResult)
     return last
+
+
+def _unseen(result: FleetResult) -> list[str]:
+    """Robots that are alone and that no sighting brings near anybody of the anchor's map.
+
+    Where a sighting has left several answers open, a search without it would weigh the same walls again, and
+    what it finds must not count as if it were something new.
+    """
+    alone = {island.root for island in result.islands[1:] if len(island.poses) == 1}
+    for finding in result.findings:
+        pair = {finding.order.ref, finding.order.mov}
+        if finding.hypotheses and pair & set(result.placed):
+            alone -= pair
+    return sorted(alone)
 
 
 def _merged(
@@ -200,9 +214,9 @@ def _area(fleet: Fleet) -> float:
 
 
 def probability_of(graph: AnswerGraph, best: ConsistentSet, number: int) -> float:
-    """That a chosen answer is right: the set with it against the likeliest one without it."""
-    gap = best.score - graph.without(number, best).score
-    return 1.0 / (1.0 + exp(-min(700.0, gap)))
+    """That a chosen answer is right: the set with it against those with none of its pair, or another."""
+    odds = (exp(min(700.0, other.score - best.score)) for other in graph.others(number, best))
+    return 1.0 / (1.0 + sum(odds))
 
 
 def _left_out(
