@@ -90,7 +90,7 @@ class AnswerGraph:
         order = sorted(self._edges, key=lambda key: (-self._weight(key), self._called(key)))
         rest = [key for key in order if key[0] != number]
         mine = [key for key in order if key[0] == number and key[1] != like.chosen[number]]
-        return [self._built(rest), *(self._built([key, *rest], forced=key) for key in mine)]
+        return [self._built(rest), *(self._built([key, *rest], forced=key, keep=True) for key in mine)]
 
     def ties(self, chosen: Mapping[int, int]) -> nx.MultiGraph:
         """The robots, and between them the chosen answers; an edge's key is its finding's number."""
@@ -123,8 +123,14 @@ class AnswerGraph:
         answer = self._findings[key[0]].hypotheses[key[1]]
         return tuple(answer.T_ref_mov.array().tolist())
 
-    def _built(self, order: Sequence[Answer], forced: Answer | None = None) -> ConsistentSet:
-        """A set, made by taking one answer after the other that makes it likelier."""
+    def _built(
+        self, order: Sequence[Answer], forced: Answer | None = None, keep: bool = False
+    ) -> ConsistentSet:
+        """A set, made by taking one answer after the other that makes it likelier.
+
+        forced : is taken whatever it does
+        keep   : and stays though it is unlikely by itself, and no loop supports it
+        """
         tree: SpanningForest[Answer] = SpanningForest(self._names)
         chosen: Chosen = {}
         score = 0.0
@@ -142,10 +148,10 @@ class AnswerGraph:
             score += gain
             if not tied:
                 tree.link(pair.ref, pair.mov, key)
-        return self._pruned(ConsistentSet(chosen, score))
+        return self._pruned(ConsistentSet(chosen, score), forced if keep else None)
 
-    def _pruned(self, found: ConsistentSet) -> ConsistentSet:
-        """Without the answers that are unlikely by themselves, and which no loop supports."""
+    def _pruned(self, found: ConsistentSet, kept: Answer | None) -> ConsistentSet:
+        """Without the answers that are unlikely by themselves, and which no loop supports, but for one."""
         chosen, score = dict(found.chosen), found.score
         while any(self._weight(key) <= 0 for key in chosen.items()):
             links: dict[frozenset[str], list[int]] = {}
@@ -155,7 +161,8 @@ class AnswerGraph:
             bridges = nx.bridges(nx.Graph(tuple(pair) for pair in links))
             alone = [links[frozenset(bridge)] for bridge in bridges]
             weak = [numbers[0] for numbers in alone if len(numbers) == 1]
-            weak = [number for number in weak if self._weight((number, chosen[number])) <= 0]
+            answers = [(number, chosen[number]) for number in weak]
+            weak = [key[0] for key in answers if self._weight(key) <= 0 and key != kept]
             if not weak:
                 break
             for number in weak:

@@ -96,10 +96,18 @@ def test_without_a_loop_two_answers_that_are_alike_stay_undecided():
     assert probability_of(graph, graph.best(), 0) == pytest.approx(0.5, abs=0.05)
 
 
-def test_an_answer_that_none_supports_has_its_own_probability():
-    _, poses = world(7, 2)
-    graph = AnswerGraph(list(poses), [finding(0, "r0", "r1", hypothesis(true(poses, "r0", "r1"), 0.8))], AREA)
-    assert probability_of(graph, graph.best(), 0) == pytest.approx(0.8)
+@given(st.lists(st.floats(0.02, 1.0), min_size=1, max_size=5), st.floats(0.02, 1.0))
+def test_an_answer_that_none_supports_has_its_own_probability(shares, none):
+    """However many others of its pair there are."""
+    rng, poses = world(7, 2)
+    total = sum(shares) + none
+    answers = [hypothesis(anywhere(rng), share / total, none / total) for share in shares]
+    graph = AnswerGraph(list(poses), [finding(0, "r0", "r1", *answers)], AREA)
+    best = graph.best()
+    if best.chosen:
+        assert probability_of(graph, best, 0) == pytest.approx(max(shares) / total)
+    else:
+        assert max(shares) <= none
 
 
 def test_unlikely_answers_that_close_a_loop_are_likely_together():
