@@ -179,6 +179,9 @@ EXERCISED_BY = {
         "app.page.lesson.figures.verdict_figure",
         "app.drawing.svg.svg_canvas",
     },
+    "app/page/lesson/figures/test_chain_figure.py": {
+        "app.page.lesson.chain_runs",
+    },
     "app/page/panels/test_panels.py": {
         "app.page.editing.observation_panel",
         "app.page.panels.html_widgets",

@@ -16,7 +16,6 @@ from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
 from app.model.view_modes import LESSON
 from app.page.lesson.figures.figure_registry import PICTURES
-from app.page.lesson.knowledge_runs import KnowledgeRuns
 from app.page.lesson.lesson_display import LessonDisplay, OnMap
 from app.page.lesson.lesson_run import LessonRun, keep
 from app.page.lesson.lesson_texts import StepText, files, read_step, with_settings
@@ -96,7 +95,7 @@ class LessonController:
     def _end(self) -> None:
         """Close the dock and put the settings back."""
         self._thread.stop()
-        self._lesson.knowledge = None  # its merged maps may be large
+        self._lesson.sides.clear()  # their merged maps may be large
         self._tried = None
         self._runs.set_method(*self._own)
         self._dock(False)
@@ -181,8 +180,8 @@ class LessonController:
         state, had = self._state, self._lesson
         self._thread.stop()
         self._done = False
-        knowledge = had.knowledge if (had.inputs, had.seed) == (state.inputs, state.seed) else None
-        self._lesson = LessonRun(state.inputs, state.config, state.seed, knowledge=knowledge)
+        sides = had.sides if (had.inputs, had.seed) == (state.inputs, state.seed) else {}
+        self._lesson = LessonRun(state.inputs, state.config, state.seed, sides=sides)
         job = state.job()
         if self._lesson.possible and job is not None:
             self._thread.request(job)
@@ -191,11 +190,14 @@ class LessonController:
         """Begin the next of the merges that the step at hand compares, once the lesson's own is over."""
         text, lesson = self._text, self._lesson
         picture = PICTURES.get(text.picture) if text is not None and self.open else None
-        if picture is None or not picture.compares or not self._done or not lesson.reached(*picture.needs):
+        if text is None or picture is None or picture.compares is None or not self._done:
             return
-        lesson.knowledge = lesson.knowledge or KnowledgeRuns(lesson.inputs, lesson.seed)
-        if lesson.knowledge.next is not None:
-            self._thread.request(lesson.knowledge.next.job)
+        if not lesson.reached(*picture.needs):
+            return
+        runs = lesson.sides.get(text.picture) or picture.compares(lesson)
+        lesson.sides[text.picture] = runs
+        if runs.next is not None:
+            self._thread.request(runs.next.job)
 
     def _compared(self, job: MergeJob, run: RunState, failed: str = "") -> bool:
         """Take in one of these merges, as far as it has come; whether it is one."""
@@ -221,7 +223,7 @@ class LessonController:
         text, had = self._text, self._lesson
         if text is None or text.picture not in PICTURES or had.reached(*PICTURES[text.picture].needs):
             return
-        early = LessonRun(had.inputs, job.config, job.seed, tuple(self._steps), had.knowledge)
+        early = LessonRun(had.inputs, job.config, job.seed, tuple(self._steps), had.sides)
         if early.reached(*PICTURES[text.picture].needs):
             self._lesson = early
             self._show(fresh=True)
@@ -235,7 +237,7 @@ class LessonController:
     def ended(self, job: MergeJob, run: RunState) -> None:
         if not self._compared(job, run):
             had = self._lesson
-            self._lesson = LessonRun(had.inputs, job.config, job.seed, tuple(self._steps), had.knowledge)
+            self._lesson = LessonRun(had.inputs, job.config, job.seed, tuple(self._steps), had.sides)
             self._done = True
             self._show(fresh=not had.steps)
         self._compare()

@@ -82,7 +82,8 @@ class LessonDisplay:
         self._panel.picture(picture.draw(lesson, places, palette))
         ink = picture.ink(lesson, places, self._display.views.map.layout, palette)
         turn = picture.turn(lesson, places) if picture.turn else None
-        share = lesson.knowledge.done if picture.compares and lesson.knowledge else None
+        runs = lesson.sides.get(text.picture)
+        share = None if runs is None else runs.done
         return OnMap(picture.run(lesson, places), ink, turn, busy=share is not None, done=share)
 
     def on_map(self, step: OnMap, says: str, look: bool) -> None:

@@ -22,7 +22,7 @@ from algorithms.spectra.hough_spectra import hough_transform
 from app.model.merge_inputs import MergeInputs
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
-from app.page.lesson.knowledge_runs import KnowledgeRun, KnowledgeRuns
+from app.page.lesson.side_runs import SideRun, SideRuns
 
 D = TypeVar("D")
 
@@ -47,11 +47,11 @@ class LessonRun:
         config: Any,
         seed: int = 0,
         steps: tuple[Step, ...] = (),
-        knowledge: KnowledgeRuns | None = None,
+        sides: dict[str, SideRuns] | None = None,
     ) -> None:
-        """``knowledge``: merges of the same pair that a step compares, once a student has come to it."""
+        """``sides``: by the names of pictures, merges that a step compares, once a student has come to it."""
         self.inputs, self.config, self.seed, self.steps = inputs, config, seed, steps
-        self.knowledge = knowledge
+        self.sides = {} if sides is None else sides
 
     @property
     def possible(self) -> bool:
@@ -78,9 +78,9 @@ class LessonRun:
             run.add(step)
         return run
 
-    def compared(self, job: MergeJob) -> KnowledgeRun | None:
+    def compared(self, job: MergeJob) -> SideRun | None:
         """Of the merges that a step compares the one that a job belongs to."""
-        return self.knowledge.of(job) if self.knowledge is not None else None
+        return next((one for runs in self.sides.values() if (one := runs.of(job)) is not None), None)
 
     # --- worked out once --------------------------------------------------------------------------
 

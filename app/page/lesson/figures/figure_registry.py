@@ -27,11 +27,12 @@ from app.drawing.draw_items import Item, path
 from app.drawing.palette import Palette
 from app.drawing.scene_layout import SceneLayout
 from app.model.run_state import RunState
-from app.page.lesson.figures import knowledge_figure, verdict_figure
+from app.page.lesson.figures import chain_figure, knowledge_figure, verdict_figure
 from app.page.lesson.figures import map_figures as maps
 from app.page.lesson.figures import search_figures as search
 from app.page.lesson.figures import spectra_figures as spectra
 from app.page.lesson.lesson_run import FEW, LessonRun
+from app.page.lesson.side_runs import SideRuns
 
 At = Sequence[int]
 
@@ -63,7 +64,7 @@ class LessonFigure:
     dials : what can be moved; asked once ``needs`` is there
     ink   : what is drawn over the map besides
     turn  : how far map 2 is turned where it lies beside map 1; None: as the run has it
-    compares : whether it is of the lesson's ``knowledge``, which is worked out while it is looked at
+    compares : makes the merges that it compares, which run while it is looked at; None: it has none
     """
 
     needs: tuple[type, ...]
@@ -72,7 +73,7 @@ class LessonFigure:
     dials: Callable[[LessonRun], tuple[FigureSlider, ...]] = lambda _: ()
     ink: Callable[[LessonRun, At, SceneLayout, Palette], list[Item]] = lambda *_: []
     turn: Callable[[LessonRun, At], float] | None = None
-    compares: bool = False
+    compares: Callable[[LessonRun], SideRuns] | None = None
 
 
 def _up_to(kind: type) -> Callable[[LessonRun, At], RunState]:
@@ -195,8 +196,12 @@ PICTURES: dict[str, LessonFigure] = {
     "answers": LessonFigure((MergeResult,), verdict_figure.answers, _up_to(WeighedDetail)),
     "merged": LessonFigure((MergeResult,), maps.merged, _up_to(Fusion)),
     "verdict": LessonFigure((MergeResult,), verdict_figure.verdict, _up_to(MergeResult)),
-    "knowledge": LessonFigure(
-        (MergeResult,), knowledge_figure.knowledge, knowledge_figure.shown_on_map, _compared, compares=True
+    knowledge_figure.NAME: LessonFigure(
+        (MergeResult,), knowledge_figure.knowledge, knowledge_figure.shown_on_map, _compared,
+        compares=knowledge_figure.runs_of,
+    ),
+    chain_figure.NAME: LessonFigure(
+        (MergeResult,), chain_figure.chain, _up_to(MergeResult), compares=chain_figure.runs_of
     ),
 }  # fmt: skip
 

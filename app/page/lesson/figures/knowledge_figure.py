@@ -17,9 +17,10 @@ from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot
 from app.drawing.svg.thumbnail import laid_over
 from app.model.run_state import RunState
 from app.model.verdict_text import likelihood
-from app.page.lesson.knowledge_runs import KnowledgeRun, KnowledgeRuns
 from app.page.lesson.lesson_run import LessonRun
+from app.page.lesson.side_runs import SideRun, SideRuns, knowledge_runs
 
+NAME = "knowledge"
 SIDE, APART, TOP = 120.0, 130.0, 18.0
 ROW = 29.0  # height of a row of numbers
 ROWS = (
@@ -62,9 +63,9 @@ def shown_on_map(lesson: LessonRun, at: Sequence[int]) -> RunState:
     return one.run if one.run is not None and one.run.last is not None else own
 
 
-def runs_of(lesson: LessonRun) -> KnowledgeRuns:
+def runs_of(lesson: LessonRun) -> SideRuns:
     """The merges, none of them begun where the lesson has not come to them."""
-    return lesson.knowledge or KnowledgeRuns(lesson.inputs, lesson.seed)
+    return lesson.sides.get(NAME) or knowledge_runs(lesson.inputs, lesson.seed)
 
 
 def _view(lesson: LessonRun) -> RasterView:
@@ -76,7 +77,7 @@ def _view(lesson: LessonRun) -> RasterView:
 
 
 def _panel(
-    sheet: SvgCanvas, x: float, view: RasterView, lesson: LessonRun, one: KnowledgeRun, palette: Palette
+    sheet: SvgCanvas, x: float, view: RasterView, lesson: LessonRun, one: SideRun, palette: Palette
 ) -> None:
     """Map 2 at the answer, or at the best place so far, and where all the best places put x̂₂."""
     i, plane = lesson.inputs, one.run.get(PlaneDetail) if one.run else None
@@ -122,7 +123,7 @@ def _rounded(value: float) -> str:
     return f"{float(f'{value:.3g}'):,.10g}"
 
 
-def _numbers(one: KnowledgeRun) -> tuple[str, ...]:
+def _numbers(one: SideRun) -> tuple[str, ...]:
     """A text per row; an ellipsis where it is not known yet."""
     plane, result = one.run.get(PlaneDetail) if one.run else None, one.result
     told = ["…"] * len(ROWS)

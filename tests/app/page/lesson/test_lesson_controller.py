@@ -209,6 +209,6 @@ def test_the_lesson_that_ships_opens_with_its_first_step(tab, monkeypatch):
     lesson = make(tab, lesson_folder(), monkeypatch)
     lesson.toggle()
     assert step(tab)[0] == 0
-    assert len(tab.panels.lesson.contents.call_args.args[0]) == 17
+    assert len(tab.panels.lesson.contents.call_args.args[0]) == 18
     lesson.toggle()
     assert not lesson.open

@@ -1,4 +1,4 @@
-"""A pair merged over the plane with more and more known: nothing, about where the robots met, a sighting."""
+"""Merges beside the lesson's own, which a step compares: what is known makes the difference, or the pair."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ VAGUE = 1.0  # metres; standard deviation of where the robots met, and how far o
 
 
 @dataclass(eq=False)
-class KnowledgeRun:
+class SideRun:
     """One of the merges, as far as it has come.
 
     title      : what is known, in a few words
@@ -47,32 +47,19 @@ class KnowledgeRun:
         return bool(self.failed) or self.result is not None
 
 
-class KnowledgeRuns:
-    """The merges of a pair that was seen at least once, those first that know least."""
+class SideRuns:
+    """The merges of one step, in the order in which they are run."""
 
-    def __init__(self, inputs: MergeInputs, seed: int = 0) -> None:
-        assert inputs.ref is not None
-        assert inputs.mov is not None
-        ref, mov, at = inputs.ref, inputs.mov, inputs.encounters[0]
-        about = at.x_ref + VAGUE * np.sqrt(0.5)
-        near = NearPlace(*about.tolist(), *at.x_mov.tolist(), SPREADS_IN_RADIUS * VAGUE)
-
-        def job(*known: Known) -> MergeJob:
-            return MergeJob(ref, mov, known, METHODS[PLANE_METHOD].defaults, PLANE_METHOD, seed)
-
-        self.each = (
-            KnowledgeRun("nothing known", job()),
-            KnowledgeRun(f"the place, to {VAGUE:g} m", job(near), about, VAGUE**2 * np.eye(2)),
-            KnowledgeRun("the sighting", job(*inputs.observations), at.x_ref, at.covariance),
-        )
+    def __init__(self, *each: SideRun) -> None:
+        self.each = each
 
     @property
-    def at_work(self) -> KnowledgeRun | None:
+    def at_work(self) -> SideRun | None:
         """The one that has begun and is not over."""
         return next((one for one in self.each if one.run is not None and not one.over), None)
 
     @property
-    def next(self) -> KnowledgeRun | None:
+    def next(self) -> SideRun | None:
         """The first that is not over."""
         return next((one for one in self.each if not one.over), None)
 
@@ -84,6 +71,24 @@ class KnowledgeRuns:
             return None
         return (sum(one.over for one in self.each) + progress(at_work.run)) / len(self.each)
 
-    def of(self, job: MergeJob) -> KnowledgeRun | None:
+    def of(self, job: MergeJob) -> SideRun | None:
         """The one that a job belongs to."""
         return next((one for one in self.each if one.job is job), None)
+
+
+def knowledge_runs(inputs: MergeInputs, seed: int = 0) -> SideRuns:
+    """The merges over the plane of a pair that was seen at least once, those first that know least."""
+    assert inputs.ref is not None
+    assert inputs.mov is not None
+    ref, mov, at = inputs.ref, inputs.mov, inputs.encounters[0]
+    about = at.x_ref + VAGUE * np.sqrt(0.5)
+    near = NearPlace(*about.tolist(), *at.x_mov.tolist(), SPREADS_IN_RADIUS * VAGUE)
+
+    def job(*known: Known) -> MergeJob:
+        return MergeJob(ref, mov, known, METHODS[PLANE_METHOD].defaults, PLANE_METHOD, seed)
+
+    return SideRuns(
+        SideRun("nothing known", job()),
+        SideRun(f"the place, to {VAGUE:g} m", job(near), about, VAGUE**2 * np.eye(2)),
+        SideRun("the sighting", job(*inputs.observations), at.x_ref, at.covariance),
+    )

@@ -11,13 +11,13 @@ from algorithms.methods.steps import PlaneDetail
 from algorithms.observations.pair_problem import PairProblem
 from app.model.merge_inputs import MergeInputs
 from app.model.run_state import RunState
-from app.page.lesson.knowledge_runs import VAGUE, KnowledgeRuns
+from app.page.lesson.side_runs import VAGUE, SideRuns, knowledge_runs
 
 
 @pytest.fixture(scope="module")
-def runs(small_case) -> KnowledgeRuns:
+def runs(small_case) -> SideRuns:
     """All of them over."""
-    found = KnowledgeRuns(MergeInputs.of(small_case))
+    found = knowledge_runs(MergeInputs.of(small_case))
     for one in found.each:
         one.run = RunState(one.job.config)
         for step in one.job.run({}):
@@ -44,7 +44,7 @@ def test_the_vague_place_is_given_as_far_off_as_it_is_vague(runs, small_case):
 
 
 def test_one_is_at_work_after_another_until_all_are_over(small_case, runs):
-    fresh = KnowledgeRuns(MergeInputs.of(small_case))
+    fresh = knowledge_runs(MergeInputs.of(small_case))
     for k, (one, over) in enumerate(zip(fresh.each, runs.each, strict=True)):
         assert fresh.at_work is None
         assert fresh.done is None
