@@ -182,6 +182,9 @@ EXERCISED_BY = {
     "app/page/lesson/figures/test_chain_figure.py": {
         "app.page.lesson.chain_runs",
     },
+    "app/page/lesson/test_museum_controller.py": {
+        "app.page.lesson.exhibit_samples",
+    },
     "app/page/panels/test_panels.py": {
         "app.page.editing.observation_panel",
         "app.page.panels.html_widgets",

@@ -78,11 +78,11 @@ class Page:
         robots = PlacementController(tab, undo, runs, inputs)
         KnowledgeController(tab, undo, runs, inputs, robots.begin)
         teaching = LessonController(tab, undo, runs, lesson or lesson_folder())
-        museum = MuseumController(tab, undo, runs, inputs)
-        panels.run.connect_learn(teaching.toggle, museum.toggle)
         others = OtherResultController(tab, undo, runs)
         deliver = DownloadTask(client, panels.task)
         fleet = FleetController(tab, runs, inputs, quota, deliver, robots.begin)
+        museum = MuseumController(tab, undo, runs, inputs, fleet.merge_fleet)
+        panels.run.connect_learn(teaching.toggle, museum.toggle)
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
         self._sweep = SweepController(state, panels.sweep, messages, events, runs, deliver)
         self._parts = inputs, events, teaching, drag, self._comparison, self._sweep, zoom, fleet, runs.thread

@@ -268,3 +268,20 @@ def test_an_exhibit_without_its_sighting_is_cured_by_it(tab):
     assert tab.layer("robots")
     tab.press("Leave the museum")
     settle(lambda: "office_r2_r1" in tab.page.locator(".mm-title").inner_text(), "the maps of before")
+
+
+def test_the_exhibit_of_the_sighting_that_lies_is_cured_by_the_other_robots(tab):
+    tab.press("Instant")
+    tab.press("Museum")
+    tab.choose("Exhibit", "8. The sighting that lied")
+    settle(lambda: "r3 saw r4" in tab.page.locator(".mm-title").inner_text(), "its maps")
+    tab.press("Merge")
+    settle(lambda: "from the truth. The verdict saw it." in tab.text, "the failure")
+    tab.press("Cure: Ask the other robots")
+    settle(lambda: "r3's sighting of r4 would put it 3.7 m off." in tab.text, "the cure")
+    assert tab.number("sample") == "home_fleet_island, sighting 4 alone → all of its sightings"
+    tab.press("Once more, uncured")
+    settle(lambda: "r3 saw r4" in tab.page.locator(".mm-title").inner_text(), "the exhibit again")
+    tab.press("Leave the museum")
+    settle(lambda: "office_r2_r1" in tab.page.locator(".mm-title").inner_text(), "the maps of before")
+    assert not tab.page.get_by_text("Back to the fleet").is_visible()

@@ -86,6 +86,12 @@ class FleetController:
         """Show a fleet in place of what is on the page, as an action of the person."""
         self._go(FleetState(fleet, name), f"load {name}")
 
+    def merge_fleet(self, fleet: Fleet, name: str) -> None:
+        """Show a fleet, and merge it."""
+        with self._locks.action:
+            self._load(fleet, name)
+            self._merge()
+
     def _begin(self) -> None:
         """The two maps of the page become a fleet, with what was found of them; robots can be added."""
         with self._locks.action:

@@ -13,12 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from algorithms.common.errors import InputFileError, MapMergeError, unreadable
-from algorithms.files.case_folder import read_case
-from algorithms.files.yaml_fields import Fields, parse, shown
+from algorithms.files.yaml_fields import Fields, parse, positive_number, shown
 from algorithms.methods.registry import METHODS
 from algorithms.methods.spectra_config import PipelineConfig
 from app.model.knowledge import Choice
-from app.model.merge_inputs import MergeInputs
 from app.model.settings import Path as SettingPath
 from app.model.settings import Setting, settings_of, what_became_of, with_value
 from app.page.lesson import equations
@@ -28,6 +26,7 @@ Settings = tuple[tuple[SettingPath, Any], ...]
 
 KNOWN: tuple[Choice, ...] = ("sighting", "nothing")  # in an exhibit
 
+EXHIBIT = "title", "case", "rough", "sighting", "method", "settings", "known", "cure", "why", "cured"
 FENCE = "---"
 PLACEHOLDER = re.compile(r"\{([A-Za-z_][A-Za-z_0-9]*)\}")
 EXAMPLE = "begin the file with a line ---, then title: …, then a line ---, then the text"
@@ -64,6 +63,8 @@ class Exhibit:
     """One failure of the museum: what to load, how it fails, and what cures it.
 
     case, rough  : name of a sample, and whether its badly measured sighting is taken
+    sighting     : number from 1, where the sample is a fleet: its pair is merged by that alone, and the cure
+                   merges the fleet; 0 where it is a pair
     method, settings, known : it fails with; of what is known that is used
     cure_method, cure_settings, cure_known : it merges with
     why, cured   : what happened, and why the cure helps; Markdown
@@ -73,6 +74,7 @@ class Exhibit:
     title: str
     case: str
     rough: bool
+    sighting: int
     method: str
     settings: Settings
     known: Choice
@@ -134,10 +136,12 @@ def read_step(path: Path, pictures: Collection[str], numbers: Collection[str]) -
 def read_exhibit(path: Path) -> Exhibit:
     """Read an exhibit of the museum; raises InputFileError as ``read_step`` does."""
     fields, body = _parts(path)
-    fields.refuse_unknown("title", "case", "rough", "method", "settings", "known", "cure", "why", "cured")
+    fields.refuse_unknown(*EXHIBIT)
     case = fields.text("case", "name a sample")
-    if case not in paths.samples():
-        raise fields.error("case", f"is {shown(case)}", f"known are {', '.join(paths.samples())}")
+    sighting = int(positive_number(fields, "sighting", "the number of a sighting", 0.0))
+    samples = paths.fleets() if sighting else paths.samples()
+    if case not in samples:
+        raise fields.error("case", f"is {shown(case)}", f"known are {', '.join(samples)}")
     cure = fields.section("cure", "give {button: …, method: …, settings: {…}, known: …}")
     cure.refuse_unknown("button", "method", "settings", "known")
     method = _method(fields)
@@ -148,6 +152,7 @@ def read_exhibit(path: Path) -> Exhibit:
         title=fields.text("title", "give the exhibit a title"),
         case=case,
         rough=fields.flag("rough", "give true or false") if "rough" in fields.values else False,
+        sighting=sighting,
         method=method,
         settings=_settings(fields, METHODS[method].defaults),
         known=known,
@@ -159,14 +164,6 @@ def read_exhibit(path: Path) -> Exhibit:
         why=fields.text("why", "say what happened, and why"),
         cured=fields.text("cured", "say why the cure helps"),
     )
-
-
-def exhibit_inputs(exhibit: Exhibit) -> tuple[MergeInputs, MergeInputs]:
-    """What an exhibit merges, and what its cure does: the same maps; raises InputFileError."""
-    inputs = MergeInputs.of(read_case(paths.samples()[exhibit.case], exhibit.rough))
-    wrong = inputs.knowing(inputs.pool, exhibit.known)
-    same = exhibit.cure_known == exhibit.known
-    return wrong, wrong if same else inputs.knowing(inputs.pool, exhibit.cure_known)
 
 
 def with_settings(config: Any, settings: Settings) -> Any:

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import pose_error
 from algorithms.methods.registry import METHODS
+from algorithms.observations.fleet import Fleet
 from app.model.knowledge import CHOICES
 from app.model.merge_inputs import Files, MergeInputs
 from app.model.settings import settings_of, text_for, value_at
 from app.model.status_text import apart_by
 from app.model.view_modes import MUSEUM
 from app.page.inputs_controller import InputsController
+from app.page.lesson.exhibit_samples import exhibit_fleet, exhibit_inputs
 from app.page.lesson.lesson_texts import (
     Exhibit,
     Settings,
-    exhibit_inputs,
     files,
     museum_folder,
     read_exhibit,
@@ -27,15 +29,23 @@ from app.page.run_controller import RunController
 from app.page.tab import Tab
 from app.page.undo.page_snapshot import PageSnapshot
 from app.page.undo.undo_controller import UndoController
+from app.report.fleet_report import summary
 
 
 class MuseumController:
-    """Knows the exhibit at hand, and what there was before the visit."""
+    """Knows the exhibit at hand, and what was before the visit; ``merge_fleet``: shows and merges one."""
 
-    def __init__(self, tab: Tab, undo: UndoController, runs: RunController, inputs: InputsController) -> None:
+    def __init__(
+        self,
+        tab: Tab,
+        undo: UndoController,
+        runs: RunController,
+        inputs: InputsController,
+        merge_fleet: Callable[[Fleet, str], None],
+    ) -> None:
         self._state, self._display, self._panels = tab.state, tab.display, tab.panels
         self._modes, self._notices, self._panel = tab.modes, tab.notices, tab.panels.museum
-        self._undo, self._runs, self._inputs = undo, runs, inputs
+        self._undo, self._runs, self._inputs, self._merge_fleet = undo, runs, inputs, merge_fleet
         self.open = False
         self._before: PageSnapshot | None = None
         self._files: list[Path] = []
@@ -44,6 +54,7 @@ class MuseumController:
         self._pair = self._cured_pair = MergeInputs()
         self._panel.connect(self.pick, self.cure, lambda: self.pick(self._index), self.leave)
         tab.state.subscribe("result", self._result_shown)
+        tab.state.subscribe("fleet", self._fleet_shown)
 
     def toggle(self) -> None:
         (self.leave if self.open else self.enter)()
@@ -101,6 +112,7 @@ class MuseumController:
             self._panels.files.restore(Files(self._pair.name))
             with self._state.locks.drawing:
                 if self._inputs.show(self._pair):
+                    self._state.update(fleet=None)
                     self._undo.history.note(self._state.snapshot(), f"exhibit: {exhibit.title}")
 
     def cure(self) -> None:
@@ -108,6 +120,11 @@ class MuseumController:
         with self._state.locks.action:
             if self.open and self._exhibit is not None:
                 exhibit = self._exhibit
+                fleet = exhibit_fleet(exhibit)
+                if fleet is not None:
+                    self._panel.settings(self._changes(exhibit))
+                    self._merge_fleet(fleet, exhibit.case)
+                    return
                 if self._state.inputs is not self._pair:
                     self.pick(self._index)
                 if self._pair is not self._cured_pair:
@@ -138,6 +155,16 @@ class MuseumController:
             self._panel.settings(self._changes(exhibit))
             self._panel.cured(exhibit.cured, f"Cured: {where} from the truth, and {verdict}.")
 
+    def _fleet_shown(self) -> None:
+        """The fleet of an exhibit was merged: say what became of the sighting."""
+        exhibit, state = self._exhibit, self._state.fleet
+        if exhibit is None or not exhibit.sighting or state is None or state.result is None:
+            return
+        left = [each.reason for each in state.result.left_out if each.number == exhibit.sighting - 1]
+        if state.name == exhibit.case and left:
+            said = summary(state.result, len(state.robots))
+            self._panel.cured(exhibit.cured, f"Cured: {said} {left[0]}.")
+
     def _failing(self, exhibit: Exhibit) -> tuple[str, Any]:
         return exhibit.method, with_settings(METHODS[exhibit.method].defaults, exhibit.settings)
 
@@ -158,6 +185,7 @@ class MuseumController:
 def rows(exhibit: Exhibit, config: Any) -> list[tuple[str, ...]]:
     """What is loaded and set for an exhibit, as a person reads it."""
     sample = exhibit.case + (", badly measured" if exhibit.rough else "")
+    sample += f", sighting {exhibit.sighting} alone" if exhibit.sighting else ""
     shown = [("sample", sample), ("method", METHODS[exhibit.method].title)]
     if exhibit.known != exhibit.cure_known:
         shown.append(("known", CHOICES[exhibit.known]))
@@ -173,7 +201,8 @@ def changes(exhibit: Exhibit, failing: Any, cured: Any) -> list[tuple[str, ...]]
     if exhibit.known != exhibit.cure_known:
         shown.append(("known", _change(CHOICES[exhibit.known], CHOICES[exhibit.cure_known])))
     shown += [(label, _change(before.get(label, words), words)) for label, words in after]
-    return [rows(exhibit, failing)[0], *shown]
+    (label, sample), *_ = rows(exhibit, failing)
+    return [(label, f"{sample} → all of its sightings" if exhibit.sighting else sample), *shown]
 
 
 def _change(old: str, new: str) -> str:
