@@ -31,7 +31,7 @@ BENT = "bent_r2_r1"
 ALIKE = 8139  # a simulated corridor that looks alike when turned
 SHOWN = (
     "swarm", "merged", "proof", "rival", "why", "curtain", "by_hand", "place", "plain_image", "lesson_hough",
-    "lesson_swarm", "lesson_knowledge", "museum", "compared", "swept",
+    "lesson_swarm", "lesson_knowledge", "lesson_chain", "fleet", "museum", "compared", "swept",
 )  # fmt: skip
 
 Keep = Callable[[str], None]
@@ -215,7 +215,7 @@ def a_placement(tab: Tab, keep: Keep) -> None:
 def a_lesson(tab: Tab, keep: Keep) -> None:
     """Every step of the lesson."""
     tab.press("Lesson")
-    steps = {4: "lesson_hough", 12: "lesson_swarm", 17: "lesson_knowledge"}
+    steps = {4: "lesson_hough", 12: "lesson_swarm", 17: "lesson_knowledge", 18: "lesson_chain"}
     number = 1
     while True:
         settle(lambda at=number: f"step {at} of" in tab.state, f"step {number}")
@@ -235,6 +235,17 @@ def a_museum(tab: Tab, keep: Keep) -> None:
     tab.page.mouse.move(640, 500)  # no hint over the panel
     merged(tab, "refused")
     keep("museum")
+
+
+def a_fleet(tab: Tab, keep: Keep) -> None:
+    """Six robots, a lie and an island."""
+    tab.choose("Sample", "home_fleet_island")
+    until(tab, "A fleet of 6 robots.", 600)
+    tab.press("Merge")
+    settle(lambda: tab.mood == "refused", "the fleet")
+    tab.page.mouse.move(640, 700)
+    tab.page.wait_for_timeout(1800)
+    keep("fleet")
 
 
 def a_contest(tab: Tab, keep: Keep) -> None:
@@ -282,8 +293,9 @@ SCENES: dict[Callable[[Tab, Keep], None], tuple[str, ...]] = {
     a_wrong_sighting: ("refused", "refused_download"),
     an_empty_page: ("empty", "plain_image"),
     a_placement: ("place",),
-    a_lesson: ("lesson_hough", "lesson_swarm", "lesson_knowledge"),
+    a_lesson: ("lesson_hough", "lesson_swarm", "lesson_knowledge", "lesson_chain"),
     a_museum: ("museum",),
+    a_fleet: ("fleet",),
     a_contest: ("compared",),
     a_sweep: ("swept",),
 }  # fmt: skip
