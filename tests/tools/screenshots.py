@@ -221,6 +221,8 @@ def a_lesson(tab: Tab, keep: Keep) -> None:
         settle(lambda at=number: f"step {at} of" in tab.state, f"step {number}")
         tab.page.wait_for_timeout(1800)
         settle(lambda: tab.mood == "idle", "what is worked out")
+        if steps.get(number) == "lesson_chain":  # its picture lies below its words
+            tab.page.get_by_text("its answer is then right to").scroll_into_view_if_needed()
         keep(steps.get(number, f"lesson_{number:02d}"))
         if f"step {number} of {number}:" in tab.state:
             return
