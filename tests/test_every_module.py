@@ -18,6 +18,9 @@ EXERCISED_BY = {
         "algorithms.common.errors",
         "algorithms.files.yaml_fields",
     },
+    "algorithms/files/test_odd_yaml.py": {
+        "algorithms.files.text_loader",
+    },
     "algorithms/files/test_case_folder.py": {
         "algorithms.files.observation_file",
         "algorithms.files.truth_file",

@@ -6,6 +6,7 @@ import io
 import posixpath
 import zipfile
 import zlib
+from pathlib import PureWindowsPath
 
 from algorithms.common.errors import InputFileError
 from algorithms.files.fleet_file import FLEET_FILE, fleet_from_bytes, fleet_to_bytes
@@ -57,7 +58,10 @@ def fleet_from_zip(source: str, content: bytes) -> Fleet:
 
         def read(name: str) -> GridMap:
             text = member(name, FLEET_FILE)
-            image = posixpath.join(posixpath.dirname(name), parse_meta(f"{source}: {name}", text).image)
+            beside, image = posixpath.dirname(name), parse_meta(f"{source}: {name}", text).image
+            if posixpath.normpath(posixpath.join(folder, beside, image)) not in files:  # of another machine
+                image = PureWindowsPath(image).name
+            image = posixpath.join(beside, image)
             return map_from_bytes(f"{source}: {name}", text, f"{source}: {image}", member(image, name))
 
         return fleet_from_bytes(f"{source}: {fleets[0]}", member(FLEET_FILE, source), read)

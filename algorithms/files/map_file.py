@@ -7,8 +7,9 @@ cells. An image has its top row first and a GridMap its bottom row: the flip liv
 from __future__ import annotations
 
 import io
+from contextlib import suppress
 from dataclasses import dataclass, replace
-from pathlib import Path, PurePath
+from pathlib import Path, PurePath, PureWindowsPath
 from typing import BinaryIO
 
 from algorithms.common.display_text import show_hidden
@@ -16,6 +17,7 @@ from algorithms.common.errors import InputFileError, OutputError, SettingError, 
 from algorithms.common.pose import Pose2
 from algorithms.files import yaml_fields as fields
 from algorithms.files.atomic_write import write_files
+from algorithms.files.foreign_files import check_foreign_folder
 from algorithms.files.grey_levels import corrected, count_greys, remarks
 from algorithms.files.image_decoder import read_pixels
 from algorithms.files.thresholds import MODES, GreyArray, Shading, cells_of, greys_of
@@ -38,12 +40,14 @@ class MapMeta:
     resolution : metres per pixel
     origin     : T_map_grid, pose of the image's lower-left corner in the map's frame
     shading    : how grey becomes occupancy
+    remarks    : what a person should know of the file, each a clause
     """
 
     image: str
     resolution: float
     origin: Pose2
     shading: Shading
+    remarks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +80,33 @@ def read_map(path: Path | str, unknown_grey: int | None = None) -> GridMap:
         yaml_path = _yaml_beside(path)
         return _read_image(path, _meta_of(yaml_path, unknown_grey), yaml_path.stem)
     meta = _meta_of(path, unknown_grey)
-    image_path = path.parent / meta.image
-    if not image_path.is_file():
-        found = f"its image {meta.image} is {'a folder' if image_path.is_dir() else 'not there'}"
-        raise InputFileError(path, found, "put it there, or correct the key image")
+    image_path, remark = _image_of(path, meta.image)
+    if remark:
+        meta = replace(meta, remarks=(*meta.remarks, remark))
     return _read_image(image_path, meta, path.stem)
+
+
+def _image_of(path: Path, image: str) -> tuple[Path, str]:
+    """Where a map's image is, and what is to be said of that.
+
+    Files are moved, and keep the path of another machine: then the image of that name beside the YAML file is
+    taken.
+    """
+    named = path.parent / image
+    if image.startswith("~"):
+        with suppress(RuntimeError):  # there is no home
+            named = path.parent / Path(image).expanduser()
+    if named.is_file():
+        return named, ""
+    name = PureWindowsPath(image).name  # which takes slashes of both kinds
+    beside = path.parent / name
+    missing = f"its image {image} is {'a folder' if named.is_dir() else 'not there'}"
+    if not name or beside == named:
+        raise InputFileError(path, missing, "put it there, or correct the key image")
+    if not beside.is_file():
+        found = f"{missing}, and no {name} is beside the YAML file"
+        raise InputFileError(path, found, "put it there, or correct the key image")
+    return beside, f"{missing}; {name} beside the YAML file was taken"
 
 
 def _meta_of(path: Path, unknown_grey: int | None) -> MapMeta:
@@ -164,7 +190,7 @@ def parse_meta(source: str, data: bytes) -> MapMeta:
     source : name of the file as the user knows it
     raises : InputFileError
     """
-    f = fields.parse(source, data, "a map's YAML file")
+    f = fields.parse(source, data, "a map's YAML file", first_only=True)
     image = f.text("image", "give the file name of the image")
     resolution = f.number("resolution", "give metres per pixel, e.g. 0.05")
     if not FINEST <= resolution <= COARSEST:
@@ -182,7 +208,8 @@ def parse_meta(source: str, data: bytes) -> MapMeta:
     except SettingError as error:
         found, remedy = str(error).split("; ", 1)
         raise InputFileError(source, found, remedy) from error
-    return MapMeta(image, resolution, Pose2(x, y, yaw), shading)
+    more = ("its YAML file holds several documents; the first was taken",) if f.further else ()
+    return MapMeta(image, resolution, Pose2(x, y, yaw), shading, more)
 
 
 def read_bytes(path: Path, what: str, most: int = fields.MAX_YAML_BYTES) -> bytes:
@@ -191,6 +218,8 @@ def read_bytes(path: Path, what: str, most: int = fields.MAX_YAML_BYTES) -> byte
     what   : what the file is about, for the remedy: "a map"
     raises : InputFileError where it is not there, or not readable
     """
+    if path.is_dir():
+        check_foreign_folder(path)
     try:
         with path.open("rb") as stream:
             return stream.read(most + 1)  # one more, so that the parser can tell
@@ -223,7 +252,8 @@ def _read_image(path: Path, meta: MapMeta, name: str) -> GridMap:
 
 def _to_map(source: str, stream: BinaryIO, meta: MapMeta, name: str) -> GridMap:
     cells, odd = GreyImage(*read_pixels(source, stream)).read(meta.shading)
-    return GridMap(cells, meta.resolution, meta.origin, show_hidden(name) or "map", odd)
+    remarks = (*meta.remarks, *odd)
+    return GridMap(cells, meta.resolution, meta.origin, show_hidden(name) or "map", remarks)
 
 
 def _opened(data: bytes | BinaryIO) -> BinaryIO:

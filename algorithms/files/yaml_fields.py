@@ -11,63 +11,20 @@ import difflib
 import math
 import re
 import reprlib
-from collections.abc import Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import yaml
 
 from algorithms.common.errors import InputFileError
+from algorithms.files.foreign_files import check_foreign
+from algorithms.files.text_loader import MAX_VALUES, TextLoader, goes_on
 from algorithms.maps.grid_map import FARTHEST, MOST_TURN
 
 MAX_YAML_BYTES = 32 * 1024  # ours have 400 bytes, and 64 sightings less than 30,000
-MAX_DEPTH = 20  # of lists and mappings in each other; ours are 3 deep
-MAX_ALIASES = 64
-MAX_VALUES = 5000  # keys count, too; 64 sightings have 2,000
 TRUE = ("true", "yes", "on", "y")
-HALVES = re.compile(r"[\ud800-\udfff]")  # of characters: no such text can be sent or saved
+HEADER = re.compile(rb"\A(\xef\xbb\xbf)?%YAML:[^\r\n]*")  # of OpenCV's FileStorage
 FALSE = ("false", "no", "off", "n")
-
-
-class _TextLoader(yaml.BaseLoader):
-    """Mappings, lists and texts only; a key given twice is an error, not a silent choice.
-
-    Composing takes what the scanner finds as it comes, so its bounds end the scanning, too: that takes a
-    time that grows with the square of the depth.
-    """
-
-    _aliases = _values = _depth = 0
-    most_values = MAX_VALUES
-
-    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
-        self._values += 1
-        self._aliases += self.check_event(yaml.AliasEvent)
-        if self._values > self.most_values or self._aliases > MAX_ALIASES:
-            raise yaml.composer.ComposerError(None, None, "it holds too many values", None)
-        if self._depth >= MAX_DEPTH and self.check_event(yaml.CollectionStartEvent):
-            raise RecursionError
-        self._depth += 1
-        node: yaml.Node | None = super().compose_node(parent, index)
-        self._depth -= 1
-        return node
-
-    def compose_scalar_node(self, anchor: Any) -> yaml.ScalarNode:
-        node: yaml.ScalarNode = super().compose_scalar_node(anchor)
-        half = HALVES.search(node.value)  # only an escape can write one
-        if half:
-            problem = f"a text holds half a character, U+{ord(half[0]):04X}"
-            raise yaml.composer.ComposerError(None, None, problem, node.start_mark)
-        return node
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
-        seen: set[str] = set()
-        for key_node, _ in node.value:
-            key = str(key_node.value)
-            if key in seen:
-                problem = f"the key {key} stands there twice"
-                raise yaml.constructor.ConstructorError(None, None, problem, key_node.start_mark)
-            seen.add(key)
-        return super().construct_mapping(node, deep=deep)
 
 
 @dataclass(frozen=True)
@@ -78,11 +35,13 @@ class Fields:
     values : texts, lists and mappings by key
     prefix : way to this mapping inside the file, as it stands before a key: "tolerance.",
              "observation 2: "; empty for the file itself
+    further : whether more documents follow, which are passed over
     """
 
     source: str
     values: dict[str, Any]
     prefix: str = ""
+    further: bool = False
 
     def error(self, key: str, found: str, remedy: str) -> InputFileError:
         return InputFileError(self.source, f"{self.prefix}{key} {found}", remedy)
@@ -157,15 +116,19 @@ class Fields:
             raise self.error(shown(key).strip("'"), "is not a known key", remedy)
 
 
-def parse(source: str, data: bytes, what: str, most: int = MAX_YAML_BYTES) -> Fields:
+def parse(
+    source: str, data: bytes, what: str, most: int = MAX_YAML_BYTES, first_only: bool = False
+) -> Fields:
     """The fields of a YAML file.
 
-    source : name of the file as the user knows it
-    what   : what the file should be, with its article: "a map's YAML file"
-    most   : bytes of it
-    raises : InputFileError where it is too long, not YAML, or not a mapping
+    source     : name of the file as the user knows it
+    what       : what the file should be, with its article: "a map's YAML file"
+    most       : bytes of it
+    first_only : further documents are passed over; they are an error otherwise
+    raises     : InputFileError where it is too long, not YAML, not a mapping, or another tool's file
     """
-    return _mapping(source, _load(source, data, what, most), what)
+    values, further = _load(source, data, what, most, first_only)
+    return replace(_mapping(source, values, what), further=further)
 
 
 def parse_entries(source: str, data: bytes, what: str, entry: str, most: int) -> list[Fields]:
@@ -175,7 +138,7 @@ def parse_entries(source: str, data: bytes, what: str, entry: str, most: int) ->
     raises : InputFileError as ``parse`` does, and for a list that is empty, too long, or holds
              anything but mappings
     """
-    values = _load(source, data, what)
+    values, _ = _load(source, data, what)
     if not isinstance(values, list):
         return [_mapping(source, values, what)]
     if not 1 <= len(values) <= most:
@@ -188,15 +151,22 @@ def parse_entries(source: str, data: bytes, what: str, entry: str, most: int) ->
     return [Fields(source, value, f"{entry} {number}: ") for number, value in enumerate(values, 1)]
 
 
-def _load(source: str, data: bytes, what: str, most: int = MAX_YAML_BYTES) -> Any:
+def _load(
+    source: str, data: bytes, what: str, most: int = MAX_YAML_BYTES, first_only: bool = False
+) -> tuple[Any, bool]:
+    """The first document, and whether there are more; arguments as of ``parse``."""
+    check_foreign(source, data)
     if len(data) > most:
         found = f"has {len(data):,} bytes, which is too long for {what}"
         raise InputFileError(source, found, "give the small YAML file, not the image")
     try:
-        loader = _TextLoader(data)
+        loader = TextLoader(HEADER.sub(b"", data))
         loader.most_values = MAX_VALUES * most // MAX_YAML_BYTES
         try:
-            return loader.get_single_data()
+            if not first_only:
+                return loader.get_single_data(), False
+            there = loader.check_data()  # type: ignore[no-untyped-call]
+            return (loader.get_data() if there else None), goes_on(loader)
         finally:
             loader.dispose()
     except (yaml.YAMLError, ValueError, RecursionError) as error:
