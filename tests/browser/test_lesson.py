@@ -125,7 +125,7 @@ def test_each_press_counts_however_quickly_they_follow(tab):
     for _ in range(3):
         tab.press("◀ Back")
     at_step(tab, 3)
-    tab.choose("Step", f"{len(STEPS)}. What the sighting buys")
+    tab.choose("Step", f"{len(STEPS)}. Three robots, and the way round")
     settle(tab.page.get_by_role("button", name="Next ▶").is_disabled, "the last step")
     assert tab.page.get_by_role("button", name="◀ Back").is_enabled()
 
@@ -168,15 +168,16 @@ def test_what_the_sighting_buys_is_worked_out_while_one_looks_on_and_can_be_left
         words = tab.page.locator("svg.mm-picture").first.locator("text").all_text_contents()
         return sum(word.endswith((", merged", ", refused")) for word in words)
 
+    number = len(STEPS) - 1
     enter(tab)
-    tab.choose("Step", f"{len(STEPS)}. What the sighting buys")
+    tab.choose("Step", f"{number}. What the sighting buys")
     settle(lambda: " of 120 turns" in tab.text, "the first of the merges")
     assert tab.mood == "running"
     tab.press("◀ Back")
-    at_step(tab, len(STEPS) - 1)
+    at_step(tab, number - 1)
     settle(lambda: tab.mood == "idle", "the merge to be left")
     tab.press("Next ▶")
-    at_step(tab, len(STEPS))
+    at_step(tab, number)
     settle(lambda: verdicts() == 3, "all three")
     settle(lambda: tab.mood == "idle", "the end")
     where = tab.layer("best")
