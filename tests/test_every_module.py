@@ -217,6 +217,7 @@ EXERCISED_BY = {
         "app.page.fleet.fleet_panel",
         "app.page.fleet.fleet_run_controller",
         "app.page.fleet.robot_files",
+        "app.page.fleet.sample_robots",
     },
     "browser/test_hand.py": {
         "app.page.editing.knowledge_panel",

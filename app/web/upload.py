@@ -129,6 +129,8 @@ class Uploads:
                 await _end(connection, "refused")
             elif await self._watched(arrival):
                 await _end(connection, "arrived")
+            else:  # by Stop, whose own word may come after this
+                await _end(connection, "left")
         except ConnectionClosed:
             log.debug("a file's connection ended")
         except asyncio.TimeoutError:

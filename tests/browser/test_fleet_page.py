@@ -140,9 +140,12 @@ def test_a_robot_is_added_to_two_maps_and_the_result_and_the_fleet_are_taken_awa
     settle(lambda: "Now load its image, too." in tab.text, "what is missing")
     tab.upload(1, third / "map1.pgm")
     settle(lambda: set(robots(tab)) == {"robot 1", "robot 2", "map1"}, "a third robot")
+    tab.choose("Or a sample", "apartment, r1")
+    settle(lambda: "apartment_r1" in robots(tab), "a fourth, of another building")
     tab.press("Merge")
     merged(tab)
     assert robots(tab)["robot 2"].startswith("placed, ")
+    assert robots(tab)["apartment_r1"] == "alone"
     with tab.page.expect_download() as download:
         tab.press("Download the result")
     download.value.save_as(tmp_path / "result.zip")
@@ -154,7 +157,7 @@ def test_a_robot_is_added_to_two_maps_and_the_result_and_the_fleet_are_taken_awa
     other = open_tab(size=(1400, 900))
     other.unfold("Upload your own")
     other.page.locator("input[type=file][accept='.zip']").set_input_files(str(tmp_path / "fleet.zip"))
-    settle(lambda: set(robots(other)) == {"robot 1", "robot 2", "map1"}, "the fleet")
+    settle(lambda: set(robots(other)) == {"robot 1", "robot 2", "map1", "apartment_r1"}, "the fleet")
 
 
 def test_what_is_no_fleet_is_told_and_a_merge_of_one_can_be_stopped(island, tmp_path):

@@ -29,6 +29,9 @@ ARGUMENTS = [
 ]
 READY = "() => window.mapmeld?.applied > 0 && document.querySelector('.mm-state span')?.textContent"
 
+# where two points of the scene are in the window, two frames later
+AFTER_A_FRAME = """() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(
+    () => done([[0, 0], [7, 4]].map((p) => window.mapmeld.pixel(p))))))"""
 SCALE = "() => mapmeld.pixel([1, 0])[0] - mapmeld.pixel([0, 0])[0]"  # pixels per metre
 
 
@@ -117,7 +120,7 @@ class Tab:
         seen: list[list[list[float]]] = []
 
         def rests() -> bool:  # two places: a zoom about the one leaves it where it is
-            seen.append(self.page.evaluate("() => [[0, 0], [7, 4]].map((p) => window.mapmeld.pixel(p))"))
+            seen.append(self.page.evaluate(AFTER_A_FRAME))
             return len(seen) > 8 and seen[-8:] == seen[-1:] * 8
 
         settle(rests, "the camera to rest")

@@ -12,9 +12,11 @@ from algorithms.fleets.pair_hypotheses import pair_orders
 from app.drawing.palette import LIGHT, QUIET
 from app.model.fleet_state import FleetState
 from app.page.fleet.fleet_html import pairs_html, robots_html
+from app.page.fleet.sample_robots import sample_robots
 from app.page.panels.html_widgets import Action, box, on_press, put
 
 LEAST = 2  # robots of a fleet
+NO_SAMPLE = "(choose)"
 
 
 class FleetPanel:
@@ -44,6 +46,8 @@ class FleetPanel:
                 self.yaml = gui.add_upload_button("Robot: YAML", mime_type=".yaml,.yml", **quiet)
                 kinds = ",".join(READABLE_SUFFIXES)
                 self.image = gui.add_upload_button("Robot: image", mime_type=kinds, **quiet)
+                hint = "A map that came along."
+                self.sample = gui.add_dropdown("Or a sample", (NO_SAMPLE, *sample_robots()), hint=hint)
             icon = viser.Icon.DOWNLOAD
             hint = "The merged maps, transforms, graph and report, as a zip."
             self._download = gui.add_button("Download the result", icon=icon, hint=hint, **quiet)

@@ -10,11 +10,13 @@ from typing import Any
 import viser
 
 from algorithms.common.errors import MapMergeError
-from algorithms.files.map_file import map_from_bytes
+from algorithms.files.map_file import map_from_bytes, read_map
 from algorithms.maps.grid_map import GridMap
 from app.model.merge_inputs import Upload
 from app.page.cancellable_task import CancellableTask
-from app.page.fleet.fleet_panel import FleetPanel
+from app.page.fleet.fleet_panel import NO_SAMPLE, FleetPanel
+from app.page.fleet.sample_robots import sample_robots
+from app.page.panels.html_widgets import on_choice, put
 from app.page.panels.uploaded_file import taken_from, upload_of
 from app.system.cancellation import CancellableReader, Cancelled
 
@@ -41,6 +43,21 @@ class RobotFiles:
         self._files: dict[str, Upload] = {}
         panel.yaml.on_upload(lambda event: self._arrived("yaml", event))
         panel.image.on_upload(lambda event: self._arrived("image", event))
+        on_choice(panel.sample, self._sample_chosen)
+
+    def _sample_chosen(self) -> None:
+        name = self._panel.sample.value
+        path = sample_robots().get(name)
+        if path is None:
+            return
+        put(self._panel.sample, value=NO_SAMPLE)  # it can be chosen again
+        with self._action:
+            try:
+                grid = read_map(path)
+            except MapMergeError as error:
+                self._report(error)
+                return
+            self._add(name.replace(", ", "_"), grid)
 
     def _arrived(self, kind: str, event: viser.GuiEvent[Any]) -> None:
         file = taken_from(event)
