@@ -16,6 +16,7 @@ from algorithms.observations.fleet import Fleet
 
 MOST_UNPACKED = 400_000_000  # bytes of all files together: fifty maps of 2,800² cells
 MOST_FILES = 2000
+# what zipfile raises: NotImplementedError is its word for ways to pack that it does not know
 BROKEN = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError, OSError, ValueError)
 WHOLE = f"make a zip of {FLEET_FILE}, the maps' YAML files and their images"
 

@@ -106,14 +106,25 @@ class FleetState:
         return replace(self, fleet=fleet, found=found, hidden=hidden, result=None)
 
     def anchored(self, name: str) -> FleetState:
-        """The result is to be in that robot's frame; poses known in the old anchor's are moved into it."""
+        """The result is to be in that robot's frame.
+
+        What is known of the two robots is known the other way round. Of the others a pose in the old anchor's
+        frame says nothing in the new one's until it is found how the two lie: raises SettingError.
+        """
         f = self.fleet
         if name == f.anchor:
             return self
-        known = {}
-        if name in f.known:  # then the old anchor's is known in the new one's
+        known, others = {}, {each: told for each, told in f.known.items() if each != name}
+        if name in f.known:
             told = f.known[name]
-            known[f.anchor] = replace(told, pose=told.pose.inverse(), about_x=0.0, about_y=0.0)
+            x, y = told.pose.apply(told.about).tolist()
+            known[f.anchor] = replace(told, pose=told.pose.inverse(), about_x=x, about_y=y)
+        placed: Mapping[str, Pose2] = {} if self.result is None else self.result.placed
+        if others and name not in placed:
+            told_in = f"{', '.join(others)}: known in the frame of {f.anchor}"
+            raise SettingError(f"{told_in}; press Merge before {name} becomes the anchor")
+        for each, told in others.items():
+            known[each] = replace(told, pose=placed[name].inverse() @ told.pose)
         return self.with_fleet(replace(f, anchor=name, known=known))
 
     def toggled(self, name: str) -> FleetState:

@@ -157,7 +157,8 @@ def _walls(fleet: Fleet, island: Island, view: RasterView) -> Pixels:
 def robot_rows(fleet: Fleet, result: FleetResult) -> Iterable[tuple[str, ...]]:
     """Where every robot lies, in the frame of its map's root, and how sure that is."""
     for number, island in enumerate(result.islands, 1):
-        for name, T in island.poses.items():
+        for name in (each for each in fleet.maps if each in island.poses):
+            T = island.poses[name]
             where = "root" if name == island.root else f"± {_deviation(fleet, island, name):.2f} m"
             yield (
                 name,

@@ -52,7 +52,7 @@ class KnowledgePanel:
     """Widgets; those of a sighting are the ObservationPanel's."""
 
     def __init__(self, gui: viser.GuiApi) -> None:
-        with gui.add_folder("What do you know?", order=20.0):
+        with gui.add_folder("What do you know?", order=20.0) as self._folder:
             titles = tuple(TITLES.values())
             hint = "What the search may go by. The more is known, the quicker and the surer it is."
             self._choice = gui.add_dropdown("Known is", titles, initial_value=TITLES["nothing"], hint=hint)
@@ -122,6 +122,10 @@ class KnowledgePanel:
         label, colour = ("Done", LIGHT.ref) if moving else ("Move it on the map", QUIET)
         put(self._move, visible=both and prior is not None, label=label, color=colour)
         self.savable(bool(inputs.known))
+
+    def visible(self, yes: bool) -> None:
+        """Whether there are two maps of which something may be known."""
+        put(self._folder, visible=yes)
 
     def savable(self, yes: bool) -> None:
         """Whether there is anything to save."""

@@ -25,8 +25,12 @@ class FleetDisplay:
         self._layout: FleetLayout | None = None
         self._edges: list[Edge] = []
 
-    def show(self, look: bool = False) -> None:
-        """Draw the fleet; ``look``: the camera goes there."""
+    def show(self, look: bool = False, follow: bool = True) -> None:
+        """Draw the fleet.
+
+        look   : the camera goes there
+        follow : also where the person has moved it
+        """
         state = self._state.fleet
         if state is None:
             return
@@ -34,7 +38,7 @@ class FleetDisplay:
         self._edges = edges_of(state, layout)
         self._view.show(state, layout, self._edges, self._state.palette)
         if look:
-            self._messages.look_down(self.extent, follow=True)
+            self._messages.look_down(self.extent, follow=follow)
         self._panels.run.merge.disabled = False
         anchor, box = layout.anchors[state.fleet.anchor], layout.boxes[0]
         self._messages.hud(
@@ -68,6 +72,7 @@ class FleetDisplay:
     def show_panel(self, on: bool) -> None:
         """Have the panel show the fleet where the page does (``on``), or one of its pairs, else nothing."""
         state = self._state.fleet
+        self._panels.knowledge.visible(state is None or state.opened is not None or not on)
         if state is None or not (on or state.opened is not None):
             self._panels.fleet.show(None)
         elif state.opened is not None:

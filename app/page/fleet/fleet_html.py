@@ -23,11 +23,7 @@ def robots_html(state: FleetState, chosen: str) -> str:
         standing = state.standing(name)
         shown = name not in state.hidden
         eye = "Hide" if shown else "Show"
-        anchor = (
-            ' <abbr title="The result is in this robot\'s frame.">⚓</abbr>'
-            if name == state.fleet.anchor
-            else ""
-        )
+        anchor = ANCHOR if name == state.fleet.anchor else ""
         rows.append(
             f'<div class="mm-robot" data-mood="{MOODS[standing]}">'
             f'<button type="button" data-mm-robot="{number}" aria-pressed="{str(name == chosen).lower()}">'

@@ -74,11 +74,6 @@ class FleetPanel:
     def connect_files(self, back: Action, download: Action, save: Action) -> None:
         on_press((self._back, back), (self._download, download), (self._save, save))
 
-    @property
-    def chosen(self) -> str:
-        """The robot that is chosen."""
-        return self._chosen
-
     def show(self, state: FleetState | None, opened: str = "") -> None:
         """Show a fleet, or of one whose pair is open the way back, and what that is; None: nothing."""
         put(self._folder, visible=state is not None)

@@ -89,7 +89,7 @@ class FleetRunController:
     def _take(self, state: FleetState) -> None:
         self._state.update(fleet=state)
         self._history.amend_fleet(state)
-        self._display.show()
+        self._display.show(look=self._run.follow, follow=False)  # robots move while others are merged
 
 
 def _progress(step: PairStep) -> str:

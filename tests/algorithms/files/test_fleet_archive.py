@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import zipfile
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -16,14 +13,7 @@ from algorithms.files import fleet_archive
 from algorithms.files.fleet_archive import fleet_from_zip, fleet_to_files
 from algorithms.files.fleet_file import read_fleet
 from algorithms.observations.fleet import Fleet
-
-
-def zipped(files: dict[str, bytes]) -> bytes:
-    content = io.BytesIO()
-    with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in files.items():
-            archive.writestr(name, data)
-    return content.getvalue()
+from app.report.result_files import zip_bytes
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +34,7 @@ def same(a: Fleet, b: Fleet) -> bool:
 
 @pytest.mark.parametrize("folder", ["", "fleet/", "a/b/c/"])
 def test_a_fleet_reads_back_from_its_zip_in_whatever_folder(fleet, files, folder):
-    content = zipped({f"{folder}{name}": data for name, data in files.items()})
+    content = zip_bytes({f"{folder}{name}": data for name, data in files.items()})
     assert same(fleet_from_zip("fleet.zip", content), fleet)
 
 
@@ -59,19 +49,19 @@ def test_a_fleet_reads_back_from_its_zip_in_whatever_folder(fleet, files, folder
 def test_a_file_that_is_missing_is_named(files, gone, said):
     left = {name: data for name, data in files.items() if name != gone}
     with pytest.raises(InputFileError, match=said):
-        fleet_from_zip("mine.zip", zipped(left))
+        fleet_from_zip("mine.zip", zip_bytes(left))
 
 
 def test_what_would_unpack_to_too_much_is_refused_before_it_is_unpacked(files, monkeypatch):
     monkeypatch.setattr(fleet_archive, "MOST_UNPACKED", 10_000)
     with pytest.raises(InputFileError, match="give at most"):
-        fleet_from_zip("mine.zip", zipped(files))
+        fleet_from_zip("mine.zip", zip_bytes(files))
 
 
 @settings(max_examples=60, deadline=None)
 @given(st.data())
 def test_a_damaged_zip_is_a_fleet_or_one_line_on_what_is_wrong(files, data):
-    content = bytearray(zipped(files))
+    content = bytearray(zip_bytes(files))
     for _ in range(data.draw(st.integers(1, 6))):
         content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
     cut = data.draw(st.integers(0, len(content)))

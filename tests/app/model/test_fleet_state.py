@@ -85,13 +85,24 @@ def test_a_robot_of_a_name_that_is_taken_gets_a_number(state):
 
 
 def test_another_anchor_knows_the_old_one_where_that_knew_it(state):
-    known = {"bob": InitialPose(Pose2(3.0, 1.0, 0.5))}
+    known = {"bob": InitialPose(Pose2(3.0, 1.0, 0.5), about_x=7.0, about_y=-2.0)}
     rough = state.with_fleet(replace(state.fleet, known=known))
     turned = rough.anchored("bob")
     assert turned.fleet.anchor == "bob"
-    back = turned.anchored("ann").fleet.known["bob"].pose
-    assert np.allclose(back.array(), known["bob"].pose.array())
-    assert turned.anchored("cid").fleet.known == {}
+    back = turned.anchored("ann").fleet.known["bob"]
+    assert np.allclose(back.pose.array(), known["bob"].pose.array())
+    assert np.allclose(back.about, known["bob"].about)
+
+
+def test_an_anchor_that_would_make_a_known_pose_mean_nothing_is_refused_until_all_is_merged(state):
+    known = {"cid": InitialPose(Pose2(3.0, 1.0, 0.5))}
+    rough = state.with_fleet(replace(state.fleet, known=known))
+    with pytest.raises(SettingError, match="cid: known in the frame of ann; press Merge"):
+        rough.anchored("bob")
+    merged = replace(rough, result=merge_fleet(state.fleet))
+    T = merged.result.placed["bob"]
+    moved = merged.anchored("bob").fleet.known["cid"].pose
+    assert np.allclose((T @ moved).array(), known["cid"].pose.array())
 
 
 def test_a_pair_that_is_opened_and_closed_as_it_was_leaves_the_fleet_as_it_was(state):
