@@ -14,7 +14,7 @@ from algorithms.files.map_file import map_from_bytes, map_to_bytes, parse_meta
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import Fleet
 
-MOST_UNPACKED = 400_000_000  # bytes of all files together: fifty maps of 2,800² cells
+MOST_UNPACKED = 210_000_000  # bytes of all files together: as much as a page holds in cells
 MOST_FILES = 2000
 # what zipfile raises: NotImplementedError is its word for ways to pack that it does not know
 BROKEN = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError, OSError, ValueError)

@@ -56,6 +56,9 @@ def test_a_fleet_is_merged_before_the_eyes_and_says_who_lies_and_who_is_alone(is
     assert all(told[name].startswith("placed, ") for name in ("r2", "r3", "r4"))
     assert all(told[name].startswith("island 2") for name in ("r5", "r6"))
     assert LIE in rows(island, "pair")
+    names = island.page.locator("tr td:first-child").all_inner_texts()
+    assert [name for name in names if name in told] == list(told)  # where each lies, in the fleet's order
+    assert not island.page.get_by_text("What do you know?", exact=True).is_visible()  # that is of two maps
     lines = [item for item in island.layer("sight") if item["k"] == "path"]
     assert sum(bool(item["d"]) for item in lines) == 1  # the lie alone is dashed
     assert {item["t"] for item in island.layer("robots")} == set(told)
