@@ -30,9 +30,10 @@ ROWS = (
     ("algorithms.methods",),
     ("algorithms.verdict",),
     ("algorithms.optimisation",),
+    ("algorithms.detection",),
     ("algorithms.spectra", "algorithms.files"),
     ("algorithms.observations",),
-    ("algorithms.maps",),
+    ("algorithms.maps", "algorithms.sensors"),
     ("algorithms.common",),
     ("algorithms",),
 )
