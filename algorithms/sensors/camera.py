@@ -14,6 +14,8 @@ from algorithms.common.pose import FloatArray, Pose2
 MOST_PIXELS = 16_000_000  # of one image
 LEAST_SIDE = 32  # pixels; a robot has more
 COEFFICIENTS = (0, 4, 5, 8)  # how many a distortion may have, in the order of OpenCV and ROS
+ROUNDS = 40  # of undoing distortion, at most
+EXACT = 1e-6  # of the plane one metre ahead: less than a thousandth of a pixel
 MARGIN = 1.1  # times the half width of the field of view: further off the axis distortion may fold back
 
 
@@ -89,14 +91,25 @@ class Camera:
         """(N, 2) pixels (column, row) of a calibrated camera as (N, 2) points of the plane one metre ahead:
         to the right and down, without distortion.
         """
+        pixels = np.asarray(pixels, dtype=np.float64)
+        plane = np.asarray((pixels - np.array(self.centre)) / np.array(self.focal))
+        if not self.distortion:
+            return plane
+        target = plane
+        for _ in range(ROUNDS):  # a fixed point: what is seen there, put back where it should be
+            missed = target - self._distorted(plane)
+            plane = plane + missed
+            if float(np.abs(missed).max()) < EXACT:
+                break
+        return plane
+
+    def _distorted(self, plane: FloatArray) -> FloatArray:
+        """(N, 2) points of the plane one metre ahead, where the lens seems to show them."""
+        points = np.ones((len(plane), 3))
+        points[:, :2] = plane
         coefficients = np.array(self.distortion) if self.distortion else None
-        # more rounds than OpenCV's five: strong distortion is undone to a thousandth of a pixel
-        criteria = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 40, 1e-9)
-        points = np.ascontiguousarray(pixels, dtype=np.float64).reshape(-1, 1, 2)
-        if coefficients is None:
-            return (points[:, 0] - np.array(self.centre)) / np.array(self.focal)
-        plane = cv2.undistortPointsIter(points, self.matrix(), coefficients, None, None, criteria)
-        return np.asarray(plane[:, 0], dtype=np.float64)
+        seen, _ = cv2.projectPoints(points, np.zeros(3), np.zeros(3), np.eye(3), coefficients)
+        return np.asarray(seen[:, 0], dtype=np.float64)
 
     def bearings(self, columns: FloatArray, row: float | None = None) -> FloatArray:
         """(N,) bearings of columns; radians, counter-clockwise from the camera's axis.
@@ -120,11 +133,8 @@ class Camera:
             return np.where(seen, self.centre[0] - bearings * (self.width / self.field_of_view), np.nan)
         half = MARGIN * max(abs(ray) for ray in self._edges())
         seen = np.abs(bearings) < min(atan(half), 0.49 * pi)
-        plane = np.zeros((len(bearings), 3))
-        plane[:, 0], plane[:, 2] = -np.tan(np.where(seen, bearings, 0.0)), 1.0
-        coefficients = np.array(self.distortion) if self.distortion else None
-        pixels, _ = cv2.projectPoints(plane, np.zeros(3), np.zeros(3), self.matrix(), coefficients)
-        return np.where(seen, pixels[:, 0, 0], np.nan)
+        plane = np.stack([-np.tan(np.where(seen, bearings, 0.0)), np.zeros(len(bearings))], axis=1)
+        return np.where(seen, self.centre[0] + self.focal[0] * self._distorted(plane)[:, 0], np.nan)
 
     def _edges(self) -> list[float]:
         """The first and the last column of the middle row on the plane one metre ahead."""

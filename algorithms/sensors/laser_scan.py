@@ -40,9 +40,7 @@ class LaserScan:
         if self.ranges.ndim != 1 or not LEAST_BEAMS <= n <= MOST_BEAMS:
             raise SettingError(f"the scan has {n} beams; it must have {LEAST_BEAMS} to {MOST_BEAMS:,}")
         if not (isfinite(self.angle_min) and isfinite(self.angle_increment) and self.angle_increment != 0):
-            raise SettingError(
-                "the scan's angle_min and angle_increment must be finite, and the second not 0"
-            )
+            raise SettingError("the scan's angle_min and angle_increment must be finite, the second not 0")
         if abs(self.angle_increment) * (n - 1) > 2 * pi + 2 * abs(self.angle_increment):
             raise SettingError(
                 f"the scan's {n} beams, {abs(self.angle_increment):g} rad apart, span more than a whole turn"
