@@ -40,7 +40,7 @@ def corridor(shell: np.random.Generator, rng: np.random.Generator, resolution: f
         plan.outline(x, middle - lobby / 2 - 0.8, x + lobby, middle + lobby / 2 + 0.8, OUTER)
         plan.box(x + 0.2, middle - lobby / 2 - 0.6, x + lobby - 0.2, middle + lobby / 2 + 0.6, AIR)
         plan.box(x - 0.3 if x > left else x + 1, low, x + lobby + 0.3 if x == left else x + 1, high, AIR)
-        plan.ring(x + lobby / 2, middle + 1.6, 0.0, 0.3)  # one pillar each, not turned with the rest
+        plan.pillar(x + lobby / 2, middle + 1.6, 0.3)  # one each, not turned with the rest
         plan.stops.append((x + lobby / 2, middle - 1.0))
         inside = (x + 0.25, middle - lobby / 2 - 0.5, x + lobby - 0.25, middle + lobby / 2 + 0.5)
         furnish(plan, rng, inside, "living")
@@ -54,6 +54,7 @@ def corridor(shell: np.random.Generator, rng: np.random.Generator, resolution: f
                 continue
             bottom, top = sorted((wall, wall + up * 0.15))
             plan.box(at, bottom, at + DOOR, top, AIR)  # a closed door in its recess
+            plan.note("recess", (at, bottom, at + DOOR, top), 3 if up > 0 else 1)
     for x in evenly(first + 1.4, last - 4, 9.0):
         if chance(rng, 0.75):
             _side_room(plan, rng, x, high + OUTER / 2, 1)

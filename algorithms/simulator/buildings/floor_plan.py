@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.common.pose import FloatArray
-from algorithms.simulator.portable_random import cosine, sine
+from algorithms.simulator.portable_random import TURN, cosine, sine
 
 Surface = NDArray[np.uint8]
 Rectangle = tuple[float, float, float, float]  # x0, y0, x1, y1; metres, world frame
@@ -17,6 +17,25 @@ Rectangle = tuple[float, float, float, float]  # x0, y0, x1, y1; metres, world f
 AIR = 0
 WALL = 1
 DARK = 2  # glass or something black: it stops a beam and seldom sends it back
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One thing on a floor that a lidar sees as a few cells, and a camera as what it is.
+
+    kind  : "desk", "chair", "door leaf", …
+    x, y  : its middle; metres, world frame
+    depth : along the direction in which its front looks; metres
+    width : across; metres
+    ticks : that direction, counter-clockwise from x
+    """
+
+    kind: str
+    x: float
+    y: float
+    depth: float
+    width: float
+    ticks: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +49,7 @@ class Building:
     stops      : (N, 2) places a robot may want to visit; metres, world frame. Some may be out of
                  its reach
     doors      : (N, 4) the two jambs of every door, x0, y0, x1, y1; metres, world frame
+    pieces     : what stood there when the plan was drawn; its cells are in ``surface``
     """
 
     name: str
@@ -37,6 +57,7 @@ class Building:
     resolution: float
     stops: FloatArray
     doors: FloatArray = field(default_factory=lambda: np.zeros((0, 4)))
+    pieces: tuple[Piece, ...] = ()
 
     @property
     def solid(self) -> NDArray[np.bool_]:
@@ -56,6 +77,7 @@ class FloorPlan:
         self.cells: Surface = np.zeros((ceil(height / resolution), ceil(width / resolution)), np.uint8)
         self.stops: list[tuple[float, float]] = []
         self.doors: list[Rectangle] = []
+        self.pieces: list[Piece] = []
         self._kept: list[Rectangle] = []
 
     @staticmethod
@@ -111,14 +133,28 @@ class FloorPlan:
         squared = (cx - x) * (cx - x) + (cy - y) * (cy - y)
         self.cells[window][(squared >= inner * inner) & (squared <= outer * outer)] = what
 
-    def turned_box(self, x: float, y: float, length: float, depth: float, ticks: int) -> None:
+    def pillar(self, x: float, y: float, radius: float, kind: str = "pillar") -> None:
+        """A disc that is remembered as a piece."""
+        self.note(kind, (x - radius, y - radius, x + radius, y + radius))
+        self.ring(x, y, 0.0, radius)
+
+    def turned_box(
+        self, x: float, y: float, length: float, depth: float, ticks: int, what: int = WALL
+    ) -> None:
         """A filled box around its centre, turned counter-clockwise."""
         reach = (length + depth) / 2
         window = self._window(x - reach, y - reach, x + reach, y + reach)
         cx, cy = self._centres(window)
         c, s = float(cosine(ticks)), float(sine(ticks))
         along, across = (cx - x) * c + (cy - y) * s, (cy - y) * c - (cx - x) * s
-        self.cells[window][(np.abs(along) <= length / 2) & (np.abs(across) <= depth / 2)] = WALL
+        self.cells[window][(np.abs(along) <= length / 2) & (np.abs(across) <= depth / 2)] = what
+
+    def note(self, kind: str, place: Rectangle, quarter: int = 0) -> None:
+        """Remember what stands in a box, and the quarter turn from x to which its front looks."""
+        x0, y0, x1, y1 = place
+        depth, width = (x1 - x0, y1 - y0) if quarter % 2 == 0 else (y1 - y0, x1 - x0)
+        middle = (x0 + x1) / 2, (y0 + y1) / 2
+        self.pieces.append(Piece(kind, *middle, depth, width, TURN // 4 * (quarter % 4)))
 
     def keep_clear(self, x0: float, y0: float, x1: float, y1: float) -> None:
         """No furniture here: someone has to get through."""
@@ -136,4 +172,4 @@ class FloorPlan:
 
     def finish(self, name: str) -> Building:
         stops, doors = np.array(self.stops).reshape(-1, 2), np.array(self.doors).reshape(-1, 4)
-        return Building(name, self.cells, self.resolution, stops, doors)
+        return Building(name, self.cells, self.resolution, stops, doors, tuple(self.pieces))

@@ -4,11 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from algorithms.simulator.buildings.floor_plan import WALL, FloorPlan, Rectangle
-from algorithms.simulator.portable_random import chance, cosine, pick, sine, ticks_of_degrees, uniform, whole
+from algorithms.simulator.buildings.floor_plan import WALL, FloorPlan, Piece, Rectangle
+from algorithms.simulator.portable_random import (
+    TURN,
+    chance,
+    cosine,
+    pick,
+    sine,
+    ticks_of_degrees,
+    uniform,
+    whole,
+)
 
 LEG = 0.06  # metres; thinner legs would slip between the beams of most lidars
 DOOR = 0.95  # metres of clear opening
+LEAF = 0.05  # metres; thickness of a door's leaf
 
 
 def door(
@@ -45,7 +55,11 @@ def door(
     angle = ticks_of_degrees(degrees)
     c, s = 0.97 * DOOR * float(cosine(angle)), 0.97 * DOOR * float(sine(angle))
     leaf_x, leaf_y = c * along[0] + s * into[0], c * along[1] + s * into[1]
-    plan.line(x, y, x + leaf_x, y + leaf_y, 0.05)
+    plan.line(x, y, x + leaf_x, y + leaf_y, LEAF)
+    side = along[0] * into[1] - along[1] * into[0]  # 1: the room is to the left
+    front = side * angle + (TURN // 4 if along[1] else 0) - TURN // 4
+    middle = x + leaf_x / 2, y + leaf_y / 2
+    plan.pieces.append(Piece("door leaf", *middle, LEAF, 0.97 * DOOR, front % TURN))
     return not closed
 
 
@@ -85,6 +99,14 @@ def _in_the_room(
     return None
 
 
+def _front(place: Rectangle, room: Rectangle) -> int:
+    """Quarter turns from x to where a piece against a wall looks: away from that wall."""
+    x0, y0, x1, y1 = place
+    if x1 - x0 >= y1 - y0:
+        return 1 if y0 - room[1] < room[3] - y1 else 3
+    return 0 if x0 - room[0] < room[2] - x1 else 2
+
+
 def _legs(plan: FloorPlan, place: Rectangle) -> None:
     x0, y0, x1, y1 = place
     for x in (x0, x1 - LEG):
@@ -92,12 +114,19 @@ def _legs(plan: FloorPlan, place: Rectangle) -> None:
             plan.box(x, y, x + LEG, y + LEG)
 
 
-def _chair(plan: FloorPlan, rng: np.random.Generator, x: float, y: float) -> None:
-    """Four legs, or the star foot of an office chair."""
+def _chair(plan: FloorPlan, rng: np.random.Generator, x: float, y: float, quarter: int) -> None:
+    """Four legs, or the star foot of an office chair; ``quarter`` as in ``FloorPlan.note``."""
+    place = (x - 0.22, y - 0.22, x + 0.22, y + 0.22)
+    alone = plan.is_empty(*place)
     if chance(rng, 0.5):
-        plan.ring(x, y, 0.0, uniform(rng, 0.12, 0.2))
+        foot = uniform(rng, 0.12, 0.2)
+        if alone:
+            plan.note("office chair", (x - foot, y - foot, x + foot, y + foot), quarter)
+        plan.ring(x, y, 0.0, foot)
     else:
-        _legs(plan, (x - 0.22, y - 0.22, x + 0.22, y + 0.22))
+        if alone:
+            plan.note("chair", place, quarter)
+        _legs(plan, place)
 
 
 def desk(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
@@ -106,21 +135,26 @@ def desk(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
     if place is None:
         return
     x0, y0, x1, y1 = place
+    front = _front(place, room)
+    plan.note("desk", place, front)
     _legs(plan, place)
     if chance(rng, 0.7):
-        plan.box(x0 + 0.08, y0 + 0.08, x0 + 0.5, y0 + 0.6)
+        drawers = (x0 + 0.08, y0 + 0.08, x0 + 0.5, y0 + 0.6)
+        plan.note("drawers", drawers, front)
+        plan.box(*drawers)
     middle_x, middle_y = (room[0] + room[2]) / 2, (room[1] + room[3]) / 2
     x, y = (x0 + x1) / 2, (y0 + y1) / 2
     if x1 - x0 > y1 - y0:
-        _chair(plan, rng, x + 0.2, y + (0.6 if middle_y > y else -0.6))
+        _chair(plan, rng, x + 0.2, y + (0.6 if middle_y > y else -0.6), 3 if middle_y > y else 1)
     else:
-        _chair(plan, rng, x + (0.6 if middle_x > x else -0.6), y)
+        _chair(plan, rng, x + (0.6 if middle_x > x else -0.6), y, 2 if middle_x > x else 0)
 
 
 def cabinet(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
     """A solid cupboard or bookshelf against a wall."""
     place = _along_a_wall(plan, rng, room, uniform(rng, 0.8, 2.2), uniform(rng, 0.35, 0.6))
     if place is not None:
+        plan.note("cabinet", place, _front(place, room))
         plan.box(*place)
 
 
@@ -129,6 +163,7 @@ def sofa(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
     size = pick(rng, ((1.7, 0.85), (2.1, 0.9), (2.0, 1.5)))
     place = _along_a_wall(plan, rng, room, *size)
     if place is not None:
+        plan.note("bed" if size[1] > 1.0 else "sofa", place, _front(place, room))
         plan.box(*place)
 
 
@@ -137,12 +172,13 @@ def table(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
     place = _in_the_room(plan, rng, room, uniform(rng, 1.0, 2.2), uniform(rng, 0.8, 1.1), 0.9)
     if place is None:
         return
+    plan.note("table", place)
     _legs(plan, place)
     x0, y0, x1, y1 = place
     for x in [x0 + 0.35 + k * 0.7 for k in range(max(1, int((x1 - x0) / 0.7)))]:
-        for y in (y0 - 0.1, y1 + 0.1):
+        for y, towards in ((y0 - 0.1, 1), (y1 + 0.1, 3)):
             if chance(rng, 0.75):
-                _chair(plan, rng, x + uniform(rng, -0.08, 0.08), y + uniform(rng, -0.1, 0.1))
+                _chair(plan, rng, x + uniform(rng, -0.08, 0.08), y + uniform(rng, -0.1, 0.1), towards)
 
 
 def boxes(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
@@ -151,7 +187,9 @@ def boxes(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
     place = _in_the_room(plan, rng, room, size, size, 0.5)
     if place is not None:
         x, y = (place[0] + place[2]) / 2, (place[1] + place[3]) / 2
-        plan.turned_box(x, y, size, uniform(rng, 0.3, 0.6), whole(rng, 0, 16383))
+        carton = Piece("carton", x, y, size, uniform(rng, 0.3, 0.6), whole(rng, 0, 16383))
+        plan.pieces.append(carton)
+        plan.turned_box(x, y, carton.depth, carton.width, carton.ticks)
 
 
 def plant(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
@@ -159,6 +197,7 @@ def plant(plan: FloorPlan, rng: np.random.Generator, room: Rectangle) -> None:
     size = uniform(rng, 0.3, 0.5)
     place = _along_a_wall(plan, rng, room, size, size)
     if place is not None:
+        plan.note("plant", place)
         plan.ring((place[0] + place[2]) / 2, (place[1] + place[3]) / 2, 0.0, size / 2, WALL)
 
 

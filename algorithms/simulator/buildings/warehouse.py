@@ -15,6 +15,7 @@ POST = 0.1
 
 def _rack(plan: FloorPlan, rng: np.random.Generator, x: float, y: float, bays: int, depth: float) -> None:
     """A pallet rack standing upright from (x, y): posts at every bay, pallets between them."""
+    plan.note("rack", (x, y, x + depth, y + bays * BAY + POST))
     for bay in range(bays + 1):
         for side in (x, x + depth - POST):
             plan.box(side, y + bay * BAY, side + POST, y + bay * BAY + POST)
@@ -23,7 +24,9 @@ def _rack(plan: FloorPlan, rng: np.random.Generator, x: float, y: float, bays: i
             if chance(rng, 0.84):
                 left = x + uniform(rng, -0.06, 0.1)
                 low = y + bay * BAY + slot + uniform(rng, -0.06, 0.06)
-                plan.box(left, low, left + uniform(rng, 0.8, 1.0), low + uniform(rng, 0.8, 1.15))
+                pallet = (left, low, left + uniform(rng, 0.8, 1.0), low + uniform(rng, 0.8, 1.15))
+                plan.note("pallet", pallet)
+                plan.box(*pallet)
 
 
 def warehouse(shell: np.random.Generator, rng: np.random.Generator, resolution: float = 0.025) -> Building:
@@ -51,11 +54,12 @@ def warehouse(shell: np.random.Generator, rng: np.random.Generator, resolution: 
         short = 1 if chance(rng, 0.25) else 0
         _rack(plan, rng, x, y_racks + short * BAY, bays - short, depth)
         if chance(rng, 0.3):  # a guard at the head of the aisle
-            plan.ring(x + depth / 2, y_racks + short * BAY - 0.35, 0.0, uniform(rng, 0.08, 0.2))
+            plan.pillar(x + depth / 2, y_racks + short * BAY - 0.35, uniform(rng, 0.08, 0.2), "guard")
     for column in range(2, racks, 3):  # the pillars of the hall
         x = left + 2.6 + column * pitch + depth / 2
         for y in (bottom + dock * 0.55, top - 0.6):
             if plan.is_empty(x - 0.3, y - 0.3, x + 0.3, y + 0.3):
+                plan.note("square pillar", (x - 0.2, y - 0.2, x + 0.2, y + 0.2))
                 plan.box(x - 0.2, y - 0.2, x + 0.2, y + 0.2)
     for lane in range(racks + 1):
         x = left + 2.6 + (lane - 0.5) * pitch + depth / 2 if lane else left + 1.3

@@ -1,0 +1,1 @@
+"""From rays to pixels: what they hit, in which light it lies, what a lens makes of it."""

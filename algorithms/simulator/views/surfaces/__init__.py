@@ -1,0 +1,1 @@
+"""What things look like: materials, and the patterns of floors, walls and furniture."""
