@@ -81,7 +81,7 @@ def _draw_strip(
     for metres in np.arange(0, most + 1e-9, step).tolist():
         y = level(metres)
         draw.line((0, y, wide, y), fill=LINE, width=1)
-        draw.text((4, y - font.size - 1), f"{metres:g} m", fill=POINT, font=font)
+    labels = [(f"{metres:g} m", level(metres)) for metres in np.arange(0, most + 1e-9, step).tolist()]
     radius = max(2.0, 1.6 * factor)
     colours = dict.fromkeys(np.flatnonzero(in_view).tolist(), POINT)
     colours |= dict.fromkeys(np.flatnonzero(in_view & view.explained).tolist(), WALL)
@@ -94,6 +94,11 @@ def _draw_strip(
         x, y = (view.columns[beam] + 0.5) * factor, level(float(ranges[beam]))
         bigger = radius if colour in (POINT, WALL) else 1.5 * radius
         draw.ellipse((x - bigger, y - bigger, x + bigger, y + bigger), fill=colour)
+    for words, y in labels:
+        place = (4, y - font.size - 1)
+        x0, y0, x1, y1 = draw.textbbox(place, words, font=font)
+        draw.rectangle((x0 - 3, y0 - 1, x1 + 3, y1 + 1), fill=LIGHT.free)
+        draw.text(place, words, fill=POINT, font=font)
     for number in reversed(range(len(seen.sighted))):
         left, _, right, _ = ((edge + 0.5) * factor for edge in seen.sighted[number].detection.box())
         for x in (left, right):

@@ -42,7 +42,7 @@ def test_rooms_without_a_board_are_left_alone():
 
 def test_a_board_twice_as_large_in_a_picture_twice_as_large_is_found_as_well():
     rng = np.random.default_rng(5)
-    picture, box = with_board(rng, 60)
+    picture, _ = with_board(rng, 60)
     larger = np.kron(picture, np.ones((2, 2, 1), np.uint8))
     one, other = (SvmDetector(trained().model).detect(image)[0] for image in (picture, larger))
     assert np.array(other.box()) / 2 == pytest.approx(np.array(one.box()), abs=0.12 * one.width)
