@@ -18,9 +18,9 @@ from algorithms.common.pose import Pose2
 from algorithms.files import yaml_fields as fields
 from algorithms.files.atomic_write import write_files
 from algorithms.files.foreign_files import check_foreign_folder
-from algorithms.files.grey_levels import corrected, count_greys, remarks
-from algorithms.files.image_decoder import read_pixels
-from algorithms.files.thresholds import MODES, GreyArray, Shading, cells_of, greys_of
+from algorithms.files.images.grey_levels import corrected, count_greys, remarks
+from algorithms.files.images.image_decoder import read_pixels
+from algorithms.files.images.thresholds import MODES, GreyArray, Shading, cells_of, greys_of
 from algorithms.maps.grid_map import COARSEST, FINEST, CellArray, GridMap
 
 YAML_SUFFIXES = (".yaml", ".yml")

@@ -17,7 +17,7 @@ from repository import ROOT
 
 from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import MapMergeError
-from algorithms.files import image_decoder as image
+from algorithms.files.images import image_decoder as image
 
 HEAVY = ROOT / "tests" / "tools" / "heavy.py"
 

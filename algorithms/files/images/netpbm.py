@@ -12,7 +12,7 @@ import numpy as np
 from PIL import Image
 
 from algorithms.common.errors import InputFileError
-from algorithms.files.thresholds import GreyArray
+from algorithms.files.images.thresholds import GreyArray
 
 CONVERT = "save it as an 8-bit PGM or PNG"
 MAX_TEXT_BYTES = 16_000_000  # of an image written as text: 2000 x 2000 pixels

@@ -9,8 +9,8 @@ import numpy as np
 from PIL import BmpImagePlugin, Image, ImageFile, PngImagePlugin
 
 from algorithms.common.errors import InputFileError, MapMergeError
-from algorithms.files.netpbm import CONVERT, HEAD, is_netpbm, read_header, read_netpbm
-from algorithms.files.thresholds import GreyArray
+from algorithms.files.images.netpbm import CONVERT, HEAD, is_netpbm, read_header, read_netpbm
+from algorithms.files.images.thresholds import GreyArray
 from algorithms.maps.grid_map import MAX_CELLS, check_size
 
 # An uncompressed image with alpha at the largest size, and 1 MB for what stands before the pixels.
