@@ -10,8 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from algorithms.files.camera_picture import picture_to_jpeg, picture_to_png, read_picture
-from algorithms.files.encounter_table import EncounterRow, read_encounters
 
 from algorithms.common.errors import InputFileError, SettingError
 from algorithms.common.pose import Pose2
@@ -25,6 +23,9 @@ from algorithms.detection.robot_sighting import (
     sight_by_tags,
 )
 from algorithms.files.atomic_write import check_folder, write_files
+from algorithms.files.camera_file import CAMERA_FILE
+from algorithms.files.camera_picture import picture_to_jpeg, picture_to_png, read_picture
+from algorithms.files.encounter_table import ENCOUNTER_TABLE, EncounterRow, read_encounters
 from algorithms.files.map_file import read_map
 from algorithms.files.observation_file import known_to_bytes
 from algorithms.maps.grid_map import GridMap
@@ -42,8 +43,6 @@ from app.cli.sensor_arguments import (
 from app.drawing.sighting_picture import sighting_picture
 from app.model.sighting_text import as_data, box_text, outcome_text
 
-TABLE_FILE, CAMERA_FILE = "encounters.csv", "camera.yaml"
-
 USAGE = (
     "[TABLE | --image IMAGE --scan SCAN --observer-pose X,Y,YAW --observed-pose X,Y[,YAW]] "
     "--camera FILE --out FILE [options]"
@@ -58,11 +57,11 @@ Examples:
           --observer-pose 31.25,2.71,2.964 --observed-pose 24.83,34.58 --out observation.yaml
   mapmeld observe … --tags 36h11 --tag-size 0.16        tags instead of the detector; no scan is needed
   mapmeld observe … --map map1.yaml                     what robot 1's map shows as wall is no robot
-  mapmeld observe {TABLE_FILE} --camera camera.yaml --out observation.yaml
+  mapmeld observe {ENCOUNTER_TABLE} --camera camera.yaml --out observation.yaml
                                      several images, each a line: image, scan, observer_x, observer_y,
                                      observer_yaw, observed_x, observed_y and observed_yaw
   mapmeld observe sample_maps/office_r2_r1 --out observation.yaml
-                                     a folder with {TABLE_FILE} and {CAMERA_FILE}
+                                     a folder with {ENCOUNTER_TABLE} and {CAMERA_FILE}
 
 --camera is a calibration as ROS's camera_info, --scan a LaserScan as "ros2 topic echo --once /scan" prints
 it. Poses are metres and radians: robot 1 in map 1, robot 2 in map 2. The standard deviations are those of
@@ -89,7 +88,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
         type=Path,
         nargs="?",
         metavar="TABLE",
-        help=f"several encounters: {TABLE_FILE}, or its folder",
+        help=f"several encounters: {ENCOUNTER_TABLE}, or its folder",
     )
     parser.add_argument("--image", type=Path, metavar="IMAGE", help="what robot 1's camera saw")
     parser.add_argument("--scan", type=Path, metavar="SCAN", help="what robot 1's laser measured then")
@@ -162,7 +161,7 @@ def _encounters(args: argparse.Namespace, parser: Parser) -> list[_Encounter]:
 
 
 def _from_table(args: argparse.Namespace) -> Iterator[_Encounter]:
-    file = args.table / TABLE_FILE if args.table.is_dir() else args.table
+    file = args.table / ENCOUNTER_TABLE if args.table.is_dir() else args.table
     for row in read_encounters(file):
         scan = file.parent / row.scan if row.scan else None
         yield _Encounter(file.parent / row.image, scan, row.observer, _place(row))
