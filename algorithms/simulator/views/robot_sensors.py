@@ -16,7 +16,8 @@ def draw_camera(rng: np.random.Generator) -> Camera:
     """A calibrated camera at a robot's front."""
     focal, stretch = uniform(rng, 450.0, 620.0), uniform(rng, 0.995, 1.005)
     centre = WIDTH / 2 - 0.5 + uniform(rng, -8.0, 8.0), HEIGHT / 2 - 0.5 + uniform(rng, -8.0, 8.0)
-    k_1, k_2 = uniform(rng, -0.25, 0.05), uniform(rng, 0.0, 0.04)
+    k_1 = uniform(rng, -0.25, 0.05)
+    k_2 = k_1 * k_1 * uniform(rng, 0.5, 0.8)  # from 0.45 on no distortion folds back
     x, y = uniform(rng, 0.0, 0.15), uniform(rng, -0.05, 0.05)
     yaw = radians(ticks_of_degrees(uniform(rng, -5.0, 5.0)))
     distortion = (round(k_1, 5), round(k_2, 5), 0.0, 0.0)
