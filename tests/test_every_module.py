@@ -100,6 +100,9 @@ EXERCISED_BY = {
         "algorithms.simulator.views.interiors.furnishings",
         "algorithms.simulator.views.interiors.style",
     },
+    "algorithms/simulator/views/rendering/test_ray_casting.py": {
+        "algorithms.simulator.views.rendering.solid_hits",
+    },
     "algorithms/simulator/views/surfaces/test_patterns.py": {
         "algorithms.simulator.views.surfaces.face_patterns",
         "algorithms.simulator.views.surfaces.floor_patterns",

@@ -11,7 +11,7 @@ from algorithms.common.pose import FloatArray
 from algorithms.simulator.views.interiors.wall_outlines import WallFaces
 from algorithms.simulator.views.rendering.ray_casting import Hits, Index, RayCaster, Viewpoint
 from algorithms.simulator.views.rendering.seen_points import seen_points
-from algorithms.simulator.views.rendering.shading import Shading
+from algorithms.simulator.views.rendering.shading import SceneShading
 from algorithms.simulator.views.solids import FRONT, NOBODY
 from algorithms.simulator.views.surfaces.noise import Tones
 from algorithms.simulator.views.view_scene import ViewScene
@@ -45,7 +45,7 @@ class Eye:
         self._walls, self._solids = scene.interior.walls, scene.solids
         self._ceiling = scene.interior.style.height
         self._first_mirror = len(self._walls) + len(scene.interior.solids)
-        self.shading = Shading(scene)
+        self.shading = SceneShading(scene)
         self.floor = scene.interior.style.floor
         self._casters = {DIRECT: RayCaster(view, self._walls, self._solids, self._ceiling, slopes)}
         self._views = {DIRECT: view}
