@@ -26,9 +26,9 @@ EXERCISED_BY = {
         "algorithms.files.truth_file",
     },
     "algorithms/files/test_cell_rules.py": {
-        "algorithms.files.image_decoder",
-        "algorithms.files.netpbm",
-        "algorithms.files.thresholds",
+        "algorithms.files.images.image_decoder",
+        "algorithms.files.images.netpbm",
+        "algorithms.files.images.thresholds",
     },
     "algorithms/maps/test_map_fusion.py": {
         "algorithms.maps.robots",

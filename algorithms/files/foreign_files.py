@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -46,6 +47,7 @@ POSE_GRAPH = ForeignFile(
 )
 SQLITE = b"SQLite format 3\0"
 ROSBAG2 = ForeignFile("is a recording of ROS 2 (a rosbag2 database), not a map", PLAY_2)
+ROSBAG2_FOLDER = ForeignFile("is a recording of ROS 2 (a rosbag2 folder), not a map", PLAY_2)
 OF_ROSBAG2 = ForeignFile("belongs to a recording of ROS 2 (a rosbag2 folder), not to a map", PLAY_2)
 RTAB = ForeignFile("is a database of RTAB-Map, not a map", GRID_OF_RTAB)
 SOME_DATABASE = ForeignFile(
@@ -53,23 +55,30 @@ SOME_DATABASE = ForeignFile(
 )
 
 
-def check_foreign(source: str, content: bytes) -> None:
+def check_foreign(source: str, content: bytes, instead: str = "") -> None:
     """Raise InputFileError where this content begins as another tool's file does.
 
-    source : name of the file as the user knows it
+    source  : name of the file as the user knows it
+    instead : where no map is asked for: how to come by what is
     """
     foreign = _recognised(source, content[:HEAD])
     if foreign is not None:
-        raise InputFileError(source, foreign.found, foreign.remedy)
+        raise _refusal(source, foreign, instead)
 
 
-def check_foreign_folder(path: Path) -> None:
-    """Raise InputFileError where a folder is a recording of ROS 2."""
+def check_foreign_folder(path: Path, instead: str = "") -> None:
+    """Raise InputFileError where a folder is a recording of ROS 2; ``instead`` as of ``check_foreign``."""
     about = path / "metadata.yaml"
     if about.is_file():
         with about.open("rb") as stream:
             if BAG_FOLDER in stream.read(HEAD):
-                raise InputFileError(path, "is a recording of ROS 2 (a rosbag2 folder), not a map", PLAY_2)
+                raise _refusal(path, ROSBAG2_FOLDER, instead)
+
+
+def _refusal(source: object, foreign: ForeignFile, instead: str) -> InputFileError:
+    if not instead:
+        return InputFileError(source, foreign.found, foreign.remedy)
+    return InputFileError(source, re.sub(", not (to )?a map$", "", foreign.found), instead)
 
 
 def _recognised(source: str, head: bytes) -> ForeignFile | None:

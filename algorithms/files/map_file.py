@@ -18,9 +18,9 @@ from algorithms.common.pose import Pose2
 from algorithms.files import yaml_fields as fields
 from algorithms.files.atomic_write import write_files
 from algorithms.files.foreign_files import check_foreign_folder
-from algorithms.files.grey_levels import corrected, count_greys, remarks
-from algorithms.files.image_decoder import read_pixels
-from algorithms.files.thresholds import MODES, GreyArray, Shading, cells_of, greys_of
+from algorithms.files.images.grey_levels import corrected, count_greys, remarks
+from algorithms.files.images.image_decoder import read_pixels
+from algorithms.files.images.thresholds import MODES, GreyArray, Shading, cells_of, greys_of
 from algorithms.maps.grid_map import COARSEST, FINEST, CellArray, GridMap
 
 YAML_SUFFIXES = (".yaml", ".yml")
@@ -212,19 +212,24 @@ def parse_meta(source: str, data: bytes) -> MapMeta:
     return MapMeta(image, resolution, Pose2(x, y, yaw), shading, more)
 
 
-def read_bytes(path: Path, what: str, most: int = fields.MAX_YAML_BYTES) -> bytes:
+def read_bytes(
+    path: Path, what: str, most: int = fields.MAX_YAML_BYTES, kind: str = "YAML file", instead: str = ""
+) -> bytes:
     """The content of a small text file; of one that is too long a byte more than it may have.
 
-    what   : what the file is about, for the remedy: "a map"
-    raises : InputFileError where it is not there, or not readable
+    what    : what the file is about, for the remedy: "a map"
+    most    : bytes that it may have
+    kind    : of file, for the remedy
+    instead : as of ``check_foreign``
+    raises  : InputFileError where it is not there, or not readable
     """
     if path.is_dir():
-        check_foreign_folder(path)
+        check_foreign_folder(path, instead)
     try:
         with path.open("rb") as stream:
             return stream.read(most + 1)  # one more, so that the parser can tell
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
-        raise unreadable(path, error, f"give the YAML file of {what}") from error
+        raise unreadable(path, error, f"give the {kind} of {what}") from error
 
 
 def _yaml_beside(image_path: Path) -> Path:

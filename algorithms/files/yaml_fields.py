@@ -17,11 +17,14 @@ from typing import Any
 import yaml
 
 from algorithms.common.errors import InputFileError
+from algorithms.common.pose import Pose2
 from algorithms.files.foreign_files import check_foreign
 from algorithms.files.text_loader import MAX_VALUES, TextLoader, goes_on
 from algorithms.maps.grid_map import FARTHEST, MOST_TURN
 
 MAX_YAML_BYTES = 32 * 1024  # ours have 400 bytes, and 64 sightings less than 30,000
+MOUNTING = "mounting: {x: m, y: m, yaw: rad}"
+WIDEST_ROBOT = 100.0  # metres
 TRUE = ("true", "yes", "on", "y")
 HEADER = re.compile(rb"\A(\xef\xbb\xbf)?%YAML:[^\r\n]*")  # of OpenCV's FileStorage
 FALSE = ("false", "no", "off", "n")
@@ -117,7 +120,12 @@ class Fields:
 
 
 def parse(
-    source: str, data: bytes, what: str, most: int = MAX_YAML_BYTES, first_only: bool = False
+    source: str,
+    data: bytes,
+    what: str,
+    most: int = MAX_YAML_BYTES,
+    first_only: bool = False,
+    instead: str = "",
 ) -> Fields:
     """The fields of a YAML file.
 
@@ -125,9 +133,10 @@ def parse(
     what       : what the file should be, with its article: "a map's YAML file"
     most       : bytes of it
     first_only : further documents are passed over; they are an error otherwise
+    instead    : how to come by such a file; needed where it is none of a map's
     raises     : InputFileError where it is too long, not YAML, not a mapping, or another tool's file
     """
-    values, further = _load(source, data, what, most, first_only)
+    values, further = _load(source, data, what, most, first_only, instead)
     return replace(_mapping(source, values, what), further=further)
 
 
@@ -152,13 +161,18 @@ def parse_entries(source: str, data: bytes, what: str, entry: str, most: int) ->
 
 
 def _load(
-    source: str, data: bytes, what: str, most: int = MAX_YAML_BYTES, first_only: bool = False
+    source: str,
+    data: bytes,
+    what: str,
+    most: int = MAX_YAML_BYTES,
+    first_only: bool = False,
+    instead: str = "",
 ) -> tuple[Any, bool]:
     """The first document, and whether there are more; arguments as of ``parse``."""
-    check_foreign(source, data)
+    check_foreign(source, data, instead)
     if len(data) > most:
         found = f"has {len(data):,} bytes, which is too long for {what}"
-        raise InputFileError(source, found, "give the small YAML file, not the image")
+        raise InputFileError(source, found, instead or "give the small YAML file, not the image")
     try:
         loader = TextLoader(HEADER.sub(b"", data))
         loader.most_values = MAX_VALUES * most // MAX_YAML_BYTES
@@ -203,6 +217,31 @@ def positive_number(
         remedy = f"it must be {low:g} to {high:.5g} {unit}; or leave it out"
         raise f.error(key, f"is {value:g} {unit}", remedy)
     return value
+
+
+def mounting(f: Fields) -> Pose2:
+    """T_robot_sensor of a key ``mounting: {x: m, y: m, yaw: rad}``; what it leaves out is 0. Raises
+    InputFileError.
+    """
+    if "mounting" not in f.values:
+        return Pose2()
+    part = f.section("mounting", f"give {MOUNTING}, where the sensor is on its robot")
+    part.refuse_unknown("x", "y", "yaw")
+    remedy = f"give a finite number, as in {MOUNTING}"
+    x, y, yaw = (optional_number(part, key, remedy) or 0.0 for key in ("x", "y", "yaw"))
+    for key, metres in (("x", x), ("y", y)):
+        if abs(metres) > WIDEST_ROBOT:
+            raise part.error(key, f"is {metres:g} m, which is beside any robot", "give metres")
+    if abs(yaw) > 2 * math.pi:
+        remedy = f"it looks like degrees: give radians, {math.radians(yaw):.4g}"
+        raise part.error("yaw", f"is {yaw:g} rad, more than a whole turn", remedy)
+    return Pose2(x, y, yaw)
+
+
+def mounting_text(pose: Pose2) -> str:
+    """The line of a file that ``mounting`` reads back to this pose."""
+    x, y, yaw = (number_text(value) for value in pose.array().tolist())
+    return f"mounting: {{x: {x}, y: {y}, yaw: {yaw}}}  # on the robot: m, m, rad"
 
 
 def as_number(value: Any) -> float | None:

@@ -16,6 +16,7 @@ LEAST_SIDE = 32  # pixels; a robot has more
 COEFFICIENTS = (0, 4, 5, 8)  # how many a distortion may have, in the order of OpenCV and ROS
 ROUNDS = 40  # of undoing distortion, at most
 EXACT = 1e-6  # of the plane one metre ahead: less than a thousandth of a pixel
+UNDONE = 0.5  # pixels, to which the edges must come back
 MARGIN = 1.1  # times the half width of the field of view: further off the axis distortion may fold back
 
 
@@ -69,6 +70,21 @@ class Camera:
             -size < at < 2 * size for at, size in zip(self.centre, (self.width, self.height), strict=True)
         ):
             raise SettingError(f"the camera's axis meets the image at {self.centre}, far outside of it")
+        else:
+            self._check_edges()
+
+    def _check_edges(self) -> None:
+        """Raise SettingError where distortion folds the horizon within the image: nothing undoes that."""
+        edges = np.array([[0.0, self.centre[1]], [self.width - 1.0, self.centre[1]]])
+        with np.errstate(all="ignore"):
+            plane = self.rays(edges)
+            seen = self._distorted(plane) * np.array(self.focal) + np.array(self.centre)
+            undone = np.abs(seen - edges).max() < UNDONE
+        if not undone:
+            raise SettingError(
+                f"the distortion {list(self.distortion)} cannot be undone at the image's edges; "
+                "calibrate with boards near the edges, too"
+            )
 
     @staticmethod
     def counting_pixels(width: int, height: int, field_of_view: float, mounting: Pose2) -> Camera:

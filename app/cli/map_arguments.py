@@ -89,8 +89,8 @@ def known_from(args: argparse.Namespace) -> tuple[Known, ...]:
 
 def read_maps(args: argparse.Namespace) -> tuple[GridMap, GridMap]:
     """Both maps that the command line names."""
+    from algorithms.files.images.thresholds import Shading
     from algorithms.files.map_file import IMAGE_SUFFIXES, read_image, read_map
-    from algorithms.files.thresholds import Shading
 
     paths, given = (args.map1, args.map2), args.resolution or ()
     plain = [path.suffix.lower() in IMAGE_SUFFIXES for path in paths]

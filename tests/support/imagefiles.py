@@ -1,12 +1,14 @@
-"""PNG and BMP files put together by hand: what Pillow writes not at all, or never that large or that bad."""
+"""PNG, BMP and JPEG files put together by hand: what Pillow does not write, or never that large or bad."""
 
 from __future__ import annotations
 
+import io
 import struct
 import zlib
 from collections.abc import Iterator
 
 import numpy as np
+from PIL import Image
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 GREY, COLOUR, PALETTE, GREY_ALPHA, COLOUR_ALPHA = 0, 2, 3, 4, 6  # what a PNG calls its kinds of pixels
@@ -67,3 +69,26 @@ def bmp(width: int, height: int, body: bytes, bits: int = 24, compression: int =
     at = 54 + len(palette)
     sizes = struct.pack("<IiiHHIIiiII", 40, width, height, 1, bits, compression, len(body), 0, 0, 0, 0)
     return b"BM" + struct.pack("<IHHI", at + len(body), 0, 0, at) + sizes + palette + body
+
+
+EXIF = b"Exif\0\0"
+
+
+def exif(orientation: int, order: str = "<") -> bytes:
+    """EXIF that says how a picture lies, 1 … 8, and nothing else. order : of bytes, < or >"""
+    tiff = (b"II*\0" if order == "<" else b"MM\0*") + struct.pack(f"{order}I", 8)
+    return EXIF + tiff + struct.pack(f"{order}HHHIHHI", 1, 0x0112, 3, 1, orientation, 0, 0)
+
+
+def segment(marker: int, body: bytes) -> bytes:
+    """A part of a JPEG."""
+    return bytes([0xFF, marker]) + struct.pack(">H", len(body) + 2) + body
+
+
+def repeated_scans(image: Image.Image, more: int) -> bytes:
+    """A progressive JPEG whose last scan is there so many times more."""
+    stream = io.BytesIO()
+    image.save(stream, "JPEG", progressive=True)
+    data = stream.getvalue()
+    at = data.rindex(b"\xff\xda")
+    return data[:-2] + data[at:-2] * more + data[-2:]

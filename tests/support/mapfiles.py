@@ -10,8 +10,8 @@ import yaml
 from PIL import Image
 
 from algorithms.common.pose import Pose2
+from algorithms.files.images.thresholds import Shading
 from algorithms.files.map_file import grey_image, map_from_bytes
-from algorithms.files.thresholds import Shading
 from algorithms.maps.grid_map import GridMap
 
 HEADER = {

@@ -10,16 +10,20 @@ import re
 import resource
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from imagefiles import bmp, interlaced_png
+from imagefiles import bmp, exif, interlaced_png, segment
 from mapfiles import encoded
 from PIL import Image
 from repository import ROOT
 
 from algorithms.common.errors import MapMergeError
+from algorithms.files.camera_file import camera_from_bytes, camera_to_bytes
+from algorithms.files.camera_picture import picture_from_bytes
+from algorithms.files.encounter_table import EncounterRow, encounters_from_bytes, encounters_to_bytes
 from algorithms.files.fleet_file import FLEET_FILE, read_fleet
 from algorithms.files.map_file import grey_image, map_from_bytes, parse_meta
 from algorithms.files.observation_file import (
@@ -29,9 +33,12 @@ from algorithms.files.observation_file import (
     observations_from_bytes,
     read_known,
 )
+from algorithms.files.scan_file import scan_from_bytes, scan_to_bytes
 from algorithms.files.truth_file import read_truth
 from algorithms.observations.fleet import Fleet
 from algorithms.observations.pair_problem import Known
+from algorithms.sensors.camera import Camera
+from algorithms.sensors.laser_scan import LaserScan
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_texts import read_exhibit, read_step
 from app.page.lesson.placeholders import NUMBERS
@@ -61,6 +68,30 @@ TRUTH = (
     b"T_ref_mov: {x: 1.0, y: -2, theta: 0.5}\n"
     b"tolerance: {distance: 0.5, angle: 0.05}\nexpected: merge\noverlap: 0.4\n"
 )
+CAMERA = (
+    b"image_width: 640\nimage_height: 480\ncamera_name: c\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
+    b"  data: [515., 0., 318.4, 0., 515.4, 243.8, 0., 0., 1.]\ndistortion_model: plumb_bob\n"
+    b"distortion_coefficients: {rows: 1, cols: 5, data: [0.03, -0.08, 0.001, -0.0007, 0.]}\n"
+)
+CAMERA_INFO = (
+    b"header:\n  frame_id: camera\nheight: 480\nwidth: 640\ndistortion_model: rational_polynomial\n"
+    b"d: [0.1, 0.2, 0, 0, 0.1, 0.3, 0.1, 0]\nk:\n- 515\n- 0\n- 318\n- 0\n- 515\n- 243\n- 0\n- 0\n- 1\n"
+    b"roi: {width: 0}\nmounting: {x: 0.1, y: 0, yaw: -1.5}\n---\n"
+)
+SCAN = (
+    b"header:\n  frame_id: base_scan\nangle_min: -1.5\nangle_max: 1.5\nangle_increment: 0.2\n"
+    b"range_min: 0.12\nrange_max: 3.5\nranges:\n"
+    + b"- 1.25\n- .inf\n- 0.0\n- .nan\n" * 4
+    + b"intensities: []\n---\n"
+)
+SCAN_IN_LINE = (
+    b"angle_min: 1.5\nangle_increment: -0.2\nranges: [1.25, inf, 0.0, nan, 2, 2.5, 3,\n  3.5, 0.5]\n"
+    b"mounting: {x: 0.1, y: 0, yaw: -1.5}\n"
+)
+ENCOUNTERS = (
+    b"image,scan,observer_x,observer_y,observer_yaw,observed_x,observed_y,observed_yaw\n"
+    b"a.jpg,a.yaml,1,-2.5,0.3,4,5,-1\nb.jpg,b.yaml,1,2,3,4,5,\n"
+)
 STATUS = Path("/proc/self/status")
 STATIC = ROOT / "static"
 
@@ -79,6 +110,18 @@ def _images() -> list[bytes]:
     images += [encoded(grey, "JPEG"), encoded(grey, "GIF")]
     images += [encoded(Image.new("I;16", (3, 2)), "PNG")]
     return images
+
+
+def _pictures() -> list[bytes]:
+    colours = Image.fromarray((np.indices((33, 40)).sum(0)[..., None] * (1, 2, 3)).astype(np.uint8))
+    jpeg = encoded(colours, "JPEG", quality=50)
+    pictures = [encoded(colours, kind) for kind in ("PNG", "BMP", "WEBP", "PPM")]
+    pictures += [jpeg, jpeg[:2] + segment(0xE1, exif(6)) + jpeg[2:], encoded(colours, "PNG", exif=exif(5))]
+    pictures += [encoded(colours.convert("CMYK"), "JPEG"), encoded(colours, "JPEG", progressive=True)]
+    pictures += [encoded(colours.convert("RGBA"), "WEBP", lossless=True), encoded(colours.quantize(9), "PNG")]
+    pictures += [encoded(colours.convert("I;16"), "PNG"), b"P5\n32 32\n4095\n" + bytes(2048)]
+    pictures += [encoded(colours, "GIF"), encoded(colours, "PNG", save_all=True, append_images=[colours])]
+    return pictures
 
 
 def _from_disk(read: Callable[[Path], object]) -> Callable[[bytes], object]:
@@ -109,6 +152,27 @@ def _fleet(data: bytes) -> Fleet:
         return read_fleet(path)
 
 
+def _camera_twice(data: bytes) -> Camera:
+    """What a camera's file says, which is the same once it has been written again."""
+    camera = camera_from_bytes("c.yaml", data)
+    assert camera_from_bytes("again", camera_to_bytes(camera)) == camera
+    return camera
+
+
+def _scan_twice(data: bytes) -> LaserScan:
+    scan = scan_from_bytes("s.yaml", data)
+    again = scan_from_bytes("again", scan_to_bytes(scan))
+    assert np.array_equal(again.ranges, scan.ranges, equal_nan=True)
+    assert replace(again, ranges=scan.ranges).__dict__ == scan.__dict__
+    return scan
+
+
+def _encounters_twice(data: bytes) -> tuple[EncounterRow, ...]:
+    encounters = encounters_from_bytes("e.csv", data)
+    assert encounters_from_bytes("again", encounters_to_bytes(encounters)) == encounters
+    return encounters
+
+
 # name -> what reads it, and files that it is meant for
 READERS: dict[str, tuple[Callable[[bytes], object], list[bytes]]] = {
     "meta": (lambda data: parse_meta("m.yaml", data), [META, META.replace(b"[", b"\n- ")]),
@@ -124,6 +188,13 @@ READERS: dict[str, tuple[Callable[[bytes], object], list[bytes]]] = {
     "known": (_from_disk(_known_twice), [KNOWN, INITIAL, SEEN + NEAR, b"- " + TURN + b"- " + NEAR]),
     "fleet": (_fleet, [FLEET, FLEET.replace(b"anchor: b\n", b"")]),
     "truth": (_from_disk(read_truth), [TRUTH, b"expected: refuse\n"]),
+    "camera": (_camera_twice, [CAMERA, CAMERA_INFO, b"width: 64\nheight: 48\nfield_of_view: 1.2\n"]),
+    "scan": (_scan_twice, [SCAN, SCAN.replace(b"ranges:\n", b"ranges:\n  # m\n"), SCAN_IN_LINE]),
+    "encounters": (
+        _encounters_twice,
+        [ENCOUNTERS, ENCOUNTERS.replace(b",", b";"), b"\xef\xbb\xbf" + ENCOUNTERS],
+    ),
+    "picture": (lambda data: picture_from_bytes("p.jpg", data), _pictures()),
     "step": (
         _from_disk(lambda path: read_step(path, PICTURES, NUMBERS)),
         [path.read_bytes() for path in sorted((STATIC / "lesson" / "en").glob("*.md"))[:4]],

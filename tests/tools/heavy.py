@@ -6,19 +6,36 @@
 from __future__ import annotations
 
 import argparse
+import struct
 import sys
 import time
 import zlib
 from collections.abc import Callable
 from pathlib import Path
 
-from imagefiles import COLOUR, SIGNATURE, black_png, bmp, chunk, ihdr, png
+import numpy as np
+from imagefiles import (
+    COLOUR,
+    COLOUR_ALPHA,
+    SIGNATURE,
+    black_png,
+    bmp,
+    chunk,
+    ihdr,
+    png,
+    repeated_scans,
+    segment,
+)
+from mapfiles import encoded
+from PIL import Image
 from readers import MOST_MEMORY, MOST_SECONDS, READERS, SHAPES, peak_memory, reads
 
 MB = 1_000_000
 MOST_SECONDS_LARGE = 5.0  # of an image of more than 25 million cells
 SIDE, LARGE_SIDE = 5_000, 10_000
 
+SCAN = b"angle_min: 0\nangle_increment: 8.9e-5\n"
+TABLE = b"image,scan,observer_x,observer_y,observer_yaw,observed_x,observed_y\n"
 CLEAR = chunk(b"tRNS", bytes(6))  # black is transparent
 PACKED = zlib.compress(bytes(900_000))  # 900 bytes
 
@@ -36,6 +53,21 @@ def _in_many_parts() -> bytes:
 def _short_rows(width: int, height: int) -> bytes:
     """A BMP of run lengths in which every row ends behind its first pixel."""
     return bmp(width, height, b"\1\0\0\0" * height, bits=8, compression=1)
+
+
+def _colours(kind: str, **options: object) -> bytes:
+    """The largest picture that is read, in blocks of colour."""
+    blocks = np.random.default_rng(1).integers(0, 256, (125, 125, 3), np.uint8)
+    return encoded(Image.fromarray(blocks).resize((4_000, 4_000), 0), kind, **options)
+
+
+def _exif_of_many_tags() -> bytes:
+    """A JPEG whose EXIF Pillow would unpack to 50 GB."""
+    tags = b"".join(struct.pack("<HHII", k, 7, 800_000, 0) for k in range(65_000))
+    exif = b"II*\0\x08\0\0\0" + struct.pack("<H", 65_000) + tags
+    parts = (segment(0xE1, b"Exif\0\0" + exif[at : at + 65_000]) for at in range(0, len(exif), 65_000))
+    jpeg = encoded(Image.new("RGB", (64, 64)), "JPEG")
+    return jpeg[:2] + b"".join(parts) + jpeg[2:]
 
 
 # name -> what makes it
@@ -70,6 +102,29 @@ HEAVY: dict[str, Callable[[], bytes]] = {
         2_000, 2_000, (b"\xff\x12" * 8 + b"\0\0") * 2_000, bits=4, compression=2
     ),
     "BMP, leaps": lambda: bmp(65_000, 61, b"\0\2\xff\xff" * 200_000, bits=8, compression=1),
+    "PNG, the largest picture with alpha": lambda: black_png(4_000, COLOUR_ALPHA, 16, interlaced=True),
+    "JPEG, the largest": lambda: _colours("JPEG", quality=20),
+    "JPEG, many scans": lambda: repeated_scans(Image.new("RGB", (4_000, 4_000), "red"), 14),
+    "JPEG, more scans": lambda: repeated_scans(Image.new("RGB", (4_000, 4_000), "red"), 9_000),
+    "JPEG, EXIF of many tags": _exif_of_many_tags,
+    "WebP, the largest": lambda: _colours("WEBP", quality=20, method=0),
+    "WebP, the largest without loss": lambda: encoded(
+        Image.new("RGB", (4_000, 4_000), "red"), "WEBP", lossless=True
+    ),
+    "PNG, packed colour profiles of a picture": lambda: png(
+        ihdr(64, 64), bytes(64 * 65), chunk(b"iCCP", b"a\0\0" + PACKED) * 400
+    ),
+    "PNG, EXIF": lambda: _dot(chunk(b"eXIf", b"II*\0\x08\0\0\0\xff\xff" + bytes(900_000))),
+    "scan": lambda: SCAN + b"ranges:\n" + b"- 1.2\n" * 70_000 + b"intensities:\n" + b"- 1.2\n" * 70_000,
+    "scan, lists": lambda: b"ranges:\n" + b"- 1\n" * 100_000 + b"intensities:\n" + b"-\n" * 100_000,
+    "scan, many keys": lambda: b"ranges:\n- 1\n" * 80_000,
+    "scan, lists that do not end": lambda: b"ranges: [\n" * 99_000,
+    "scan, one long number": lambda: SCAN + b"ranges: [" + b"1" * 900_000 + b"]",
+    "documents": lambda: b"---\n" * 249_000,
+    "documents of a letter": lambda: b"a\n---\n" * 160_000,
+    "table, columns": lambda: b"image,scan" + b",a_column" * 20_000,
+    "table, cells": lambda: TABLE + b",\n" * 90_000,
+    "table, a cell": lambda: TABLE + b'"' + b'""' * 90_000,
     "YAML": lambda: b"- 1\n" * (MB // 4),
     "text": lambda: b"---\ntitle: x\n---\n" + b"{x} [a](b) *c* `d` $e$ " * 40_000,
 }

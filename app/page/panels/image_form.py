@@ -17,9 +17,9 @@ import viser
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
-from algorithms.files.grey_levels import MOST_WALL
+from algorithms.files.images.grey_levels import MOST_WALL
+from algorithms.files.images.thresholds import MODES, Shading
 from algorithms.files.map_file import GreyImage, MapMeta, grey_image, meta_to_bytes, parse_meta
-from algorithms.files.thresholds import MODES, Shading
 from algorithms.maps.grid_map import COARSEST, FARTHEST, FINEST, OCCUPIED_FROM, CellArray
 from app.drawing import grid_pixels as render
 from app.drawing.palette import LIGHT, QUIET, Rgb, css

@@ -17,7 +17,7 @@ from mapfiles import cells, encoded, header, load, pgm
 from PIL import Image
 
 from algorithms.common.errors import InputFileError, MapMergeError, TooLargeError
-from algorithms.files import image_decoder as image
+from algorithms.files.images import image_decoder as image
 from algorithms.files.map_file import map_from_bytes, read_image, read_map
 from algorithms.files.text_loader import MAX_ALIASES, MAX_DEPTH, MAX_VALUES
 from algorithms.files.yaml_fields import MAX_YAML_BYTES

@@ -17,7 +17,7 @@ from repository import ROOT
 
 from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import MapMergeError
-from algorithms.files import image_decoder as image
+from algorithms.files.images import image_decoder as image
 
 HEAVY = ROOT / "tests" / "tools" / "heavy.py"
 
@@ -108,7 +108,10 @@ def test_no_file_of_1_mb_keeps_a_reader_busy_or_fills_the_memory():
     )
     assert told.returncode == 0, told.stdout + told.stderr
     assert all(f"  {shape}\n" in told.stdout for shape in SHAPES)
-    for name in ("P2, comments", "PNG, interlaced", "BMP, short rows", "large PNG, interlaced"):
+    for name in (
+        *("P2, comments", "PNG, interlaced", "BMP, short rows", "large PNG, interlaced", "scan"),
+        *("JPEG, the largest", "JPEG, many scans", "JPEG, EXIF of many tags", "WebP, the largest"),
+    ):
         assert f"read     {name}\n" in told.stdout  # it was not refused for a fault of ours
 
 

@@ -17,6 +17,7 @@ from PIL import Image
 
 from algorithms.common.errors import InputFileError
 from algorithms.common.pose import Pose2
+from algorithms.files.images.thresholds import Shading
 from algorithms.files.map_file import (
     map_from_bytes,
     map_to_bytes,
@@ -24,7 +25,6 @@ from algorithms.files.map_file import (
     read_map,
     write_map,
 )
-from algorithms.files.thresholds import Shading
 from algorithms.maps.grid_map import COARSEST, FARTHEST, FINEST, MOST_TURN, GridMap
 
 places, turns = st.floats(-FARTHEST, FARTHEST), st.floats(-MOST_TURN, MOST_TURN)

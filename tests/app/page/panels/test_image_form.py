@@ -13,8 +13,8 @@ from mapfiles import image_map_from_bytes
 from panels import files_panel
 
 from algorithms.common.pose import Pose2
+from algorithms.files.images.thresholds import MODES, Shading
 from algorithms.files.map_file import MapMeta, meta_to_bytes, parse_meta
-from algorithms.files.thresholds import MODES, Shading
 from algorithms.maps.grid_map import COARSEST, FINEST, FREE, MOST_TURN, OCCUPIED, UNKNOWN
 from app.model.merge_inputs import Files
 from app.page.panels.image_form import doubt_about, shares

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import BinaryIO
 
 import numpy as np
 from PIL import BmpImagePlugin, Image, ImageFile, PngImagePlugin
 
 from algorithms.common.errors import InputFileError, MapMergeError
-from algorithms.files.netpbm import CONVERT, HEAD, is_netpbm, read_header, read_netpbm
-from algorithms.files.thresholds import GreyArray
+from algorithms.files.images.netpbm import CONVERT, HEAD, is_netpbm, read_header, read_netpbm
+from algorithms.files.images.thresholds import GreyArray
 from algorithms.maps.grid_map import MAX_CELLS, check_size
 
 # An uncompressed image with alpha at the largest size, and 1 MB for what stands before the pixels.
@@ -38,7 +40,7 @@ def read_pixels(source: str, stream: BinaryIO) -> tuple[GreyArray, GreyArray | N
               None where the image has none
     raises  : InputFileError, TooLargeError
     """
-    try:
+    with decoding(source, SMALLER):
         stream.seek(0, 2)
         n_bytes = stream.tell()
         if n_bytes > MAX_IMAGE_BYTES:
@@ -53,10 +55,20 @@ def read_pixels(source: str, stream: BinaryIO) -> tuple[GreyArray, GreyArray | N
             return read_netpbm(source, stream, header), None
         stream.seek(0)
         return _decode(source, stream, head)
+
+
+@contextmanager
+def decoding(source: str, smaller: str) -> Iterator[None]:
+    """Within it, whatever a decoder raises becomes an InputFileError.
+
+    smaller : what to do where memory does not suffice
+    """
+    try:
+        yield
     except MapMergeError:
         raise
     except MemoryError as error:
-        raise InputFileError(source, "needs more memory than there is", SMALLER) from error
+        raise InputFileError(source, "needs more memory than there is", smaller) from error
     except Exception as error:  # decoders raise nearly anything on a damaged file
         cause = (str(error) or type(error).__name__).splitlines()[0]
         remedy = "the file is damaged; save or copy it anew"
@@ -68,14 +80,15 @@ def _decode(source: str, stream: BinaryIO, head: bytes) -> tuple[GreyArray, Grey
     format can be meant, and the bound on the size is ours.
     """
     image: ImageFile.ImageFile
+    announced = announced_size(head)
+    if announced is not None:  # of no pixels, to Pillow it would be an image of an unknown kind
+        _check_pixels(source, *announced)
     if head.startswith(PNG):
-        _check_announced(source, head, ">II", at=16)
         image = PngImagePlugin.PngImageFile(stream)
         # Of 16 bits Pillow would quietly keep the upper 8. Its own word for them counts, for of several
         # headers it goes by the last.
         bits = 16 if any("16" in str(tile[3]) for tile in image.tile) else 8
     elif head.startswith(BMP):
-        _check_announced(source, head, "<HH" if head[14:15] == OS2 else "<ii", at=18)
         image = BmpImagePlugin.BmpImageFile(stream)
         bits = 8
     else:
@@ -84,9 +97,7 @@ def _decode(source: str, stream: BinaryIO, head: bytes) -> tuple[GreyArray, Grey
     _check_header(source, image.width, image.height, bits)
     if image.mode not in MODES_READ:
         raise InputFileError(source, f"has pixels of the kind {image.mode}", CONVERT)
-    if image.info.get("compression") in RUN_LENGTHS and image.width * image.height > MAX_RUN_CELLS:
-        found = f"is a BMP of run lengths with {image.width} x {image.height} pixels"
-        raise InputFileError(source, f"{found}; at most {MAX_RUN_CELLS:,} are read", CONVERT)
+    check_runs(source, image)
     image.load()
     flat: Image.Image = image
     if "transparency" in image.info:
@@ -95,11 +106,20 @@ def _decode(source: str, stream: BinaryIO, head: bytes) -> tuple[GreyArray, Grey
     return np.asarray(flat.convert("L")), alpha
 
 
-def _check_announced(source: str, head: bytes, sides: str, at: int) -> None:
-    """Raise where a header says that there are no pixels: to Pillow that is an image of an unknown kind."""
-    if len(head) >= at + struct.calcsize(sides):
-        width, height = struct.unpack_from(sides, head, at)
-        _check_pixels(source, width, abs(height))  # of a BMP it is negative where the top row is the first
+def announced_size(head: bytes) -> tuple[int, int] | None:
+    """Width and height in pixels, as the header of a PNG or BMP says; None where it does not."""
+    sides, at = (">II", 16) if head.startswith(PNG) else ("<HH" if head[14:15] == OS2 else "<ii", 18)
+    if not head.startswith((PNG, BMP)) or len(head) < at + struct.calcsize(sides):
+        return None
+    width, height = struct.unpack_from(sides, head, at)
+    return width, abs(height)  # of a BMP it is negative where the top row is the first
+
+
+def check_runs(source: str, image: ImageFile.ImageFile) -> None:
+    """Raise InputFileError for a BMP of run lengths that would take too long."""
+    if image.info.get("compression") in RUN_LENGTHS and image.width * image.height > MAX_RUN_CELLS:
+        found = f"is a BMP of run lengths with {image.width} x {image.height} pixels"
+        raise InputFileError(source, f"{found}; at most {MAX_RUN_CELLS:,} are read", CONVERT)
 
 
 def _check_pixels(source: str, width: int, height: int) -> None:

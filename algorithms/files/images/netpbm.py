@@ -12,7 +12,7 @@ import numpy as np
 from PIL import Image
 
 from algorithms.common.errors import InputFileError
-from algorithms.files.thresholds import GreyArray
+from algorithms.files.images.thresholds import GreyArray
 
 CONVERT = "save it as an 8-bit PGM or PNG"
 MAX_TEXT_BYTES = 16_000_000  # of an image written as text: 2000 x 2000 pixels
@@ -61,6 +61,12 @@ def read_header(source: str, head: bytes) -> Header:
 
 def read_netpbm(source: str, stream: BinaryIO, header: Header) -> GreyArray:
     """(H, W) uint8 grey, row 0 at the top; ``stream`` stands behind the header. Raises InputFileError."""
+    samples = read_samples(source, stream, header)
+    return samples if samples.ndim == 2 else np.asarray(Image.fromarray(samples).convert("L"))
+
+
+def read_samples(source: str, stream: BinaryIO, header: Header) -> GreyArray:
+    """(H, W) uint8 grey, or (H, W, 3) of a PPM, of 8 bits at most; else as ``read_netpbm``."""
     width, height, maxval = header.width, header.height, header.maxval
     if maxval == 0:
         raise InputFileError(source, "says that its white is 0", CONVERT)
@@ -72,14 +78,12 @@ def read_netpbm(source: str, stream: BinaryIO, header: Header) -> GreyArray:
     count = width * height * colours
     body = _samples(source, stream, maxval, count) if header.kind in TEXTS else stream.read(count)
     if len(body) < count:
-        raise _cut_off(source, header, len(body) // colours)
+        raise cut_off(source, header, len(body) // colours)
     if maxval != 255:
         stretched = np.minimum(np.floor(np.arange(256) * (255 / maxval) + 0.5), 255)
         body = body.translate(stretched.astype(np.uint8).tobytes())
     samples = np.frombuffer(body, dtype=np.uint8)
-    if colours == 1:
-        return samples.reshape(height, width)
-    return np.asarray(Image.fromarray(samples.reshape(height, width, 3)).convert("L"))
+    return samples.reshape((height, width) if colours == 1 else (height, width, 3))
 
 
 def _black_pixels(source: str, stream: BinaryIO, header: Header) -> GreyArray:
@@ -89,14 +93,14 @@ def _black_pixels(source: str, stream: BinaryIO, header: Header) -> GreyArray:
         stride = -(-width // 8)  # a row begins with a byte of its own
         body = stream.read(stride * height)
         if len(body) < stride * height:
-            raise _cut_off(source, header, len(body) // stride * width)
+            raise cut_off(source, header, len(body) // stride * width)
         packed = np.frombuffer(body, dtype=np.uint8).reshape(height, stride)
         return np.unpackbits(packed, axis=1, count=width)
     digits = _text(source, stream).translate(None, delete=b" \t\n\r\v\f")[: width * height]
     if digits.translate(None, delete=b"01"):
         raise InputFileError(source, "holds something else than 0 and 1 among its pixels", CONVERT)
     if len(digits) < width * height:
-        raise _cut_off(source, header, len(digits))
+        raise cut_off(source, header, len(digits))
     return np.frombuffer(digits, dtype=np.uint8).reshape(height, width) - ord("0")
 
 
@@ -121,6 +125,7 @@ def _samples(source: str, stream: BinaryIO, maxval: int, count: int) -> bytes:
     return samples.astype(np.uint8).tobytes()
 
 
-def _cut_off(source: str, header: Header, pixels: int) -> InputFileError:
+def cut_off(source: str, header: Header, pixels: int) -> InputFileError:
+    """What is said of a file in which fewer pixels are than its header announces."""
     found = f"is cut off: {header.width} x {header.height} pixels are announced, {pixels} are there"
     return InputFileError(source, found, "copy it anew")

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.common.pose import FloatArray
-from algorithms.files.thresholds import GreyArray, Shading
+from algorithms.files.images.thresholds import GreyArray, Shading
 from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, BoolArray, CellArray
 
 Counts = NDArray[np.int64]

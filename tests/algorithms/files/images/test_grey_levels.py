@@ -15,9 +15,9 @@ from mapfiles import image_map_from_bytes
 from PIL import Image
 
 from algorithms.common.pose import Pose2
-from algorithms.files.grey_levels import corrected, count_greys, remarks
+from algorithms.files.images.grey_levels import corrected, count_greys, remarks
+from algorithms.files.images.thresholds import Shading, cells_of
 from algorithms.files.map_file import map_from_bytes, map_to_bytes, read_map
-from algorithms.files.thresholds import Shading, cells_of
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN
 
 FLAT = drawn_map(Pose2())

@@ -1,0 +1,108 @@
+"""Linear support vector machines on HOG windows, slid over an image pyramid: section III-A's detector."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+
+import cv2
+import numpy as np
+
+from algorithms.common.errors import SettingError
+from algorithms.common.pose import FloatArray
+from algorithms.detection.detection import Detection, Picture, strongest
+from algorithms.detection.hog_grid import Features, WindowShape, grey, hog_grid, scores
+from algorithms.sensors.camera import Camera, check_image_size
+
+WIDEST = 640  # pixels; larger images are made smaller first: time, and a robot at 5 m is as large in the view
+STEP = 1.2  # from one size of the pyramid to the next
+LEAST_PROBABILITY = 0.5
+MOST_FOUND = 64  # windows of one class and size that are looked at further
+
+
+@dataclass(frozen=True, eq=False)
+class DetectorModel:
+    """A trained detector, as plain numbers.
+
+    shape       : of the window
+    labels      : names of the classes
+    weights     : (classes, shape.length)
+    biases      : (classes,)
+    calibration : (classes, 2) a, b of P = 1 / (1 + exp(−(a s + b))), s the machine's value (Platt)
+    raises      : SettingError
+    """
+
+    shape: WindowShape
+    labels: tuple[str, ...]
+    weights: Features
+    biases: Features
+    calibration: Features
+
+    def __post_init__(self) -> None:
+        classes = len(self.labels)
+        wanted = {
+            "weights": (self.weights, (classes, self.shape.length)),
+            "biases": (self.biases, (classes,)),
+            "calibration": (self.calibration, (classes, 2)),
+        }
+        for name, (array, size) in wanted.items():
+            if array.shape != size or not np.isfinite(array).all():
+                raise SettingError(f"the detector's {name} must be {size} finite numbers, not {array.shape}")
+        if not classes:
+            raise SettingError("the detector has no classes")
+
+
+class SvmDetector:
+    """Finds what a model was trained on."""
+
+    def __init__(self, model: DetectorModel, least_probability: float = LEAST_PROBABILITY) -> None:
+        if not 0 < least_probability < 1:
+            raise SettingError(f"the least probability is {least_probability:g}; it must lie between 0 and 1")
+        self.model = model
+        self.least_probability = least_probability
+
+    def detect(self, picture: Picture, camera: Camera | None = None) -> tuple[Detection, ...]:
+        """Robots of at least the least probability, the likeliest first; one box each."""
+        return strongest([one for one in self.windows(picture) if one.probability >= self.least_probability])
+
+    def windows(self, picture: Picture) -> list[Detection]:
+        """The likeliest windows of each size, also those that are no robot: before suppression."""
+        height, width = picture.shape[:2]
+        check_image_size(width, height, "the image")
+        image, shape = grey(picture), self.model.shape
+        scale = min(1.0, WIDEST / width)
+        found: list[Detection] = []
+        while True:
+            size = max(1, round(width * scale)), max(1, round(height * scale))
+            if size[0] < shape.cols * shape.cell or size[1] < shape.rows * shape.cell:
+                return found
+            smaller = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+            found += self._of_size(
+                np.asarray(smaller, np.float32), np.array([width / size[0], height / size[1]] * 2)
+            )
+            scale /= STEP
+
+    def _of_size(self, image: Features, stretch: FloatArray) -> list[Detection]:
+        """Windows of one size; stretch: (4,) pixels of the picture per pixel of this image."""
+        model, shape = self.model, self.model.shape
+        values = scores(hog_grid(image, shape.cell), shape, model.weights) + model.biases
+        chances = 1 / (1 + np.exp(-(values * model.calibration[:, 0] + model.calibration[:, 1])))
+        high, wide = shape.body
+        edge = shape.border * shape.cell
+        found = []
+        for k, label in enumerate(model.labels):
+            of_class = chances[..., k]
+            count = min(MOST_FOUND, of_class.size)
+            best = np.argpartition(-of_class, count - 1, axis=None)[:count]
+            rows, cols = np.unravel_index(np.sort(best), of_class.shape)
+            tops, lefts = rows * shape.cell + edge, cols * shape.cell + edge
+            boxes = np.stack([lefts, tops, lefts + wide, tops + high], axis=1) * stretch - 0.5
+            for box, chance in zip(boxes.tolist(), of_class[rows, cols].tolist(), strict=True):
+                left, top, right, bottom = box
+                found.append(Detection(left, top, right, bottom, chance, label))
+        return found
+
+
+def smallest_robot(model: DetectorModel, width: int) -> int:
+    """Width of the smallest robot that is found in images of a width; pixels."""
+    return ceil(model.shape.body[1] * max(1.0, width / WIDEST))

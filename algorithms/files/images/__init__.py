@@ -1,0 +1,1 @@
+"""The images of maps and cameras: what their files hold, as pixels."""
