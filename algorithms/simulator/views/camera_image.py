@@ -8,7 +8,6 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.common.errors import SettingError
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.sensors.camera import Camera
 from algorithms.simulator.portable_random import METRE_GRID
@@ -34,21 +33,20 @@ class CameraRays:
 
 @lru_cache(maxsize=8)
 def camera_rays(camera: Camera) -> CameraRays:
-    """The rays of a calibrated camera's pixels; raises SettingError where its distortion has none."""
-    u = np.arange(-KNOT, camera.width + 2 * KNOT, KNOT, dtype=np.float64)
-    v = np.arange(-KNOT, camera.height + 2 * KNOT, KNOT, dtype=np.float64)
+    """The rays of a calibrated camera's pixels."""
+    u, v = (np.arange(0.0, size + KNOT - 1, KNOT) for size in (camera.width, camera.height))
     knots = camera.rays(np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)).reshape(len(v), len(u), 2)
-    if not np.isfinite(knots).all():
-        raise SettingError("the camera's distortion folds back before the corners of its image")
     between = _between(_between(knots, camera.height).swapaxes(0, 1), camera.width).swapaxes(0, 1)
     return CameraRays(np.ascontiguousarray(between[..., 0]), np.ascontiguousarray(between[..., 1]))
 
 
 def _between(knots: FloatArray, count: int) -> FloatArray:
-    """Values at so many pixels from those at every KNOT-th, the first of which is pixel −KNOT; first axis.
+    """Values at so many pixels from those at every KNOT-th; first axis.
 
     A parabola through the neighbours is added to the straight line: lenses bend lines evenly.
     """
+    before, after = (3 * k[0] - 3 * k[1] + k[2] for k in (knots, knots[::-1]))
+    knots = np.concatenate([before[None], knots, after[None]])
     at = np.arange(count)
     n, share = at // KNOT + 1, ((at % KNOT) / KNOT)[:, None, None]
     low, high = knots[n], knots[n + 1]
