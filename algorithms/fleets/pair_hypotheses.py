@@ -67,14 +67,13 @@ class PairFinding:
 def pair_orders(fleet: Fleet) -> list[PairOrder]:
     """A merge for every observer and observed robot, of all its sightings where one transform can agree with
     them; sightings that cannot be true together are merged one by one, since a lie must spoil no other. And
-    one of the anchor and each robot whose pose is roughly known.
+    one for every two robots of which nothing but something else is known.
     """
     by_pair: dict[tuple[str, str], list[int]] = {}
     for number, seen in enumerate(fleet.sightings):
         by_pair.setdefault((seen.observer, seen.observed), []).append(number)
-    for name in fleet.known:
-        if name != fleet.anchor:
-            by_pair.setdefault((fleet.anchor, name), [])
+    for told in fleet.priors:
+        by_pair.setdefault((told.ref, told.mov), [])
     orders = []
     for (ref, mov), numbers in sorted(by_pair.items()):
         agree = all(_agree(fleet, a, b) for a, b in combinations(numbers, 2))
@@ -95,8 +94,8 @@ def _agree(fleet: Fleet, a: int, b: int) -> bool:
 def known_of(fleet: Fleet, order: PairOrder) -> tuple[Known, ...]:
     """What is known of how the maps of an order lie."""
     seen = tuple(fleet.sightings[number].observation for number in order.sightings)
-    rough = fleet.known.get(order.mov) if order.ref == fleet.anchor else None
-    return seen if rough is None else (*seen, rough)
+    rough = (told.prior for told in fleet.priors if (told.ref, told.mov) == (order.ref, order.mov))
+    return (*seen, *rough)
 
 
 def find_pair(fleet: Fleet, order: PairOrder, seed: int = 0) -> PairFinding:

@@ -42,6 +42,8 @@ The file names the robots and their maps, and who saw whom:
     - observer: {{robot: r1, pose: [31.2, 2.7, 2.964]}}
       observed: {{robot: r2, pose: [24.8, 34.6]}}
       measurement: {{range: 2.97, bearing: 0.406}}
+  known:                                     what else is known of two: initial, turn or near; or left out
+    - {{of: r2, in: r1, turn: {{yaw: 0.1, sigma: 0.1}}}}
 
 Files in the folder of --out:
   merged.yaml, merged.pgm   the map of all robots that are tied to the anchor, in its frame

@@ -9,7 +9,7 @@ from algorithms.common.pose import FloatArray
 from algorithms.files.fleet_archive import fleet_to_files
 from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, finding_of, pair_orders
 from algorithms.maps.grid_map import GridMap
-from algorithms.observations.fleet import Fleet, FleetSighting
+from algorithms.observations.fleet import Fleet
 from algorithms.observations.pair_problem import PairProblem
 from app.model.fleet_state import FleetState
 from app.model.merge_inputs import MergeInputs
@@ -98,9 +98,8 @@ class FleetController:
             i = self._state.inputs
             if i.ref is None or i.mov is None:
                 return
-            seen = tuple(FleetSighting(*ROBOTS, one) for one in i.observations)
-            fleet = Fleet(dict(zip(ROBOTS, (i.ref, i.mov), strict=True)), seen)
-            opened = FleetState(fleet, i.name).open(PairOrder(*ROBOTS, tuple(range(len(seen)))))
+            fleet = Fleet(dict(zip(ROBOTS, (i.ref, i.mov), strict=True)))
+            opened = FleetState(fleet, i.name).open(PairOrder(*ROBOTS, ()))
             self._modes.leave()
             self._go(opened.closed(i.known, self._found_there(opened)), "make it a fleet")
 

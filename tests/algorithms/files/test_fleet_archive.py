@@ -28,7 +28,7 @@ def files(fleet: Fleet) -> dict[str, bytes]:
 
 def same(a: Fleet, b: Fleet) -> bool:
     maps = all(np.array_equal(a.maps[name].cells, b.maps[name].cells) for name in a.maps)
-    told = a.sightings == b.sightings and a.known == b.known and a.anchor == b.anchor
+    told = a.sightings == b.sightings and a.priors == b.priors and a.anchor == b.anchor
     return list(a.maps) == list(b.maps) and maps and told
 
 
