@@ -196,8 +196,6 @@ EXERCISED_BY = {
         "app.report.result_rows",
     },
     "algorithms/fleets/test_fleet_merge.py": {
-        "algorithms.fleets.island",
-        "algorithms.fleets.pair_hypotheses",
         "algorithms.observations.fleet",
     },
     "app/evaluation/test_fleet_evaluation.py": {

@@ -18,12 +18,9 @@ from algorithms.fleets.island import Island, island_of
 from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, find_pair, pair_orders
 from algorithms.observations.fleet import Fleet
 from algorithms.observations.observation import encounter
-from algorithms.verdict.decision import VerdictConfig
 
 RunPairs = Callable[[Fleet, Sequence[PairOrder]], Iterator[PairFinding]]
 """Merges pairs, in any order, wherever there are workers."""
-
-ACCEPT_FROM = VerdictConfig().accept_from
 
 
 @dataclass(frozen=True)
@@ -72,8 +69,8 @@ class FleetResult:
     @property
     def forced(self) -> frozenset[str]:
         """Robots of pairs whose answer is not likely enough, and which was taken all the same."""
-        weak = (number for number, likely in self.likely.items() if likely < ACCEPT_FROM)
-        return frozenset(self.findings[number].order.mov for number in weak)
+        found = ((self.findings[number], likely) for number, likely in self.likely.items())
+        return frozenset(finding.order.mov for finding, likely in found if likely < finding.accept_from)
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +145,7 @@ def joined(fleet: Fleet, findings: Sequence[PairFinding], force: bool = False) -
     force : as of ``run_fleet``
     """
     if force:
-        return _put_together(fleet, findings, findings, {}, accept_from=0.0)
+        return _put_together(fleet, findings, findings, {}, force)
     refused: dict[str, str] = {}
     while True:
         use = [f for f in findings if not {f.order.ref, f.order.mov} & set(refused)]
@@ -187,12 +184,14 @@ def _put_together(
     findings: Sequence[PairFinding],
     use: Sequence[PairFinding],
     refused: Mapping[str, str],
-    accept_from: float = ACCEPT_FROM,
+    force: bool = False,
 ) -> FleetResult:
     graph = AnswerGraph(list(fleet.maps), use, _area(fleet))
     best = graph.best()
     likely = {number: probability_of(graph, best, number) for number in best.chosen}
-    sure = {number: k for number, k in best.chosen.items() if likely[number] >= accept_from}
+    sure = {
+        number: k for number, k in best.chosen.items() if force or likely[number] >= use[number].accept_from
+    }
     parts = nx.connected_components(graph.ties(sure))
     islands = []
     for part in sorted(parts, key=lambda part: (fleet.anchor not in part, -len(part), min(part))):

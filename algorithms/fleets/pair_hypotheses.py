@@ -19,10 +19,15 @@ from algorithms.methods.suggestions import suggestions_of
 from algorithms.observations.fleet import Fleet
 from algorithms.observations.observation import encounter
 from algorithms.observations.pair_problem import Known, PairProblem
+from algorithms.verdict.decision import VerdictConfig
 from algorithms.verdict.ranking import WINDOW_EDGE
 
 LEAST_LIKELY = 0.01  # an answer that is less likely is not kept
 SUREST = 1e-4  # so likely is it at least that none of the answers is right
+ACCEPT_FROM = VerdictConfig().accept_from
+SHORT_OF_IT = (
+    0.999  # of the probability from which on a merge is accepted: what one has that is refused all the same
+)
 
 
 @dataclass(frozen=True)
@@ -55,6 +60,8 @@ class PairFinding:
     pivot      : (2,) where its answers are compared; metres, mov frame
     hypotheses : the likeliest first; () where the method found none, or could not be run
     reason     : the verdict's sentence, or why there is none
+    accept_from : so likely must an answer be, by itself and the loops that it closes; how likely depends on
+                 what its method goes by
     """
 
     order: PairOrder
@@ -62,6 +69,7 @@ class PairFinding:
     hypotheses: tuple[Hypothesis, ...]
     reason: str
     accepted: bool = False
+    accept_from: float = ACCEPT_FROM
 
 
 def pair_orders(fleet: Fleet) -> list[PairOrder]:
@@ -113,24 +121,28 @@ def find_pair(fleet: Fleet, order: PairOrder, seed: int = 0) -> PairFinding:
 
 def finding_of(order: PairOrder, problem: PairProblem, config: Any, result: MergeResult) -> PairFinding:
     """What a merge of the pair says; an answer that a person chose stands alone."""
+    accept_from = ACCEPT_FROM if result.by_person else config.verdict.accept_from
     if result.by_person:
         sure = log((1 - SUREST) / SUREST)
         answers: Sequence[Hypothesis] = [Hypothesis(result.T_ref_mov, result.covariance, 1 - SUREST, sure)]
     else:
-        answers = _hypotheses(result, ManualMerge(problem, config))
+        answers = _hypotheses(result, ManualMerge(problem, config), accept_from)
     accepted = result.verdict.accepted or result.by_person
-    return PairFinding(order, problem.pivot, tuple(answers), result.verdict.reason, accepted)
+    return PairFinding(order, problem.pivot, tuple(answers), result.verdict.reason, accepted, accept_from)
 
 
-def _hypotheses(result: MergeResult, manual: ManualMerge) -> tuple[Hypothesis, ...]:
+def _hypotheses(result: MergeResult, manual: ManualMerge, accept_from: float) -> tuple[Hypothesis, ...]:
     kept = suggestions_of(result)
-    none = log(max(SUREST, 1.0 - sum(each.probability for each in kept)))
+    likely = sum(each.probability for each in kept)
+    none = max(SUREST, 1.0 - likely)
+    if kept and not result.verdict.accepted:  # its method may doubt an answer that the walls find likely
+        none = max(none, kept[0].probability / (SHORT_OF_IT * accept_from) - likely)
     return tuple(
         Hypothesis(
             each.T_ref_mov,
             result.covariance if each.number == 1 else manual.covariance(each.weighed),
             each.probability,
-            log(each.probability) - none,
+            log(each.probability / none),
         )
         for each in kept
         if each.probability >= LEAST_LIKELY
