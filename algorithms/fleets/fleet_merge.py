@@ -226,12 +226,16 @@ def _left_out(
     for number, seen in enumerate(fleet.sightings):
         if of_sighting.get(number) in chosen:
             continue
-        distance, reason = None, findings[of_sighting[number]].reason
+        finding = findings[of_sighting[number]]
+        distance, reason = None, finding.said
         for island in islands:
             if seen.observer in island.poses and seen.observed in island.poses:
                 T = island.poses[seen.observer].inverse() @ island.poses[seen.observed]
                 at = encounter(seen.observation)
                 distance = float(np.linalg.norm(T.apply(at.x_mov) - at.x_ref))
-                reason = f"{seen.observer}'s sighting of {seen.observed} would put it {distance:.1f} m off"
+                if not finding.failed:  # else it says what is wrong with the sighting
+                    reason = (
+                        f"{seen.observer}'s sighting of {seen.observed} would put it {distance:.1f} m off"
+                    )
         out.append(LeftOut(number, distance, reason))
     return tuple(out)

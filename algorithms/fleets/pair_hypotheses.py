@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.common.errors import MapMergeError
+from algorithms.common.errors import MapMergeError, NoAnswerError
 from algorithms.common.pose import FloatArray, Pose2
+from algorithms.common.robot_names import RobotNames
 from algorithms.methods import registry
 from algorithms.methods.manual_merge import ManualMerge
 from algorithms.methods.merge_result import MergeResult
@@ -59,7 +60,8 @@ class PairFinding:
 
     pivot      : (2,) where its answers are compared; metres, mov frame
     hypotheses : the likeliest first; () where the method found none, or could not be run
-    reason     : the verdict's sentence, or why there is none
+    reason     : the verdict's sentence, or why there is none; on robot 1 and robot 2
+    failed     : it could not be merged at all: its maps, or what is known of them, cannot be
     accept_from : so likely must an answer be, by itself and the loops that it closes; how likely depends on
                  what its method goes by
     """
@@ -70,6 +72,12 @@ class PairFinding:
     reason: str
     accepted: bool = False
     accept_from: float = ACCEPT_FROM
+    failed: bool = False
+
+    @property
+    def said(self) -> str:
+        """The reason with the robots' names in it."""
+        return RobotNames(self.order.ref, self.order.mov).told(self.reason)
 
 
 def pair_orders(fleet: Fleet) -> list[PairOrder]:
@@ -116,7 +124,8 @@ def find_pair(fleet: Fleet, order: PairOrder, seed: int = 0) -> PairFinding:
         result = registry.merge(problem.ref, problem.mov, known, method, config, seed)
         return finding_of(order, problem, config, result)
     except MapMergeError as error:
-        return PairFinding(order, np.zeros(2), (), str(error))
+        failed = not isinstance(error, NoAnswerError)
+        return PairFinding(order, np.zeros(2), (), str(error), failed=failed)
 
 
 def finding_of(order: PairOrder, problem: PairProblem, config: Any, result: MergeResult) -> PairFinding:

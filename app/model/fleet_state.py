@@ -11,7 +11,7 @@ from algorithms.fleets.fleet_merge import FleetResult, poses_so_far
 from algorithms.fleets.island import Island
 from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, known_of, pair_orders
 from algorithms.maps.grid_map import GridMap
-from algorithms.observations.fleet import NAME_RULE, Fleet, FleetPrior, FleetSighting, is_name
+from algorithms.observations.fleet import LONGEST_NAME, NAME_RULE, Fleet, FleetPrior, FleetSighting, is_name
 from algorithms.observations.observation import Observation
 from algorithms.observations.pair_problem import Known
 from app.model.merge_inputs import MergeInputs
@@ -58,11 +58,13 @@ class FleetState:
         return replace(self, fleet=fleet, hidden=self.hidden & set(fleet.maps), result=None)
 
     def with_robot(self, name: str, grid: GridMap) -> FleetState:
-        """One robot more; its name gets a number where there is one of that name. Raises SettingError."""
+        """One robot more, called so as far as it can be; raises SettingError."""
         return self.with_fleet(replace(self.fleet, maps={**self.fleet.maps, self.unused(name): grid}))
 
     def unused(self, name: str) -> str:
-        """The name, or with a number behind it where a robot has it."""
+        """What is a robot's name in it, with a number behind it where a robot has that."""
+        letters = "".join(each for each in name if each.isprintable() and each != "/")
+        name = letters.strip()[: LONGEST_NAME - 3].strip() or "robot"
         names = [name, *(f"{name}_{k}" for k in range(2, len(self.robots) + 3))]
         return next(each for each in names if each not in self.fleet.maps)
 

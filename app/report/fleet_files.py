@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
@@ -55,15 +56,16 @@ def transforms_yaml(result: FleetResult) -> bytes:
             x, y, theta = (number_text(value) for value in (T.x, T.y, T.theta))
             lines.append(f"    {quoted(name)}:")
             lines.append(f"      T_root_robot: {{x: {x}, y: {y}, theta: {theta}}}")
-            lines.append(f'      publish: "{publish_command(island.root, name, T)}"')
+            lines.append(f"      publish: {quoted(publish_command(island.root, name, T))}")
     return ("\n".join(lines) + "\n").encode()
 
 
 def publish_command(root: str, name: str, T: Pose2) -> str:
-    """The command that tells ROS 2 where a robot's map lies in another's."""
+    """The command that tells ROS 2 where a robot's map lies in another's; to a shell a name is a name."""
+    frame, child = (shlex.quote(f"{each}/map") for each in (root, name))
     return (
         f"ros2 run tf2_ros static_transform_publisher --x {T.x:.6f} --y {T.y:.6f} --yaw {T.theta:.6f} "
-        f"--frame-id {root}/map --child-frame-id {name}/map"
+        f"--frame-id {frame} --child-frame-id {child}"
     )
 
 
@@ -136,5 +138,5 @@ def _pair(number: int, result: FleetResult) -> Mapping[str, Any]:
             {"T_ref_mov": asdict(answer.T_ref_mov), "probability": answer.probability}
             for answer in finding.hypotheses
         ],
-        "verdict": finding.reason,
+        "verdict": finding.said,
     }

@@ -14,7 +14,6 @@ from algorithms.common.errors import OutputError
 from algorithms.files.atomic_write import check_folder, write_files
 from algorithms.files.fleet_file import FLEET_FILE, read_fleet
 from algorithms.fleets.fleet_merge import FleetResult, PairStep, run_fleet
-from algorithms.maps.grid_map import remarks_on
 from app.cli.argument_parser import Parser
 from app.cli.executor_flags import add_workers, executor_for
 from app.cli.progress_bar import bar
@@ -73,8 +72,9 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     check_folder(args.out)
     fleet = read_fleet(args.fleet)
     _check_inputs(args)
-    for remark in remarks_on(tuple(fleet.maps.values())):
-        print(f"warning: {remark}", file=sys.stderr)
+    for name, grid in fleet.maps.items():
+        for remark in grid.remarks:
+            print(f"warning: {name}'s map ({grid.name}): {remark}.", file=sys.stderr)
     executor = executor_for(args.jobs, args.scheduler)
     result = _with_bar(run_fleet(fleet, partial(run_pairs, executor), args.force))
     name = args.fleet.resolve().name if args.fleet.is_dir() else args.fleet.stem
@@ -111,8 +111,9 @@ def _robots(result: FleetResult) -> list[str]:
     rows = [["robot", "map", "x (m)", "y (m)", "turn", "likely"]]
     for number, island in enumerate(result.islands, 1):
         for name, T in island.poses.items():
-            likely = verdict_text.likelihood(island.probability[name])
-            where = "merged" if number == 1 else f"island {number}"
+            alone = number > 1 and len(island.poses) == 1
+            likely = "–" if alone else verdict_text.likelihood(island.probability[name])
+            where = "merged" if number == 1 else "alone" if alone else f"island {number}"
             rows.append([name, where, f"{T.x:.3f}", f"{T.y:.3f}", f"{degrees(T.theta):.2f}°", likely])
     return aligned(rows)
 

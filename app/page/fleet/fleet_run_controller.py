@@ -94,4 +94,4 @@ class FleetRunController:
 
 def _progress(step: PairStep) -> str:
     order = step.finding.order
-    return f"Merging pairs: {step.done} of {step.total}. {order.ref} and {order.mov}: {step.finding.reason}"
+    return f"Merging pairs: {step.done} of {step.total}. {order.ref} and {order.mov}: {step.finding.said}"

@@ -15,7 +15,7 @@ from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import Case
 from algorithms.fleets.fleet_merge import merge_fleet
 from algorithms.fleets.pair_hypotheses import Hypothesis, PairFinding, PairOrder, pair_orders
-from algorithms.observations.fleet import NAME_RULE, Fleet, FleetPrior, FleetSighting, is_name
+from algorithms.observations.fleet import LONGEST_NAME, NAME_RULE, Fleet, FleetPrior, FleetSighting, is_name
 from algorithms.observations.observation import Observation
 from algorithms.observations.pair_problem import Known
 from algorithms.observations.priors import InitialPose, NearPlace, Prior, TurnPrior
@@ -96,6 +96,15 @@ def test_a_robot_of_a_name_that_is_taken_gets_a_number(state):
     grid = state.fleet.maps["cid"]
     more = state.with_robot("cid", grid).with_robot("cid", grid).with_robot("dan", grid)
     assert more.robots == ("ann", "bob", "cid", "cid_2", "cid_3", "dan")
+
+
+@given(st.text(max_size=90))
+def test_a_file_may_be_called_anything_and_its_robot_has_a_name(state, name):
+    grid = state.fleet.maps["cid"]
+    *_, one, other = state.with_robot(name, grid).with_robot(name, grid).robots
+    assert is_name(one)
+    assert is_name(other)
+    assert one == name or not (is_name(name) and len(name) <= LONGEST_NAME - 3) or name in state.robots
 
 
 def test_another_anchor_leaves_what_is_known_as_it_is(state):
