@@ -126,9 +126,6 @@ EXERCISED_BY = {
     "app/drawing/scene/test_search_symbols.py": {
         "app.drawing.draw_items",
     },
-    "app/drawing/scene/test_swarm_view.py": {
-        "app.drawing.browser_messages",
-    },
     "app/drawing/scene/test_zoom_crop.py": {
         "app.drawing.scene.grid_image",
     },

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import RobotNames
 from algorithms.fleets.fleet_merge import FleetResult, poses_so_far
 from algorithms.fleets.island import Island
 from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, known_of, pair_orders
@@ -120,7 +121,7 @@ class FleetState:
         maps, known = self.fleet.maps, known_of(self.fleet, order)
         verb = "and" if known and not order.sightings else "saw"
         inputs = MergeInputs.pair(maps[order.ref], maps[order.mov], name=f"{order.ref} {verb} {order.mov}")
-        named = replace(inputs, robots=(order.ref, order.mov))
+        named = replace(inputs, names=RobotNames(order.ref, order.mov))
         return named.knowing(known, None if known else "sighting")
 
     def open(self, order: PairOrder) -> FleetState:

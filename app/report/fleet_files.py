@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
-from algorithms.common.pose import Pose2
 from algorithms.files.map_file import map_to_bytes
 from algorithms.files.yaml_fields import number_text, quoted
 from algorithms.fleets.fleet_merge import FleetResult
@@ -17,6 +15,7 @@ from algorithms.fleets.island import Island
 from algorithms.observations.fleet import Fleet
 from app.report.fleet_report import fleet_page
 from app.report.result_files import MERGED, PAGE_FILE, REPORT_FILE, plain, report_json
+from app.report.ros_transform import publish_command
 from app.system.version import versions
 
 TRANSFORMS_FILE = "transforms.yaml"
@@ -56,17 +55,9 @@ def transforms_yaml(result: FleetResult) -> bytes:
             x, y, theta = (number_text(value) for value in (T.x, T.y, T.theta))
             lines.append(f"    {quoted(name)}:")
             lines.append(f"      T_root_robot: {{x: {x}, y: {y}, theta: {theta}}}")
-            lines.append(f"      publish: {quoted(publish_command(island.root, name, T))}")
+            command = publish_command(T, f"{island.root}/map", f"{name}/map")
+            lines.append(f"      publish: {quoted(command)}")
     return ("\n".join(lines) + "\n").encode()
-
-
-def publish_command(root: str, name: str, T: Pose2) -> str:
-    """The command that tells ROS 2 where a robot's map lies in another's; to a shell a name is a name."""
-    frame, child = (shlex.quote(f"{each}/map") for each in (root, name))
-    return (
-        f"ros2 run tf2_ros static_transform_publisher --x {T.x:.6f} --y {T.y:.6f} --yaw {T.theta:.6f} "
-        f"--frame-id {frame} --child-frame-id {child}"
-    )
 
 
 def graph_g2o(result: FleetResult) -> bytes:

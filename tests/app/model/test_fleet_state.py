@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import RobotNames
 from algorithms.files.case_folder import Case
 from algorithms.fleets.fleet_merge import merge_fleet
 from algorithms.fleets.pair_hypotheses import Hypothesis, PairFinding, PairOrder, pair_orders
@@ -119,7 +120,7 @@ def test_a_pair_that_is_opened_and_closed_as_it_was_leaves_the_fleet_as_it_was(s
     opened = state.with_finding(found(ANN_BOB)).open(ANN_BOB)
     pair = opened.pair(ANN_BOB)
     assert (pair.ref, pair.mov) == (state.fleet.maps["ann"], state.fleet.maps["bob"])
-    assert pair.robots == ("ann", "bob")
+    assert pair.names == RobotNames("ann", "bob")
     closed = opened.closed(pair.known, None)
     assert closed.fleet is state.fleet
     assert closed.finding(ANN_BOB) is not None

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 import shlex
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -22,7 +21,8 @@ from algorithms.files.observation_file import known_to_bytes
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import is_name
 from app.cli.main import main
-from app.report.fleet_files import publish_command, transforms_yaml
+from app.report.fleet_files import transforms_yaml
+from app.report.ros_transform import publish_command
 
 ALL = {"merged.pgm", "merged.yaml", "transforms.yaml", "graph.g2o", "report.html", "report.json"}
 
@@ -125,7 +125,7 @@ def test_the_fleets_own_folder_is_not_written_to(folder, capsys):
 
 
 def test_a_pose_is_published_as_it_is():
-    said = publish_command("ann", "bob", replace(Pose2(1.5, -2.0, 0.25)))
+    said = publish_command(Pose2(1.5, -2.0, 0.25), "ann/map", "bob/map")
     assert "--x 1.500000 --y -2.000000 --yaw 0.250000 --frame-id ann/map" in said
 
 
