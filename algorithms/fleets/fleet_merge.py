@@ -90,13 +90,16 @@ def in_turn(fleet: Fleet, orders: Sequence[PairOrder]) -> Iterator[PairFinding]:
     return map(partial(find_pair, fleet), orders)
 
 
-def run_fleet(fleet: Fleet, run_pairs: RunPairs = in_turn, force: bool = False) -> Iterator[FleetStep]:
+def run_fleet(
+    fleet: Fleet, run_pairs: RunPairs = in_turn, force: bool = False, further: Sequence[PairFinding] = ()
+) -> Iterator[FleetStep]:
     """Yield a step for every pair that was merged; the last step is the FleetResult.
 
+    further : what was found of pairs of which nothing is known
     force  : take the likeliest answers however unlikely they are, and take no robot out again
     raises : TooLargeError where a merged map would be over the bound
     """
-    findings = yield from _merged(fleet, pair_orders(fleet), run_pairs, [])
+    findings = yield from _merged(fleet, pair_orders(fleet), run_pairs, further)
     result = joined(fleet, findings, force)
     lonely = _unseen(result)
     if lonely:

@@ -52,6 +52,23 @@ class FleetState:
         """The maps that it has become; () before."""
         return () if self.result is None else self.result.islands
 
+    @property
+    def further(self) -> tuple[PairFinding, ...]:
+        """What was accepted of pairs of which nothing is known: a person has opened, merged or laid them."""
+        known = [{order.ref, order.mov} for order in pair_orders(self.fleet)]
+        maps, further = self.fleet.maps, []
+        for (ref, mov, told), finding in self.found.items():
+            one, other = finding.order.ref, finding.order.mov
+            same = maps.get(one) is ref and maps.get(other) is mov
+            if finding.accepted and not told and same and {one, other} not in known:
+                further.append(finding)
+        return tuple(further)
+
+    @property
+    def orders(self) -> list[PairOrder]:
+        """Pairs of which something is known or was found."""
+        return [*pair_orders(self.fleet), *(finding.order for finding in self.further)]
+
     # --- what a person changes ----------------------------------------------------------------------
 
     def with_fleet(self, fleet: Fleet) -> FleetState:
@@ -185,6 +202,6 @@ class FleetState:
         """Robots that lie together, the anchor's group first: as they were found, or as far as pairs go."""
         if self.result is not None:
             return [island.poses for island in self.result.islands]
-        findings = [found for order in pair_orders(self.fleet) if (found := self.finding(order)) is not None]
+        findings = [found for order in self.orders if (found := self.finding(order)) is not None]
         together = poses_so_far(self.fleet, findings)
         return [together, *({name: Pose2()} for name in self.robots if name not in together)]

@@ -14,6 +14,7 @@ from algorithms.common.errors import OutputError
 from algorithms.files.atomic_write import check_folder, write_files
 from algorithms.files.fleet_file import FLEET_FILE, read_fleet
 from algorithms.fleets.fleet_merge import FleetResult, PairStep, run_fleet
+from algorithms.observations.fleet import Fleet
 from app.cli.argument_parser import Parser
 from app.cli.executor_flags import add_workers, executor_for
 from app.cli.progress_bar import bar
@@ -83,7 +84,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     if args.json:
         sys.stdout.write(files[REPORT_FILE].decode())
     else:
-        print(summary(result, len(fleet.maps)), *_robots(result), *_left_out(result), sep="\n")
+        print(summary(result, len(fleet.maps)), *_robots(result), *_left_out(fleet, result), sep="\n")
         print(f"written to {args.out}: {', '.join(files)}")
     return 0 if result.whole else 1
 
@@ -118,5 +119,12 @@ def _robots(result: FleetResult) -> list[str]:
     return aligned(rows)
 
 
-def _left_out(result: FleetResult) -> list[str]:
-    return [f"sighting {each.number + 1} is left out: {each.reason}" for each in result.left_out]
+def _left_out(fleet: Fleet, result: FleetResult) -> list[str]:
+    """Sightings, and what else is known, that nothing rests on."""
+    said = [f"sighting {each.number + 1} is left out: {each.reason}" for each in result.left_out]
+    priors = {(told.ref, told.mov) for told in fleet.priors}
+    for number, finding in enumerate(result.findings):
+        order = finding.order
+        if not order.sightings and (order.ref, order.mov) in priors and number not in result.chosen:
+            said.append(f"what is known of {order.mov} in {order.ref} is left out: {finding.said}")
+    return said

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from algorithms.common.errors import MapMergeError, SettingError
 from algorithms.common.pose import FloatArray
 from algorithms.files.fleet_archive import fleet_to_files
-from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, finding_of, pair_orders
+from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, finding_of
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import Fleet
 from algorithms.observations.pair_problem import PairProblem
@@ -185,11 +185,11 @@ class FleetController:
         """A row of the lists was pressed."""
         with self._locks.action, self._locks.drawing:
             state = self._shown
-            rows = () if state is None else pair_orders(state.fleet) if what == "pair" else state.robots
+            rows = () if state is None else state.orders if what == "pair" else state.robots
             if state is None or not 0 <= n < len(rows):
                 return
             if what == "pair":
-                self._open(pair_orders(state.fleet)[n])
+                self._open(state.orders[n])
             elif what == "robot":
                 self._panel.choose(state.robots[n])
                 self._show_panel()
@@ -204,7 +204,7 @@ class FleetController:
         with self._locks.action:
             state, edge = self._shown, self._display.edge_at(place)
             if state is not None and edge is not None:
-                self._open(next(each for each in pair_orders(state.fleet) if edge.number in each.sightings))
+                self._open(next(each for each in state.orders if edge.number in each.sightings))
 
     # --- a pair in the page of two maps -----------------------------------------------------------------
 

@@ -64,7 +64,7 @@ class FleetRunController:
             if stop.is_set():
                 raise StoppedError
 
-        yield from run_fleet(state.fleet, pairs)
+        yield from run_fleet(state.fleet, pairs, further=state.further)
 
     def part_done(self, step: FleetStep) -> None:
         """More is known of the fleet."""

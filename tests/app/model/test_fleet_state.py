@@ -14,7 +14,7 @@ from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
 from algorithms.common.robot_names import RobotNames
 from algorithms.files.case_folder import Case
-from algorithms.fleets.fleet_merge import merge_fleet
+from algorithms.fleets.fleet_merge import merge_fleet, run_fleet
 from algorithms.fleets.pair_hypotheses import Hypothesis, PairFinding, PairOrder, pair_orders
 from algorithms.observations.fleet import LONGEST_NAME, NAME_RULE, Fleet, FleetPrior, FleetSighting, is_name
 from algorithms.observations.observation import Observation
@@ -153,6 +153,29 @@ def test_what_is_known_of_two_robots_outlives_the_coming_and_going_of_others(sma
     assert kept == set(known)
     assert {(one.ref, one.mov) for one in pair_orders(left.fleet)} <= {("eve", "bob")}
     assert left.renamed("eve", "ann").fleet.priors == told.fleet.priors
+
+
+def test_what_was_found_of_a_pair_of_which_nothing_is_known_counts_until_something_is(state):
+    order = PairOrder("ann", "cid", ())
+    told = state.open(order).closed((), found(order))
+    assert told.orders == [ANN_BOB, order]
+    assert [each.order for each in told.further] == [order]
+    assert {"ann", "cid"} in [set(group) for group in told.groups()]
+    renamed = told.renamed("cid", "dan")
+    assert [each.order for each in renamed.further] == [PairOrder("ann", "dan", ())]
+    assert told.without_robot("cid").further == ()
+    known = told.open(PairOrder("cid", "ann", ())).closed((TurnPrior(0.0),), None)
+    assert known.further == ()
+    assert known.orders == [ANN_BOB, PairOrder("cid", "ann", ())]
+    assert state.open(order).closed((), replace(found(order), accepted=False)).further == ()
+
+
+def test_two_maps_that_a_person_laid_on_each_other_stay_so_in_a_fleet(state):
+    order = PairOrder("ann", "cid", ())
+    sure = replace(found(order).hypotheses[0], T_ref_mov=Pose2(), weight=9.0)
+    laid = state.open(order).closed((), replace(found(order), hypotheses=(sure,)))
+    *_, result = run_fleet(laid.fleet, further=laid.further)
+    assert result.placed["cid"].array() == pytest.approx([0.0, 0.0, 0.0])
 
 
 def test_a_pair_is_called_after_what_is_known_of_it(state):

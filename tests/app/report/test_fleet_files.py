@@ -184,3 +184,15 @@ def test_a_sighting_that_cannot_be_says_why_with_the_robots_names(folder, tmp_pa
     assert "sighting 1 is left out: the observation puts ann at (-30000, " in told
     assert "robot 1" not in told
     assert "robot 2" not in told
+
+
+def test_what_is_known_and_left_out_says_why(folder, tmp_path, capsys):
+    plain = yaml.safe_load((folder / "fleet.yaml").read_text())
+    plain["sightings"] = []
+    plain["known"] = [{"of": "dan", "in": "ann", "near": {"in": [0.0, 0.0], "of": [1e6, 0.0]}}]
+    for robot in plain["robots"].values():
+        robot["map"] = str(folder / robot["map"])
+    (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(plain, sort_keys=False))
+    main(["fleet", str(tmp_path), "--out", str(tmp_path / "out"), "--jobs", "1"])
+    told = capsys.readouterr().out
+    assert "what is known of dan in ann is left out: near: a place lies at (1e+06, 0) m" in told
