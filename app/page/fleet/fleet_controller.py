@@ -106,6 +106,8 @@ class FleetController:
     def _go(self, state: FleetState, label: str) -> None:
         """Show that fleet in place of whatever there is, as a new step."""
         with self._locks.action, self._locks.drawing:
+            if not self._claim(state):
+                return
             self._runs.thread.stop()
             if self._inputs.show(MergeInputs(name=state.name)):
                 self._modes.enter(self._mode)
@@ -113,15 +115,21 @@ class FleetController:
 
     def _take(self, state: FleetState, label: str) -> None:
         """That is the fleet from now on; whoever calls is drawing."""
-        try:
-            self._quota.claim(self, sum(grid.cells.size for grid in state.fleet.maps.values()))
-        except MapMergeError as error:
-            self._notices.report(error)
+        if not self._claim(state):
             return
         self._state.update(fleet=state)
         self._display.show(look=True)
         self._display.say_outcome()
         self._history.note(self._state.snapshot(), label)
+
+    def _claim(self, state: FleetState) -> bool:
+        """Whether there is room for its maps; where there is none, that is told."""
+        try:
+            self._quota.claim(self, sum(grid.cells.size for grid in state.fleet.maps.values()))
+        except MapMergeError as error:
+            self._notices.report(error)
+            return False
+        return True
 
     def _end(self) -> None:
         self._run.stop()
