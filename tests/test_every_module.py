@@ -174,9 +174,6 @@ EXERCISED_BY = {
     "app/drawing/scene/test_search_symbols.py": {
         "app.drawing.draw_items",
     },
-    "app/drawing/scene/test_swarm_view.py": {
-        "app.drawing.browser_messages",
-    },
     "app/drawing/scene/test_zoom_crop.py": {
         "app.drawing.scene.grid_image",
     },
@@ -244,8 +241,6 @@ EXERCISED_BY = {
         "app.report.result_rows",
     },
     "algorithms/fleets/test_fleet_merge.py": {
-        "algorithms.fleets.island",
-        "algorithms.fleets.pair_hypotheses",
         "algorithms.observations.fleet",
     },
     "app/evaluation/test_fleet_evaluation.py": {
