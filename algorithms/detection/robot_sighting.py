@@ -21,7 +21,8 @@ from algorithms.sensors.camera import Camera
 from algorithms.sensors.laser_scan import LaserScan
 
 LEAST_POINTS = 3  # of a robot; two say nothing of its width
-LEAST_SHARE = 0.4  # of the cluster's width that lies in the box, and the other way round
+LEAST_SHARE = 0.4  # of the cluster's width that lies in the box, or the other way round: it may be meant
+LEAST_FIT = 0.4  # shared over joint width of cluster and box: a robot fills its box
 SLACK = 0.25  # of a box's width, by which it may lie beside the robot: windows lie on a grid
 RIVAL = 0.5  # times the best fit of a cluster and a box, from which another one could be meant as well
 HIDDEN = 0.45  # of the narrowest width: what shows less of itself could be anything
@@ -169,6 +170,8 @@ def _sighted(
     taken: list[Sighted] = []
     for cluster in candidates:
         why_not = _shape_fault(cluster, view.scan, body)
+        if not why_not and _fit(Sighted(one, cluster, None), view, camera) < LEAST_FIT:
+            why_not = "what the laser sees there is not as wide as the box, or lies beside it"
         position = None if why_not else position_of(cluster, view.scan, body)
         if position is not None and position.unexplained > MISFIT:
             share = f"{position.unexplained:.0%} of the beams do not fit"

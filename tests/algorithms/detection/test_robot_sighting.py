@@ -190,3 +190,13 @@ def test_an_observation_holds_what_was_measured_and_where_the_robots_stood():
     measured = seen.range, seen.bearing, seen.sigma_range, seen.sigma_bearing
     assert numbers == pytest.approx(measured, abs=1e-6)
     assert (made.observer, made.observed_x, made.observed_heading) == (Pose2(1.0, 2.0, 0.5), 3.0, 0.7)
+
+
+def test_a_small_box_before_a_thing_of_a_robot_size_is_not_that_thing():
+    """A picture above a carton: the laser sees the carton, the camera something far smaller."""
+    at = place(2.5, 0.1)
+    box = box_of(at)
+    small = replace(box, right=box.left + 0.3 * box.width)
+    refused = sight([small], scan(at), CAMERA, BODY)
+    assert refused.position is None
+    assert "not as wide as the box" in refused.reason
