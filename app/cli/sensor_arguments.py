@@ -9,9 +9,6 @@ from dataclasses import replace
 from math import isfinite, radians
 from pathlib import Path
 
-from algorithms.files.camera_file import read_camera
-from algorithms.files.scan_file import read_scan
-
 from algorithms.common.errors import InputFileError, SettingError
 from algorithms.common.pose import Pose2
 from algorithms.detection.detection import Detector, Picture
@@ -19,6 +16,8 @@ from algorithms.detection.footprint import Footprint
 from algorithms.detection.model_file import read_model, shipped_model
 from algorithms.detection.svm_detector import LEAST_PROBABILITY, SvmDetector
 from algorithms.detection.tag_detector import FAMILIES, TagDetector
+from algorithms.files.camera_file import read_camera
+from algorithms.files.scan_file import read_scan
 from algorithms.sensors.camera import Camera
 from algorithms.sensors.laser_scan import LaserScan
 from app.cli.argument_parser import Parser

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from algorithms.files.camera_picture import PICTURE_SUFFIXES, read_picture
 
 from algorithms.common.errors import InputFileError
 from algorithms.detection.detection import Picture
 from algorithms.detection.model_file import model_to_bytes
 from algorithms.detection.svm_training import Background, RobotExample, Training, train
 from algorithms.files.atomic_write import check_folder, write_file
+from algorithms.files.camera_picture import PICTURE_SUFFIXES, read_picture
 from app.cli.argument_parser import Parser, whole_number
 from app.cli.progress_bar import bar
 from app.evaluation.table_files import aligned
