@@ -13,6 +13,7 @@
     document.querySelector(selector)?.focus({ preventScroll: true });
     if (frames) requestAnimationFrame(() => stay(selector, frames - 1));
   }
+  S.kit.stay = stay;
   document.addEventListener("change", (e) => {
     const method = e.target.dataset?.mmPick;
     if (!method) return;
