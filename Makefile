@@ -9,7 +9,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 TOOL := PYTHONPATH=tests/support $(BIN)/python tests/tools
 
-.PHONY: help run test bench fuzz soak idle audit samples screenshots equations replays verdict unrelated results clean
+.PHONY: help run test bench fuzz soak idle audit samples screenshots equations replays verdict unrelated detector sightings results clean
 
 help:
 	@echo "make run          open the tool on a sample, in the browser (ARGS=--no-browser: only serve it)"
@@ -25,6 +25,8 @@ help:
 	@echo "make replays      record the pages in static/replays again"
 	@echo "make verdict      fit the verdict's model to simulated pairs again (ARGS='--cases DIR'); about an hour"
 	@echo "make unrelated    merge 1,000 pairs of unrelated maps without a sighting (ARGS='--pairs 100'); about an hour"
+	@echo "make detector     train the detector of robots that ships again; about half an hour"
+	@echo "make sightings    look for robots in 2,000 rendered images and scans: found, false, errors; about an hour"
 	@echo "make results      measure the paper's section IV on the samples again: RESULTS.md; about 3 minutes on 2 cores"
 	@echo "make clean        remove the environment and everything that was made"
 
@@ -76,6 +78,12 @@ equations: $(VENV)/ready
 replays: $(VENV)/ready
 	@for name in $(or $(ARGS),office_r2_r1 bent_r2_r1); do \
 	  $(BIN)/mapmeld replay $$name --out static/replays/$$name.html || exit; done
+
+detector: $(VENV)/ready
+	@$(TOOL)/detector_training.py $(ARGS)
+
+sightings: $(VENV)/ready
+	@$(TOOL)/sighting_errors.py $(ARGS)
 
 verdict: $(VENV)/ready
 	@$(TOOL)/verdict_training.py $(ARGS)

@@ -24,6 +24,17 @@ if TYPE_CHECKING:  # type checkers and editors see the names here; at run time e
     from algorithms.common.errors import SettingError as SettingError
     from algorithms.common.errors import TooLargeError as TooLargeError
     from algorithms.common.pose import Pose2 as Pose2
+    from algorithms.detection.footprint import Footprint as Footprint
+    from algorithms.detection.map_walls import MapWalls as MapWalls
+    from algorithms.detection.model_file import read_model as read_model
+    from algorithms.detection.model_file import shipped_model as shipped_model
+    from algorithms.detection.robot_sighting import SightedRobots as SightedRobots
+    from algorithms.detection.robot_sighting import observation_of as observation_of
+    from algorithms.detection.robot_sighting import sight as sight
+    from algorithms.detection.svm_detector import SvmDetector as SvmDetector
+    from algorithms.detection.tag_detector import TagDetector as TagDetector
+    from algorithms.files.camera_file import read_camera as read_camera
+    from algorithms.files.camera_picture import read_picture as read_picture
     from algorithms.files.case_folder import Case as Case
     from algorithms.files.case_folder import read_case as read_case
     from algorithms.files.fleet_file import read_fleet as read_fleet
@@ -32,6 +43,7 @@ if TYPE_CHECKING:  # type checkers and editors see the names here; at run time e
     from algorithms.files.observation_file import read_known as read_known
     from algorithms.files.observation_file import read_observations as read_observations
     from algorithms.files.observation_file import write_observations as write_observations
+    from algorithms.files.scan_file import read_scan as read_scan
     from algorithms.fleets.fleet_merge import FleetResult as FleetResult
     from algorithms.fleets.fleet_merge import merge_fleet as merge_fleet
     from algorithms.fleets.fleet_merge import run_fleet as run_fleet
@@ -49,6 +61,8 @@ if TYPE_CHECKING:  # type checkers and editors see the names here; at run time e
     from algorithms.observations.priors import InitialPose as InitialPose
     from algorithms.observations.priors import NearPlace as NearPlace
     from algorithms.observations.priors import TurnPrior as TurnPrior
+    from algorithms.sensors.camera import Camera as Camera
+    from algorithms.sensors.laser_scan import LaserScan as LaserScan
     from algorithms.verdict.decision import Outcome as Outcome
     from algorithms.verdict.decision import Verdict as Verdict
 
@@ -77,6 +91,17 @@ _MODULES = {
     "algorithms.observations.fleet": ("Fleet", "FleetSighting"),
     "algorithms.observations.observation": ("Observation",),
     "algorithms.observations.priors": ("InitialPose", "NearPlace", "TurnPrior"),
+    "algorithms.detection.footprint": ("Footprint",),
+    "algorithms.detection.map_walls": ("MapWalls",),
+    "algorithms.detection.model_file": ("read_model", "shipped_model"),
+    "algorithms.detection.robot_sighting": ("SightedRobots", "observation_of", "sight"),
+    "algorithms.detection.svm_detector": ("SvmDetector",),
+    "algorithms.detection.tag_detector": ("TagDetector",),
+    "algorithms.files.camera_file": ("read_camera",),
+    "algorithms.files.camera_picture": ("read_picture",),
+    "algorithms.files.scan_file": ("read_scan",),
+    "algorithms.sensors.camera": ("Camera",),
+    "algorithms.sensors.laser_scan": ("LaserScan",),
     "algorithms.verdict.decision": ("Outcome", "Verdict"),
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}

@@ -238,6 +238,7 @@ def test_each_library_is_known_in_its_own_place():
         "websockets": ("app.web",),
         "argparse": ("app.cli",),
         "tqdm": ("app.cli",),
+        "sklearn": ("algorithms.detection.svm_training",),
         "distributed": ("app.jobs.dask_executor",),
         "dask": ("app.jobs.dask_executor",),
     }
@@ -253,7 +254,8 @@ def test_the_place_of_a_file_is_known_in_one_place():
         for node in ast.walk(tree)
         if isinstance(node, ast.Name) and node.id == "__file__"
     }
-    assert asking == {"app.system.data_paths", "algorithms.verdict.probability_model"}
+    models = {"algorithms.verdict.probability_model", "algorithms.detection.model_file"}
+    assert asking == {"app.system.data_paths", *models}
 
 
 def test_every_file_of_the_frontend_is_loaded_somewhere():

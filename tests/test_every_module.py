@@ -95,6 +95,41 @@ EXERCISED_BY = {
         "algorithms.simulator.sighting",
         "algorithms.simulator.wrong_pairs",
     },
+    "algorithms/simulator/views/interiors/test_interior.py": {
+        "algorithms.simulator.views.interiors.free_floor",
+        "algorithms.simulator.views.interiors.furnishings",
+        "algorithms.simulator.views.interiors.style",
+    },
+    "algorithms/simulator/views/rendering/test_ray_casting.py": {
+        "algorithms.simulator.views.rendering.solid_hits",
+    },
+    "algorithms/simulator/views/surfaces/test_patterns.py": {
+        "algorithms.simulator.views.surfaces.face_patterns",
+        "algorithms.simulator.views.surfaces.floor_patterns",
+        "algorithms.simulator.views.surfaces.materials",
+        "algorithms.simulator.views.surfaces.noise",
+        "algorithms.simulator.views.surfaces.pictures",
+    },
+    "algorithms/simulator/views/test_camera_image.py": {
+        "algorithms.simulator.views.light",
+        "algorithms.simulator.views.projection",
+        "algorithms.simulator.views.rendering.eye",
+        "algorithms.simulator.views.rendering.gloss",
+        "algorithms.simulator.views.rendering.seen_points",
+        "algorithms.simulator.views.rendering.shading",
+        "algorithms.simulator.views.solids",
+        "algorithms.simulator.views.view_scene",
+    },
+    "algorithms/simulator/views/test_robot_scan.py": {
+        "algorithms.simulator.views.reflections",
+    },
+    "algorithms/simulator/views/test_robot_views.py": {
+        "algorithms.simulator.views.clutter",
+        "algorithms.simulator.views.hardships",
+        "algorithms.simulator.views.robot_poster",
+        "algorithms.simulator.views.robot_sensors",
+        "algorithms.simulator.views.stage",
+    },
     "algorithms/spectra/test_hough_spectra.py": {
         "algorithms.spectra.candidates",
     },

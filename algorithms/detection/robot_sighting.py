@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import radians
+from math import nan, radians
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from algorithms.detection.detection import Detection
 from algorithms.detection.footprint import Footprint
 from algorithms.detection.map_walls import MapWalls
 from algorithms.detection.range_bearing import RobotPosition, position_of
-from algorithms.detection.scan_clusters import Cluster, clusters_of
+from algorithms.detection.scan_clusters import BEFORE, Cluster, clusters_of
 from algorithms.detection.tag_detector import position_by_tag
 from algorithms.maps.grid_map import BoolArray
 from algorithms.observations.observation import Observation
@@ -23,6 +23,7 @@ from algorithms.sensors.laser_scan import LaserScan
 LEAST_POINTS = 3  # of a robot; two say nothing of its width
 LEAST_SHARE = 0.4  # of the cluster's width that lies in the box, and the other way round
 SLACK = 0.25  # of a box's width, by which it may lie beside the robot: windows lie on a grid
+RIVAL = 0.5  # times the best fit of a cluster and a box, from which another one could be meant as well
 HIDDEN = 0.45  # of the narrowest width: what shows less of itself could be anything
 MISFIT = 0.25  # share of the beams that a robot's outline may leave unexplained
 
@@ -182,12 +183,13 @@ def _sighted(
             refused.append(Sighted(one, cluster, None, why_not))
         else:
             taken.append(Sighted(one, cluster, position))
-    if len(taken) == 1:
-        return taken[0]
-    if taken:
+    if not taken:
+        return max(refused, key=lambda seen: _fit(seen, view, camera))
+    best, *others = sorted(taken, key=lambda seen: -_fit(seen, view, camera))
+    if others and _fit(others[0], view, camera) > RIVAL * _fit(best, view, camera):
         why_not = f"the laser sees {len(taken)} things of a robot's size in the direction of the box"
         return Sighted(one, None, None, why_not)
-    return min(refused, key=lambda seen: _aside(seen, view))
+    return best
 
 
 def _no_cluster(one: Detection, view: LaserView) -> str:
@@ -205,27 +207,28 @@ def _no_cluster(one: Detection, view: LaserView) -> str:
 
 def _in_box(cluster: Cluster, one: Detection, view: LaserView, camera: Camera) -> bool:
     """Whether a cluster and a box lie in one direction."""
-    columns = view.columns[cluster.beams]
-    columns = columns[np.isfinite(columns)]
-    if not len(columns):
-        return False
-    half_beam = _half_beam(cluster, view.scan, camera)
-    low, high = float(columns.min()) - half_beam, float(columns.max()) + half_beam
+    low, high = _columns(cluster, view, camera)
     slack = SLACK * one.width
     shared = min(high, one.right + slack) - max(low, one.left - slack)
     return shared >= LEAST_SHARE * min(high - low, one.width)
 
 
-def _half_beam(cluster: Cluster, scan: LaserScan, camera: Camera) -> float:
-    """Half the spacing of two beams; pixels."""
-    return 0.5 * abs(scan.angle_increment) * camera.width / radians(camera.degrees_wide())
-
-
-def _aside(seen: Sighted, view: LaserView) -> float:
-    """How far a cluster lies beside the middle of its box; pixels."""
+def _fit(seen: Sighted, view: LaserView, camera: Camera) -> float:
+    """How well the columns of a cluster and a box cover one another: shared over joint, 0 … 1."""
     assert seen.cluster is not None
-    columns = view.columns[seen.cluster.beams]
-    return abs(float(np.nanmean(columns)) - seen.detection.middle[0])
+    low, high = _columns(seen.cluster, view, camera)
+    left, right = seen.detection.left, seen.detection.right
+    return max(0.0, min(high, right) - max(low, left)) / (max(high, right) - min(low, left))
+
+
+def _columns(cluster: Cluster, view: LaserView, camera: Camera) -> tuple[float, float]:
+    """First and last column of a cluster, half a beam added on both sides; NaN outside the view; pixels."""
+    columns = view.columns[cluster.beams]
+    columns = columns[np.isfinite(columns)]
+    if not len(columns):
+        return nan, nan
+    half_beam = 0.5 * abs(view.scan.angle_increment) * camera.width / radians(camera.degrees_wide())
+    return float(columns.min()) - half_beam, float(columns.max()) + half_beam
 
 
 def _shape_fault(cluster: Cluster, scan: LaserScan, body: Footprint) -> str:
@@ -233,14 +236,15 @@ def _shape_fault(cluster: Cluster, scan: LaserScan, body: Footprint) -> str:
     points = cluster.points
     if len(points) < LEAST_POINTS:
         return f"the laser has {len(points)} points there, too few to measure a robot"
-    across = points[-1] - points[0]
-    spacing = float(np.hypot(*points.mean(axis=0))) * abs(scan.angle_increment)
-    wide = float(np.hypot(*across)) + spacing
+    spacing = float(np.hypot(*points.T).min()) * abs(scan.angle_increment)
+    wide = float(np.hypot(*(points - points[0]).T).max()) + spacing
     if wide > body.widest + 2 * spacing + 6 * scan.noise():
         return (
-            f"what the laser sees there is {wide:.2f} m wide, and a robot at most {body.widest:.2f} m: "
-            "a wall, or a robot that stands against something"
+            f"the laser sees no step in depth around it, but something {wide:.2f} m wide: a picture on a "
+            f"wall, or a robot that touches something (a robot is at most {body.widest:.2f} m)"
         )
+    if cluster.first == cluster.last == BEFORE:
+        return "what the laser sees there lies behind other things on both sides"
     if wide < HIDDEN * body.narrowest:
         return f"only {wide:.2f} m of a thing are seen there; the rest, if there is one, is hidden"
     return ""

@@ -17,6 +17,7 @@ from algorithms.simulator.fleets.sample_fleets import fleet_files, sample_fleets
 from algorithms.simulator.odometry_drift import OdometryDrift
 from algorithms.simulator.robot import Conditions
 from algorithms.simulator.scenario import SimulatedCase, simulate
+from algorithms.simulator.views.pictured_encounters import encounter_files
 from algorithms.simulator.wrong_pairs import mismatch
 
 
@@ -28,6 +29,7 @@ class Sample:
     pairs    : those that ship, as "OBSERVER_OBSERVED"
     bend     : of R1's map, as ``OdometryDrift`` has it
     title    : what the folders' names begin with; the kind unless given
+    pictured : R2 → R1 ships with what R2's camera and laser saw
     """
 
     kind: str
@@ -39,6 +41,7 @@ class Sample:
     reach: float | None = None
     bend: float = 0.0
     title: str = ""
+    pictured: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -56,19 +59,22 @@ class Sample:
         made = simulate(
             self.kind, self.seed, self.overlaps, both_ways=both_ways, reach=reach, conditions=conditions
         )
-        named = zip(self.names, made.cases, strict=False)
+        cases = made.cases
+        if self.pictured:
+            cases = (made.pictured_case(0, self.seed), *cases[1:])
+        named = zip(self.names, cases, strict=False)
         return tuple(replace(case, name=name) for name, case in named)
 
 
 SAMPLES = (
     # both robots saw one another; half of the smaller map is in the other, then one cross corridor alone
-    Sample("office", 14, (0.5, 0.2), both_ways=True),
+    Sample("office", 14, (0.5, 0.2), both_ways=True, pictured=True),
     # small rooms, all at right angles: four turns look right, one is
-    Sample("apartment", 21, (0.6, 0.4), resolutions=(0.04, 0.05, 0.05)),
+    Sample("apartment", 21, (0.6, 0.4), resolutions=(0.04, 0.05, 0.05), pictured=True),
     # the aisles nearly repeat, so a merge one rack too far looks good: only missing pallets tell them apart
     Sample("warehouse", 12, (0.3, 0.15)),
     # it looks alike turned by 180°; a twentieth shared is at the edge of what can be merged at all
-    Sample("corridor", 30, (0.1, 0.04), reach=6.0),
+    Sample("corridor", 30, (0.1, 0.04), reach=6.0, pictured=True),
     # robot 1 has bent it: no one transform lays the maps on each other everywhere
     Sample("apartment", 2, (0.7, 0.7), pairs=("r2_r1",), bend=1.0, title="bent"),
 )
@@ -90,6 +96,7 @@ def case_files(case: SimulatedCase) -> dict[str, bytes]:
         OBSERVATION_FILE: known_to_bytes(case.observations),
         ROUGH_OBSERVATION_FILE: known_to_bytes(case.rough),
         TRUTH_FILE: truth_to_bytes(truth),
+        **encounter_files(case.encounters),
     }
 
 
@@ -99,7 +106,10 @@ def write_case(folder: Path, case: SimulatedCase) -> None:
 
 
 def regenerate(folder: Path) -> list[SimulatedCase]:
-    """Make all shipped samples and fleets again, one folder each; the same bytes every time."""
+    """Make all shipped samples and fleets again, one folder each; the same bytes every time.
+
+    JPEG files are as equal as the library is that writes them.
+    """
     cases = [case for sample in SAMPLES for case in sample.cases()]
     for case in cases:
         write_case(Path(folder) / case.name, case)
@@ -111,10 +121,10 @@ def regenerate(folder: Path) -> list[SimulatedCase]:
 def generate_cases(
     kind: str, seeds: Iterable[int], folder: Path, overlap: float | None = None, sightings: int = 1
 ) -> list[Path]:
-    """Write two cases per seed, in folders ``kind_SEED_r2_r1`` and ``kind_SEED_r3_r2``."""
+    """Write two cases per seed, in folders ``kind_SEED_r2_r1`` and ``kind_SEED_r3_r2``, with pictures."""
     folders = []
     for seed in seeds:
-        for name, case in _named_cases(kind, seed, overlap, sightings):
+        for name, case in _named_cases(kind, seed, overlap, sightings, pictured=True):
             folders.append(Path(folder) / name)
             write_case(folders[-1], case)
     return folders
@@ -150,7 +160,8 @@ def generate_wrong_pairs(
 
 
 def _named_cases(
-    kind: str, seed: int, overlap: float | None, sightings: int
+    kind: str, seed: int, overlap: float | None, sightings: int, pictured: bool = False
 ) -> list[tuple[str, SimulatedCase]]:
-    cases = simulate(kind, seed, overlap, sightings=sightings).cases
+    made = simulate(kind, seed, overlap, sightings=sightings)
+    cases = [made.pictured_case(n, seed) for n in range(len(made.cases))] if pictured else made.cases
     return [(f"{kind}_{seed:04d}_{case.name.split('_', 1)[1]}", case) for case in cases]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -27,6 +27,7 @@ from algorithms.simulator.sighting import (
     measured_overlap,
     observe,
 )
+from algorithms.simulator.views.pictured_encounters import PicturedEncounter, pictured
 
 LEAST, MOST = 0.05, 0.6  # overlaps that are drawn where none is asked for
 TOLERANCE = 0.02  # an overlap this near to the one asked for is good enough
@@ -46,6 +47,7 @@ class SimulatedCase:
     overlap      : share of the smaller map's occupied cells that the other has too, 0 … 1
     truth_rms    : what the fit leaves, because each map is bent in its own way; metres
     source       : which building of which seed
+    encounters   : what the observer's camera and laser measured, where somebody had a look
     """
 
     name: str
@@ -57,6 +59,7 @@ class SimulatedCase:
     overlap: float
     truth_rms: float
     source: str
+    encounters: tuple[PicturedEncounter, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +89,15 @@ class Scenario:
     robots: tuple[Robot, ...]
     pairs: tuple[Pair, ...]
     cases: tuple[SimulatedCase, ...]
+
+    def pictured_case(self, n: int, seed: int) -> SimulatedCase:
+        """The n-th case, with what its observer saw at every meeting; that takes a second or so.
+
+        seed : of the building
+        """
+        pair = self.pairs[n]
+        encounters = pictured(self.building, seed, pair.observer, pair.observed, pair.meetings)
+        return replace(self.cases[n], encounters=encounters)
 
 
 def simulate(

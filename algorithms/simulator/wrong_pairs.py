@@ -47,4 +47,5 @@ def mirrored(case: SimulatedCase) -> SimulatedCase:
         observations=tuple(map(observation.mirrored, case.observations)),
         rough=tuple(map(observation.mirrored, case.rough)),
         T_ref_mov=None,
+        encounters=(),
     )

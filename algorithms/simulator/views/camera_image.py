@@ -11,19 +11,16 @@ from numpy.typing import NDArray
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.sensors.camera import Camera
 from algorithms.simulator.portable_random import METRE_GRID
-from algorithms.simulator.views.interiors.wall_outlines import WallFaces
+from algorithms.simulator.views.rendering.eye import DIRECT, Eye, Traced
+from algorithms.simulator.views.rendering.gloss import with_gloss
 from algorithms.simulator.views.rendering.lens import developed
-from algorithms.simulator.views.rendering.ray_casting import Hits, Index, RayCaster, Viewpoint
-from algorithms.simulator.views.rendering.seen_points import seen_points
-from algorithms.simulator.views.rendering.shading import Shading
-from algorithms.simulator.views.solids import FRONT, NOBODY, ticks_of
+from algorithms.simulator.views.rendering.ray_casting import Hits, Index, Viewpoint
+from algorithms.simulator.views.solids import NOBODY, ticks_of
 from algorithms.simulator.views.surfaces.materials import Picture
 from algorithms.simulator.views.surfaces.noise import Tones
 from algorithms.simulator.views.view_scene import ViewScene
 
 KNOT = 8  # pixels between the rays that the camera is asked for; those between lie on straight lines
-REFLECTED = 0.92  # of the light that falls on a mirror
-DIRECT = -1  # no mirror
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,34 +34,24 @@ class CameraRays:
 @lru_cache(maxsize=8)
 def camera_rays(camera: Camera) -> CameraRays:
     """The rays of a calibrated camera's pixels."""
-    u = np.arange(-KNOT, camera.width + 2 * KNOT, KNOT, dtype=np.float64)
-    v = np.arange(-KNOT, camera.height + 2 * KNOT, KNOT, dtype=np.float64)
+    u, v = (np.arange(0.0, size + KNOT - 1, KNOT) for size in (camera.width, camera.height))
     knots = camera.rays(np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)).reshape(len(v), len(u), 2)
     between = _between(_between(knots, camera.height).swapaxes(0, 1), camera.width).swapaxes(0, 1)
     return CameraRays(np.ascontiguousarray(between[..., 0]), np.ascontiguousarray(between[..., 1]))
 
 
 def _between(knots: FloatArray, count: int) -> FloatArray:
-    """Values at so many pixels from those at every KNOT-th, the first of which is pixel −KNOT; first axis.
+    """Values at so many pixels from those at every KNOT-th; first axis.
 
     A parabola through the neighbours is added to the straight line: lenses bend lines evenly.
     """
+    before, after = (3 * k[0] - 3 * k[1] + k[2] for k in (knots, knots[::-1]))
+    knots = np.concatenate([before[None], knots, after[None]])
     at = np.arange(count)
     n, share = at // KNOT + 1, ((at % KNOT) / KNOT)[:, None, None]
     low, high = knots[n], knots[n + 1]
     bend = (knots[n - 1] - low - high + knots[np.minimum(n + 2, len(knots) - 1)]) / 4
     return np.asarray(low + share * (high - low) - share * (1 - share) * bend)
-
-
-@dataclass(frozen=True, eq=False)
-class Traced:
-    """What (n,) rays end at, mirrors seen through.
-
-    mirror : number of the mirror they went by, or DIRECT
-    """
-
-    hits: Hits
-    mirror: Index
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,77 +73,6 @@ def viewpoint(pose: Pose2, camera: Camera, height: float) -> Viewpoint:
     T_world_camera = pose @ camera.mounting
     x, y = (round(at * METRE_GRID) / METRE_GRID for at in (T_world_camera.x, T_world_camera.y))
     return Viewpoint.looking(x, y, height, ticks_of(T_world_camera.theta))
-
-
-class Eye:
-    """Looks into a scene from one place.
-
-    scene  : what there is
-    view   : from where
-    slopes : least and greatest a of all rays
-    focal  : pixels per metre one metre ahead
-    """
-
-    def __init__(self, scene: ViewScene, view: Viewpoint, slopes: tuple[float, float], focal: float) -> None:
-        self._scene, self._view, self._slopes, self._focal = scene, view, slopes, focal
-        self._walls, self._solids = scene.interior.walls, scene.solids
-        self._ceiling = scene.interior.style.height
-        self._first_mirror = len(self._walls) + len(scene.interior.solids)
-        self.shading = Shading(scene)
-        self._casters = {DIRECT: RayCaster(view, self._walls, self._solids, self._ceiling, slopes)}
-        self._views = {DIRECT: view}
-
-    def trace(self, a: FloatArray, b: FloatArray) -> Traced:
-        """Follow rays, by way of one mirror at most."""
-        hits = self._casters[DIRECT].cast(a, b)
-        mirror = np.full(len(a), DIRECT, dtype=np.int32)
-        for n in range(len(self._scene.mirrors)):
-            at = np.flatnonzero((hits.surface == self._first_mirror + n) & (hits.face == FRONT))
-            if not len(at):
-                continue
-            self._look_into(n)
-            behind = self._casters[n].cast(a[at], b[at], hits.depth[at] + 1e-6)
-            hits.depth[at], hits.surface[at], hits.face[at] = behind.depth, behind.surface, behind.face
-            mirror[at] = n
-        return Traced(hits, mirror)
-
-    def _look_into(self, n: int) -> None:
-        if n not in self._casters:
-            mirror = self._scene.mirrors[n]
-            face = mirror.face()
-            self._views[n] = self._view.reflected(float(face[0]), float(face[1]), mirror.normal())
-            self._casters[n] = RayCaster(
-                self._views[n], self._walls, self._solids, self._ceiling, self._slopes, face
-            )
-
-    def light(self, a: FloatArray, b: FloatArray, traced: Traced) -> Tones:
-        """(n, 3) light that comes along rays."""
-        found = np.empty((len(a), 3), dtype=np.float32)
-        for mirror in np.unique(traced.mirror).tolist():
-            at = np.flatnonzero(traced.mirror == mirror)
-            hits = traced.hits
-            hits = Hits(hits.depth[at], hits.surface[at], hits.face[at])
-            points = seen_points(
-                self._views[mirror], self._walls, self._solids, self._ceiling, a[at], b[at], hits, self._focal
-            )
-            light = self.shading.light(points, hits, self.shading.material_of(hits))
-            found[at] = light if mirror == DIRECT else light * np.float32(REFLECTED)
-        return found
-
-    def silhouette(self, robot: int, a: FloatArray, b: FloatArray) -> NDArray[np.bool_]:
-        """(n,) which rays would end at a robot if nothing else were there."""
-        nothing = WallFaces(np.zeros((0, 4)), np.zeros(0, dtype=np.uint8))
-        own = self._solids.only(self._solids.robot == robot)
-        caster = RayCaster(self._view, nothing, own, self._ceiling, self._slopes)
-        return caster.cast(a, b).surface >= 0
-
-    def robots(self, traced: Traced) -> Index:
-        """(n,) which robot rays end at."""
-        surface = traced.hits.surface
-        on_solid = surface >= len(self._walls)
-        found = np.full(len(surface), NOBODY, dtype=np.int32)
-        found[on_solid] = self._solids.robot[surface[on_solid] - len(self._walls)]
-        return found
 
 
 def _edges(key: NDArray[np.int64]) -> NDArray[np.bool_]:
@@ -196,10 +112,11 @@ def take_picture(
     hits = Hits(traced.hits.depth[at], traced.hits.surface[at], traced.hits.face[at])
     light[at] = eye.light(a[at], b[at], Traced(hits, traced.mirror[at]))
     light[several] = _looked_at_in_four_places(eye, rays, several)
+    light = with_gloss(eye, rays.right, rays.down, traced, light.reshape(*shape, 3))
     robot = eye.robots(traced)
     direct = traced.mirror == DIRECT
     return CameraImage(
-        developed(light.reshape(*shape, 3), scene.light, rng),
+        developed(light, scene.light, rng),
         np.where(direct, robot, NOBODY).reshape(shape),
         np.where(direct, NOBODY, robot).reshape(shape),
     )

@@ -13,6 +13,7 @@ from algorithms.sensors.camera import Camera
 from algorithms.sensors.laser_scan import LaserScan
 from algorithms.simulator.buildings.building_types import build
 from algorithms.simulator.buildings.floor_plan import Building
+from algorithms.simulator.lidar import Lidar
 from algorithms.simulator.portable_random import stream
 from algorithms.simulator.views.camera_image import render, viewpoint
 from algorithms.simulator.views.hardships import HARDSHIPS, plain
@@ -21,8 +22,13 @@ from algorithms.simulator.views.projection import Box, box_of, clipped, face_see
 from algorithms.simulator.views.reflections import reflection_seen
 from algorithms.simulator.views.robot_body import RobotBody
 from algorithms.simulator.views.robot_scan import scan_of
-from algorithms.simulator.views.robot_sensors import draw_camera, draw_camera_height, draw_lidar
-from algorithms.simulator.views.stage import Stage, Staged
+from algorithms.simulator.views.robot_sensors import (
+    draw_camera,
+    draw_camera_height,
+    draw_lidar,
+    draw_mounting,
+)
+from algorithms.simulator.views.stage import Stage
 from algorithms.simulator.views.surfaces.materials import Picture
 from algorithms.simulator.views.view_scene import ViewScene
 
@@ -115,22 +121,35 @@ def draw_view(
         for _ in range(TRIES):
             staged = setting(stage, rng, robot)
             if staged is not None:
-                return _view(stage, staged, rng)
+                lidar, mounting = draw_lidar(rng), draw_mounting(rng)
+                where = staged.scene, staged.observer
+                return view_of(*where, stage.camera, stage.camera_height, lidar, mounting, rng)
     raise SettingError(f"no view of this kind in a {kind}: {hardship or 'plain'}, {distance} m")
 
 
-def _view(stage: Stage, staged: Staged, rng: np.random.Generator) -> RobotView:
-    """Take the picture and the scan."""
-    scene, observer, camera = staged.scene, staged.observer, stage.camera
-    lidar, mounting = draw_lidar(rng)
+def view_of(
+    scene: ViewScene,
+    observer: Pose2,
+    camera: Camera,
+    camera_height: float,
+    lidar: Lidar,
+    mounting: Pose2,
+    rng: np.random.Generator,
+) -> RobotView:
+    """Take a picture and a scan.
+
+    observer      : who looks, T_world_observer
+    camera_height : metres
+    mounting      : T_robot_laser
+    """
     return RobotView(
-        image=render(scene, observer, camera, stage.camera_height, rng),
+        image=render(scene, observer, camera, camera_height, rng),
         camera=camera,
-        camera_height=stage.camera_height,
+        camera_height=camera_height,
         scan=scan_of(scene, observer, mounting, lidar, rng),
         observer=observer,
-        robots=seen_robots(scene, observer, camera, stage.camera_height),
-        reflections=_reflections(scene, observer, camera, stage.camera_height),
+        robots=seen_robots(scene, observer, camera, camera_height),
+        reflections=_reflections(scene, observer, camera, camera_height),
         scene=scene,
     )
 

@@ -81,10 +81,10 @@ class Stage:
         """A robot within the distance and the camera's view, turned anyhow; None where it finds no place."""
         T_world_camera = observer @ self.camera.mounting
         half = self.camera.degrees_wide() / 2
+        far = uniform(rng, *self.distance)
         for _ in range(12):
             off = round(uniform(rng, -half, half) * TURN / 360)
             way = ticks_of(T_world_camera.theta) + off
-            far = uniform(rng, *self.distance)
             x, y = observer.x + far * float(cosine(way)), observer.y + far * float(sine(way))
             x, y = snap(np.array([x, y])).tolist()
             pose = Pose2(x, y, radians(whole(rng, 0, TURN - 1)))

@@ -16,6 +16,7 @@ from algorithms.simulator.views.solids import Solid, SolidTable
 from algorithms.simulator.views.surfaces.materials import MIRROR, Material, Picture
 
 FLAT = 0.006  # metres; how thick a poster is
+FRAME = 0.025  # metres; how wide a mirror's frame is
 GLASS = 0.02  # metres; how far a mirror's face is from its wall
 
 
@@ -63,6 +64,16 @@ class Mirror:
     def solid(self) -> Solid:
         return hung(self.left, self.right, self.bottom, self.top, MIRROR, GLASS)
 
+    def frame(self) -> list[Solid]:
+        """Strips along its upper edge and its sides."""
+        metal = Material("plain", (0.35, 0.34, 0.33))
+        (x0, y0), (x1, y1) = self.left, self.right
+        share = FRAME / float(np.sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0)))
+        dx, dy = share * (x1 - x0), share * (y1 - y0)
+        sides = ((self.left, (x0 + dx, y0 + dy)), ((x1 - dx, y1 - dy), self.right))
+        strips = [hung(a, b, self.bottom, self.top, metal, GLASS + 0.005) for a, b in sides]
+        return [*strips, hung(self.left, self.right, self.top - FRAME, self.top, metal, GLASS + 0.005)]
+
 
 @dataclass(frozen=True, eq=False)
 class ViewScene:
@@ -93,6 +104,7 @@ class ViewScene:
         """What is not a part of the building; mirrors come first, in their order."""
         solids = [mirror.solid() for mirror in self.mirrors]
         solids += [poster.solid() for poster in self.posters]
+        solids += [strip for mirror in self.mirrors for strip in mirror.frame()]
         solids += self.things
         for n, (pose, body) in enumerate(self.robots):
             solids += body.solids(pose, n)

@@ -15,9 +15,10 @@ Simulate pairs of maps whose true transform is known: buildings drawn in code, r
 Without --building those that ship with mapmeld: the same files, bit for bit.
 
 Examples:
-  mapmeld samples cases              a folder per pair, with maps, sighting and truth
+  mapmeld samples cases              a folder per pair, with maps, sighting and truth; in some a picture of
+                                     the robot that was seen, and the laser scan
   mapmeld samples cases --building warehouse --seeds 0-19 --overlap 0.2
-                                     forty pairs from twenty other warehouses
+                                     forty pairs from twenty other warehouses, with pictures
   mapmeld samples cases --building office --sightings 3
                                      pairs whose robots met at up to three places
   mapmeld samples lies --building office,corridor --seeds 0-3 --wrong-pairs

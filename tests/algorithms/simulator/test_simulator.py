@@ -13,6 +13,7 @@ from scipy import ndimage
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2, pose_error, wrap_angle
+from algorithms.files.camera_picture import picture_from_bytes
 from algorithms.files.case_folder import read_case
 from algorithms.observations.observation import bilateral_transform, encounter
 from algorithms.simulator.buildings.building_types import BUILDINGS, build
@@ -63,8 +64,21 @@ def often() -> Scenario:
 @pytest.mark.parametrize("sample", [SAMPLES[1], SAMPLES[4]], ids=lambda sample: sample.names[0])
 def test_regenerating_a_shipped_sample_gives_the_shipped_bytes(sample):
     for case in sample.cases():
-        for name, data in case_files(case).items():
-            assert (SHIPPED / case.name / name).read_bytes() == data, f"{case.name}/{name}"
+        files = case_files(case)
+        assert {path.name for path in (SHIPPED / case.name).iterdir()} == set(files)
+        for name, data in files.items():
+            shipped = (SHIPPED / case.name / name).read_bytes()
+            if name.endswith(".jpg"):  # another version of libjpeg may write the same picture otherwise
+                first, second = (picture_from_bytes(name, each).astype(int) for each in (data, shipped))
+                assert np.abs(first - second).mean() < 0.5, f"{case.name}/{name}"
+            else:
+                assert shipped == data, f"{case.name}/{name}"
+
+
+def test_every_picture_that_ships_is_small():
+    pictures = list(SHIPPED.glob("*/*.jpg"))
+    assert len(pictures) == sum(sample.pictured for sample in SAMPLES)
+    assert max(path.stat().st_size for path in pictures) < 110_000
 
 
 @pytest.fixture(scope="module")

@@ -79,7 +79,7 @@ def office_chair(piece: Piece, style: Style, rng: np.random.Generator) -> Parts:
     return [
         Solid(0, 0, foot, 0.05, 0.05, 0.09, dark, whole(rng, 0, TURN)),
         Solid(0, 0, foot, 0.05, 0.05, 0.09, dark, whole(rng, 0, TURN)),
-        Solid(0, 0, piece.depth, piece.width, 0.03, 0.34, dark, shape=EGG),
+        Solid(0, 0, piece.depth, piece.width, 0.06, 0.33, dark, shape=DRUM),
         Solid(0, 0, 0.06, 0.06, 0.09, 0.42, dark, shape=DRUM),
         Solid(0.02, 0, 0.46, 0.47, 0.42, 0.5, cloth),
         Solid(-0.22, 0, 0.05, 0.05, 0.45, 0.62, dark),

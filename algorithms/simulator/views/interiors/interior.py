@@ -16,12 +16,14 @@ from algorithms.simulator.views.interiors.free_floor import free_floor
 from algorithms.simulator.views.interiors.furnishings import LEAF_HEIGHT, SOLIDS, stands
 from algorithms.simulator.views.interiors.style import Style, draw_style
 from algorithms.simulator.views.interiors.wall_outlines import WallFaces, wall_faces
-from algorithms.simulator.views.solids import DRUM, Solid, SolidTable
+from algorithms.simulator.views.solids import BOX, DRUM, Solid, SolidTable
 from algorithms.simulator.views.surfaces.materials import Material
 from algorithms.simulator.views.surfaces.noise import Tones
 from algorithms.simulator.views.surfaces.pictures import ON_WALLS, VARIANTS, painted_picture
 
 LOOSE = 1.5  # metres; what is smaller than this each way and touches nothing is furniture
+BESIDE = 0.2  # metres
+FILLED = 0.82  # of the box around it, what is no drum fills at least
 OUTER = 0.6  # metres from the edge of all that is solid, within which glass is a window
 SHADE_REACH = 0.15  # metres; of each of three blurs
 
@@ -71,9 +73,9 @@ def interior_of(building: Building, seed: int) -> Interior:
     rng = stream(seed, building.name, "interior")
     style = draw_style(rng, building.name)
     bare, standing = _without_furniture(building)
+    loose = _loose(bare, building, rng, style)
     walls = wall_faces(bare, building.resolution)
-    solids = [solid for piece in standing for solid in stands(piece, style, rng)]
-    solids += _loose(bare, building.resolution, rng, style)
+    solids = loose + [solid for piece in standing for solid in stands(piece, style, rng)]
     solids += [part for jambs in building.doors.tolist() for part in _door_case(bare, building, jambs, style)]
     solids += _on_walls(walls, building, rng)
     materials = (style.floor, style.ceiling, style.wall, style.window, style.glass)
@@ -116,21 +118,26 @@ def _footprint(piece: Piece, building: Building) -> tuple[tuple[slice, slice], N
     )
 
 
-def _loose(bare: NDArray[np.uint8], cell: float, rng: np.random.Generator, style: Style) -> list[Solid]:
+def _loose(
+    bare: NDArray[np.uint8], building: Building, rng: np.random.Generator, style: Style
+) -> list[Solid]:
     """What stands free of all walls and is no piece: low blocks. They are taken out of the raster."""
-    labels, _ = scipy.ndimage.label(bare == WALL)
+    cell, jambs = building.resolution, building.doors.reshape(-1, 2)
+    labels, _ = scipy.ndimage.label(bare != AIR)
     solids = []
     for n, place in enumerate(scipy.ndimage.find_objects(labels), 1):
         rows, cols = place
-        high, wide = (rows.stop - rows.start) * cell, (cols.stop - cols.start) * cell
-        if max(high, wide) > LOOSE:
-            continue
+        low, high = np.array([cols.start, rows.start]) * cell, np.array([cols.stop, rows.stop]) * cell
+        wide, deep = (high - low).tolist()
         part = labels[place] == n
-        x, y = (cols.start + cols.stop) * cell / 2, (rows.start + rows.stop) * cell / 2
+        at_door = ((jambs > low - BESIDE) & (jambs < high + BESIDE)).all(axis=1).any()
+        if max(wide, deep) > LOOSE or at_door or part.mean() < FILLED / 1.3:
+            continue  # a wall that ends at doors
+        x, y = ((low + high) / 2).tolist()
         colour = pick(rng, (style.wood, style.other_wood, (0.7, 0.7, 0.68)))
         face = Material("cupboard", colour, style.metal, (0.6, 1.0), whole(rng, 0, 199))
-        shape = 0 if part.mean() > 0.82 else DRUM
-        solids.append(Solid(x, y, wide, high, 0.0, uniform(rng, 0.4, 1.2), (face,), shape=shape))
+        shape = BOX if part.mean() > FILLED else DRUM
+        solids.append(Solid(x, y, wide, deep, 0.0, uniform(rng, 0.4, 1.2), (face,), shape=shape))
         bare[place][part] = AIR
     return solids
 

@@ -90,23 +90,23 @@ def _wall(rng: np.random.Generator, frame: Colour, hall: bool, home: bool) -> Ma
 
 
 def _floor(rng: np.random.Generator, hall: bool, home: bool) -> Material:
-    seed = whole(rng, 0, 199)
+    seed, gloss = whole(rng, 0, 199), uniform(rng, 0.1, 0.4)
     if hall:
-        return Material("concrete", (0.52, 0.52, 0.50), size=(4.2, 4.2), seed=seed)
+        return Material("concrete", (0.52, 0.52, 0.50), size=(4.2, 4.2), seed=seed, gloss=gloss / 2)
     wood = pick(rng, (OAK, BEECH, WALNUT, PINE))
-    kind = pick(
-        rng, ("boards", "boards", "tiles", "herringbone") if home else ("carpet", "tiles", "boards", "lino")
-    )
+    kinds = ("boards", "boards", "tiles", "herringbone") if home else ("carpet", "tiles", "boards", "lino")
+    kind = pick(rng, kinds)
     if kind == "boards":
-        return Material("boards", wood, size=(uniform(rng, 0.9, 1.8), uniform(rng, 0.09, 0.19)), seed=seed)
+        size = uniform(rng, 0.9, 1.8), uniform(rng, 0.09, 0.19)
+        return Material("boards", wood, size=size, seed=seed, gloss=gloss)
     if kind == "herringbone":
-        return Material("herringbone", wood, size=(uniform(rng, 0.35, 0.5), 0.0), seed=seed)
+        return Material("herringbone", wood, size=(uniform(rng, 0.35, 0.5), 0.0), seed=seed, gloss=gloss)
     if kind == "tiles":
         side = uniform(rng, 0.3, 0.6)
         colour = pick(rng, ((0.72, 0.69, 0.64), (0.60, 0.60, 0.60), (0.80, 0.79, 0.76), (0.55, 0.42, 0.34)))
-        return Material("tiles", colour, (0.42, 0.41, 0.40), (side, side), seed)
+        return Material("tiles", colour, (0.42, 0.41, 0.40), (side, side), seed, gloss=gloss)
     if kind == "carpet":
         colour = pick(rng, ((0.36, 0.38, 0.42), (0.45, 0.42, 0.38), (0.30, 0.36, 0.44), (0.42, 0.30, 0.30)))
         return Material("carpet", colour, size=(0.5, 0.5), seed=seed)
     colour = pick(rng, ((0.62, 0.60, 0.55), (0.52, 0.56, 0.58), (0.66, 0.58, 0.48)))
-    return Material("concrete", colour, size=(2.0, 100.0), seed=seed)
+    return Material("concrete", colour, size=(2.0, 100.0), seed=seed, gloss=gloss)

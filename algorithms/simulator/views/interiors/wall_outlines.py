@@ -12,7 +12,7 @@ from algorithms.common.parallel_kernels import kernel
 from algorithms.common.pose import FloatArray
 from algorithms.simulator.buildings.floor_plan import Surface
 
-STAIR = 1.1  # cells; what a straight line may leave out: the stairs of a slanted wall
+STAIR = 1.5  # cells; what a straight line may leave out: the stairs of a slanted wall
 Edges = NDArray[np.int64]
 
 

@@ -15,6 +15,7 @@ from algorithms.common.parallel_kernels import kernel
 from algorithms.common.pose import FloatArray
 from algorithms.simulator.portable_random import cosine, sine
 from algorithms.simulator.views.interiors.wall_outlines import WallFaces
+from algorithms.simulator.views.rendering.solid_hits import box_hit, drum_hit, egg_hit
 from algorithms.simulator.views.solids import SolidTable
 
 FLOOR, CEILING = -1, -2
@@ -98,65 +99,6 @@ def _fill_bins(
 
 
 @kernel
-def _box(ox: float, oy: float, dx: float, dy: float, dz: float, h: float, half_x: float, half_y: float,
-         bottom: float, top: float) -> tuple[float, int]:  # fmt: skip
-    """Depth at which a ray enters a box in the box's own frame, and by which face; −1 where it does not."""
-    enter, leave, face = -1e30, 1e30, 0
-    for axis in range(3):
-        origin, way = (ox, dx) if axis == 0 else ((oy, dy) if axis == 1 else (h, dz))
-        low, high = (-half_x, half_x) if axis == 0 else ((-half_y, half_y) if axis == 1 else (bottom, top))
-        if way == 0.0:
-            if origin < low or origin > high:
-                return -1.0, 0
-            continue
-        near, far = (low - origin) / way, (high - origin) / way
-        towards_high = near > far
-        if towards_high:
-            near, far = far, near
-        if near > enter:
-            enter = near
-            face = 2 * axis + (0 if towards_high else 1)
-        leave = min(leave, far)
-    return (enter, face) if enter <= leave else (-1.0, 0)
-
-
-@kernel
-def _drum(ox: float, oy: float, dx: float, dy: float, dz: float, h: float, half_x: float, half_y: float,
-          bottom: float, top: float) -> tuple[float, int]:  # fmt: skip
-    """The same of a drum."""
-    px, py, qx, qy = ox / half_x, oy / half_y, dx / half_x, dy / half_y
-    a, b, c = qx * qx + qy * qy, px * qx + py * qy, px * px + py * py - 1.0
-    inside = b * b - a * c
-    if inside <= 0.0:
-        return -1.0, 0
-    root = np.sqrt(inside)
-    enter, leave, face = (-b - root) / a, (-b + root) / a, 0
-    if dz != 0.0:
-        near, far = (bottom - h) / dz, (top - h) / dz
-        cap = 5
-        if near > far:
-            near, far, cap = far, near, 4
-        if near > enter:
-            enter, face = near, cap
-        leave = min(leave, far)
-    elif h < bottom or h > top:
-        return -1.0, 0
-    return (enter, face) if enter <= leave else (-1.0, 0)
-
-
-@kernel
-def _egg(ox: float, oy: float, dx: float, dy: float, dz: float, h: float, half_x: float, half_y: float,
-         bottom: float, top: float) -> tuple[float, int]:  # fmt: skip
-    """The same of an egg."""
-    half_z = (top - bottom) / 2
-    px, py, pz = ox / half_x, oy / half_y, (h - (bottom + top) / 2) / half_z
-    qx, qy, qz = dx / half_x, dy / half_y, dz / half_z
-    a, b, c = qx * qx + qy * qy + qz * qz, px * qx + py * qy + pz * qz, px * px + py * py + pz * pz - 1.0
-    inside = b * b - a * c
-    return ((-b - np.sqrt(inside)) / a, 0) if inside > 0.0 else (-1.0, 0)
-
-
-@kernel
 def _nearest(
     a: FloatArray, b: FloatArray, behind: FloatArray, h: float, ceiling: float,
     bins: Index, first: float, step: float, at_0: FloatArray, per_slope: FloatArray,
@@ -183,11 +125,11 @@ def _nearest(
             dx, dy = rows[n, 7] + a[i] * rows[n, 9], rows[n, 8] + a[i] * rows[n, 10]
             ox, oy, half_x, half_y = rows[n, 5], rows[n, 6], rows[n, 11], rows[n, 12]
             if shape[n] == 0:
-                t, side = _box(ox, oy, dx, dy, -b[i], h, half_x, half_y, rows[n, 13], rows[n, 14])
+                t, side = box_hit(ox, oy, dx, dy, -b[i], h, half_x, half_y, rows[n, 13], rows[n, 14])
             elif shape[n] == 1:
-                t, side = _drum(ox, oy, dx, dy, -b[i], h, half_x, half_y, rows[n, 13], rows[n, 14])
+                t, side = drum_hit(ox, oy, dx, dy, -b[i], h, half_x, half_y, rows[n, 13], rows[n, 14])
             else:
-                t, side = _egg(ox, oy, dx, dy, -b[i], h, half_x, half_y, rows[n, 13], rows[n, 14])
+                t, side = egg_hit(ox, oy, dx, dy, -b[i], h, half_x, half_y, rows[n, 13], rows[n, 14])
             if behind[i] < t < depth[i]:
                 depth[i], surface[i], face[i] = t, number[n], side
 

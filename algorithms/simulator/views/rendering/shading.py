@@ -18,7 +18,7 @@ LAMPS_APART = 2.4  # metres
 SHADOW = 0.3  # metres; how far the shadow of a thing reaches
 
 
-class Shading:
+class SceneShading:
     """Colours of points of one scene.
 
     scene     : what there is

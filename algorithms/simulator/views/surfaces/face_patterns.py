@@ -140,9 +140,10 @@ def books(material: Material, at: FacePoints) -> Tones:
     own, hue = lattice(book, row, material.seed), lattice(book, row, material.seed + 5)
     tall = step * (0.55 + 0.35 * own)
     stands = (within < tall) & (lattice(book // 7, row, material.seed + 3) > 0.18)
-    palette = np.stack(
-        [0.25 + 0.6 * hue, 0.25 + 0.5 * lattice(book, row, material.seed + 6), 0.2 + 0.6 * (1 - hue)], axis=1
-    )
+    bright = 0.25 + 0.5 * lattice(book, row, material.seed + 6)
+    strong = 0.35 * lattice(book, row, material.seed + 7)
+    tints = (hue - 0.4, 0.25 - np.abs(hue - 0.5), 0.4 - hue)
+    palette = np.clip(np.stack([bright + strong * 2 * tint for tint in tints], axis=1), 0.05, 0.95)
     label = (np.abs(within - tall * 0.6) < 0.025) & (hue > 0.5)
     spine = np.where(label[:, None], np.float32(0.85), palette)
     edge = line(from_edge(shift.astype(np.float32), material.size[0]), 0.002, at.grain)
@@ -183,7 +184,7 @@ def fabric(material: Material, at: FacePoints) -> Tones:
     folds = rough(at.u * 3, at.v * 3, material.seed) - 0.5
     cushions = np.maximum(1, np.rint(at.width / material.size[0]))
     seam = line(from_edge(at.u / at.width * cushions, 1.0) * material.size[0], 0.008, at.grain)
-    tone = 0.95 + 0.2 * folds + 0.25 * thread * at.sharpness(0.005)
+    tone = 0.97 + 0.2 * folds + 0.14 * thread * at.sharpness(0.003)
     return painted(material.colour, tone * (1 - 0.35 * seam))
 
 

@@ -23,6 +23,7 @@ class Material:
     seed    : tells faces of one pattern apart
     picture : that the pattern "picture" shows over the whole face
     glow    : of the light that leaves the face, how much it gives itself, 0 … 1: lamps and windows
+    gloss   : of a floor, how much it reflects at a glancing angle, 0 … 1
     fine    : its detail is finer than a pixel, and each pixel is looked at in several places
     """
 
@@ -33,6 +34,7 @@ class Material:
     seed: int = 0
     picture: Picture | None = None
     glow: float = 0.0
+    gloss: float = 0.0
     fine: bool = False
 
 

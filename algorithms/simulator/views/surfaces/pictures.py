@@ -56,7 +56,9 @@ def _text(
 
 
 def _colour(rng: np.random.Generator) -> Colour:
-    return uniform(rng, 0.05, 0.95), uniform(rng, 0.05, 0.95), uniform(rng, 0.05, 0.95)
+    grey, strong = uniform(rng, 0.2, 0.8), uniform(rng, 0.1, 0.5)
+    r, g, b = (min(1.0, max(0.0, grey + strong * uniform(rng, -1.0, 1.0))) for _ in range(3))
+    return r, g, b
 
 
 def art(rng: np.random.Generator, width: float, height: float) -> Picture:
