@@ -37,7 +37,7 @@
     const box = e.target.closest?.("[data-mm-box]");
     if (!box) return;
     S.tell("box", { n: Number(box.dataset.mmBox) });
-    S.kit.stay(`.${box.classList[0]}[data-mm-box="${box.dataset.mmBox}"]`);
+    S.kit.stay(`.${box.classList[0]}[data-mm-box="${box.dataset.mmBox}"]`, 600); // frames: the image is drawn anew
   });
   const light = (e, on) => { // a line and its box in the image are one
     const n = e.target.closest?.("[data-mm-box]")?.dataset.mmBox;
