@@ -56,6 +56,7 @@ if TYPE_CHECKING:  # type checkers and editors see the names here; at run time e
     from algorithms.methods.registry import run as run
     from algorithms.methods.steps import Step as Step
     from algorithms.observations.fleet import Fleet as Fleet
+    from algorithms.observations.fleet import FleetPrior as FleetPrior
     from algorithms.observations.fleet import FleetSighting as FleetSighting
     from algorithms.observations.observation import Observation as Observation
     from algorithms.observations.priors import InitialPose as InitialPose
@@ -88,7 +89,7 @@ _MODULES = {
     "algorithms.methods.registry": ("METHODS", "Method", "merge", "run"),
     "algorithms.methods.merge_result": ("MergeResult",),
     "algorithms.methods.steps": ("Step",),
-    "algorithms.observations.fleet": ("Fleet", "FleetSighting"),
+    "algorithms.observations.fleet": ("Fleet", "FleetPrior", "FleetSighting"),
     "algorithms.observations.observation": ("Observation",),
     "algorithms.observations.priors": ("InitialPose", "NearPlace", "TurnPrior"),
     "algorithms.detection.footprint": ("Footprint",),

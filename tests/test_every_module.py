@@ -14,6 +14,19 @@ from repository import ROOT
 
 # test file below tests/ -> what it exercises beside the module that it is named after
 EXERCISED_BY = {
+    "algorithms/detection/test_svm_training.py": {
+        "algorithms.detection.hog_grid",
+        "algorithms.detection.svm_detector",
+    },
+    "algorithms/detection/test_footprint.py": {
+        "algorithms.detection.footprint_fit",
+    },
+    "algorithms/detection/test_robot_sighting.py": {
+        "algorithms.detection.map_walls",
+    },
+    "app/cli/commands/test_observe.py": {
+        "app.cli.sensor_arguments",
+    },
     "algorithms/files/test_bad_files.py": {
         "algorithms.common.errors",
         "algorithms.files.yaml_fields",
@@ -161,9 +174,6 @@ EXERCISED_BY = {
     "app/drawing/scene/test_search_symbols.py": {
         "app.drawing.draw_items",
     },
-    "app/drawing/scene/test_swarm_view.py": {
-        "app.drawing.browser_messages",
-    },
     "app/drawing/scene/test_zoom_crop.py": {
         "app.drawing.scene.grid_image",
     },
@@ -234,8 +244,6 @@ EXERCISED_BY = {
         "app.report.result_rows",
     },
     "algorithms/fleets/test_fleet_merge.py": {
-        "algorithms.fleets.island",
-        "algorithms.fleets.pair_hypotheses",
         "algorithms.observations.fleet",
     },
     "app/evaluation/test_fleet_evaluation.py": {

@@ -150,9 +150,9 @@ def observation_of(
     observer : of the robot that saw, in its map; observed : (2,) of the one that was seen, in its own; metres
     """
     x, y = (float(value) for value in observed)
-    return Observation(
-        observer, x, y, seen.range, seen.bearing, observed_heading, seen.sigma_range, seen.sigma_bearing
-    )
+    numbers = seen.range, seen.bearing, seen.sigma_range, seen.sigma_bearing
+    distance, bearing, sigma_range, sigma_bearing = (round(number, 6) for number in numbers)
+    return Observation(observer, x, y, distance, bearing, observed_heading, sigma_range, sigma_bearing)
 
 
 def _nothing(sighted: Sequence[Sighted]) -> str:

@@ -54,7 +54,8 @@ def clusters_of(scan: LaserScan, explained: BoolArray | None = None) -> list[Clu
     hit = np.flatnonzero(valid & ~known)
     if not len(hit):
         return []
-    points = np.stack([ranges * np.cos(angles), ranges * np.sin(angles)], axis=1)
+    hits = np.where(valid, ranges, np.nan)
+    points = np.stack([hits * np.cos(angles), hits * np.sin(angles)], axis=1)
     step = abs(scan.angle_increment)
     spacing = GAP_BEAMS * step * ranges[hit[:-1]] * np.diff(hit)
     apart = np.hypot(*(points[hit[1:]] - points[hit[:-1]]).T)

@@ -19,7 +19,7 @@ LONG_SIDE = 7  # cells of the longer side of a window
 SHIFT, GROWTH = 0.04, 0.06  # of a robot's box: windows lie on a grid, and sizes of the pyramid are steps
 TIMES = 3  # windows made of one robot: as it is, and shifted and grown at random
 FIRST_WINDOWS = 12  # of every background, before any is mined
-ROUNDS = 3  # of mining
+ROUNDS = 2  # of mining
 PER_IMAGE = 25  # windows mined of one background in one round, at most
 MINED_FROM = 0.2  # probability, from which a window of the background is a hard one
 APART = 0.25  # a window that shares more with a robot is neither robot nor background
@@ -120,7 +120,7 @@ def train(
             groups.append(len(robots) + number)
         done += 1
     for round_ in range(ROUNDS):
-        model, _ = _fit(rows, labels, groups, shape, seed)
+        model, _ = _fit(rows, labels, groups, shape, seed, tested=False)
         detector = SvmDetector(model, MINED_FROM)
         for number, background in enumerate(backgrounds):
             yield TrainingStep(done, total, f"hard backgrounds, round {round_ + 1} of {ROUNDS}")
@@ -182,9 +182,17 @@ def _is_apart(background: Background, box: FloatArray) -> bool:
 
 
 def _fit(
-    rows: Sequence[Features], labels: Sequence[str], groups: Sequence[int], shape: WindowShape, seed: int
+    rows: Sequence[Features],
+    labels: Sequence[str],
+    groups: Sequence[int],
+    shape: WindowShape,
+    seed: int,
+    tested: bool = True,
 ) -> tuple[DetectorModel, tuple[ClassScore, ...]]:
-    """One SVM per class against all backgrounds, its probability from cross-validated values (Platt)."""
+    """One SVM per class against all backgrounds, its probability from its values (Platt).
+
+    tested : whether those are the values of windows kept from the training; the probabilities are true then
+    """
     from sklearn.linear_model import LogisticRegression  # only who trains needs scikit-learn
     from sklearn.model_selection import GroupKFold, cross_val_predict
     from sklearn.svm import LinearSVC
@@ -198,14 +206,16 @@ def _fit(
         def machine() -> Any:
             return LinearSVC(C=PENALTY, class_weight="balanced", random_state=seed, max_iter=5000)
 
-        folds = GroupKFold(min(FOLDS, len(set(of[used & (names == label)]))))
-        kept_away = cross_val_predict(machine(), x, y, groups=of[used], cv=folds, method="decision_function")
-        line = LogisticRegression(C=1e6).fit(kept_away[:, None], y)
         fitted = machine().fit(x, y)
+        values = fitted.decision_function(x)
+        if tested:
+            folds = GroupKFold(min(FOLDS, len(set(of[used & (names == label)]))))
+            values = cross_val_predict(machine(), x, y, groups=of[used], cv=folds, method="decision_function")
+        line = LogisticRegression(C=1e6).fit(values[:, None], y)
         weights.append(fitted.coef_[0])
         biases.append(fitted.intercept_[0])
         calibration.append([line.coef_[0, 0], line.intercept_[0]])
-        said = line.predict(kept_away[:, None])
+        said = line.predict(values[:, None])
         right = int((said & y).sum())
         results.append(
             ClassScore(

@@ -8,13 +8,14 @@ import zipfile
 import zlib
 from pathlib import PureWindowsPath
 
-from algorithms.common.errors import InputFileError
+from algorithms.common.errors import InputFileError, TooLargeError
 from algorithms.files.fleet_file import FLEET_FILE, fleet_from_bytes, fleet_to_bytes
 from algorithms.files.map_file import map_from_bytes, map_to_bytes, parse_meta
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import Fleet
 
-MOST_UNPACKED = 210_000_000  # bytes of all files together: as much as a page holds in cells
+MOST_UNPACKED = 210_000_000  # bytes of all files together
+MOST_CELLS = 200_000_000  # of all maps together: as many as a page holds
 MOST_FILES = 2000
 # what zipfile raises: NotImplementedError is its word for ways to pack that it does not know
 BROKEN = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError, OSError, ValueError)
@@ -57,13 +58,22 @@ def fleet_from_zip(source: str, content: bytes) -> Fleet:
                     f"{source}: {name}", "cannot be unpacked", "make the zip anew"
                 ) from error
 
+        cells = 0
+
         def read(name: str) -> GridMap:
+            """A map; the same image may stand for many robots, and a small one unpack to a large map."""
+            nonlocal cells
             text = member(name, FLEET_FILE)
             beside, image = posixpath.dirname(name), parse_meta(f"{source}: {name}", text).image
             if posixpath.normpath(posixpath.join(folder, beside, image)) not in files:  # of another machine
                 image = PureWindowsPath(image).name
             image = posixpath.join(beside, image)
-            return map_from_bytes(f"{source}: {name}", text, f"{source}: {image}", member(image, name))
+            grid = map_from_bytes(f"{source}: {name}", text, f"{source}: {image}", member(image, name))
+            cells += grid.cells.size
+            if cells > MOST_CELLS:
+                most = f"{MOST_CELLS / 1e6:.0f} million cells"
+                raise TooLargeError(f"{source}: its maps have more than {most} together; make them coarser")
+            return grid
 
         return fleet_from_bytes(f"{source}: {fleets[0]}", member(FLEET_FILE, source), read)
 

@@ -1,32 +1,41 @@
-"""The fleet file: robots, their maps, and who saw whom."""
+"""The fleet file: robots, their maps, who saw whom, and what else is known of two of them."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from textwrap import indent
 
 from algorithms.common.errors import InputFileError, SettingError
 from algorithms.files import yaml_fields as fields
 from algorithms.files.map_file import read_bytes, read_map
-from algorithms.files.observation_file import SIGHTING, initial_pose, known_to_bytes, observation_of
+from algorithms.files.observation_file import (
+    PRIORS,
+    SIGHTING,
+    known_to_bytes,
+    observation_of,
+    prior_text,
+    priors_of,
+)
 from algorithms.files.yaml_fields import Fields, quoted, shown
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import (
+    MOST_PRIORS,
     MOST_ROBOTS,
     MOST_SIGHTINGS,
     NAME_RULE,
     Fleet,
+    FleetPrior,
     FleetSighting,
     is_name,
 )
-from algorithms.observations.priors import InitialPose
 
 FLEET_FILE = "fleet.yaml"
-MOST_BYTES = 320_000  # of the file: a thousand sightings take less
+MOST_BYTES = 750_000  # of the file: the largest fleet, with the longest names, takes less
 OF_A_PAIR = r"  # [^\n]*\brobot [12]\b[^\n]*"  # remarks on two robots that have no names
 EXAMPLE = "robots: {r1: {map: r1.yaml}, r2: {map: r2.yaml}}"
+PLACES = "in", "of"  # keys of a place in either map, as of the two robots
 
 
 def read_fleet(path: Path | str) -> Fleet:
@@ -49,61 +58,79 @@ def fleet_from_bytes(source: str, content: bytes, read: Callable[[str], GridMap]
     raises : InputFileError, TooLargeError
     """
     f = fields.parse(source, content, "a fleet's YAML file", MOST_BYTES)
-    f.refuse_unknown("anchor", "robots", "sightings")
+    f.refuse_unknown("anchor", "robots", "sightings", "known")
     robots = f.section("robots", f"name the robots and their maps, as in {EXAMPLE}")
     if len(robots.values) > MOST_ROBOTS:
         raise f.error("robots", f"holds {len(robots.values):,} robots", f"give 2 to {MOST_ROBOTS}")
-    files, known = _robots(robots)
-    sightings = _sightings(f, list(files))
+    files = _map_files(robots)
+    sightings, priors = _sightings(f, list(files)), _priors(f, list(files))
     anchor = f.text("anchor", "give a robot's name") if "anchor" in f.values else ""
     maps = {name: read(file) for name, file in files.items()}
     try:
-        return Fleet(maps, sightings, known, anchor)
+        return Fleet(maps, sightings, priors, anchor)
     except SettingError as error:
         raise InputFileError(source, str(error), "correct the name, or the list of robots") from error
 
 
-def _robots(robots: Fields) -> tuple[dict[str, str], dict[str, InitialPose]]:
-    """The map file of each robot, and what is roughly known of it, by name."""
-    files, known = {}, {}
+def _map_files(robots: Fields) -> dict[str, str]:
+    """The map file of each robot, by name."""
+    files = {}
     for name in robots.values:
         if not is_name(name):
             raise robots.error(shown(name), "is no name for a robot", NAME_RULE)
         robot = robots.section(name, "give {map: FILE.yaml}")
-        robot.refuse_unknown("map", "known")
+        robot.refuse_unknown("map")
         files[name] = robot.text("map", "give the map's YAML file")
-        if "known" in robot.values:
-            known[name] = initial_pose(robot.section("known", "give {pose: [x, y, yaw], sigma: [m, m, rad]}"))
-    return files, known
+    return files
 
 
 def _sightings(f: Fields, names: list[str]) -> tuple[FleetSighting, ...]:
-    entries = f.values.get("sightings", [])
-    if entries == "":
-        entries = []
-    if not isinstance(entries, list) or len(entries) > MOST_SIGHTINGS:
-        raise f.error("sightings", f"is {shown(entries)}", f"give a list of at most {MOST_SIGHTINGS:,}")
     sightings = []
-    for number, entry in enumerate(entries, 1):
-        if not isinstance(entry, dict):
-            remedy = "give observer, observed and measurement, as in an observation file"
-            raise f.error(f"sighting {number}", f"is {shown(entry)}, not a mapping", remedy)
-        one = Fields(f.source, entry, f"sighting {number}: ")
+    remedy = "give observer, observed and measurement, as in an observation file"
+    for one in _entries(f, "sightings", "sighting", MOST_SIGHTINGS, remedy):
         one.refuse_unknown(*SIGHTING)
-        observer, observed = (_robot_of(one, role, names) for role in ("observer", "observed"))
+        observer, observed = (
+            _robot(one.section(role, f"add {role}: {{robot: NAME, pose: [x, y, yaw]}}"), "robot", names)
+            for role in ("observer", "observed")
+        )
         try:
             sightings.append(FleetSighting(observer, observed, observation_of(one, more=("robot",))))
         except SettingError as error:
-            raise InputFileError(f.source, f"sighting {number}: {error}", "correct it") from error
+            raise InputFileError(f.source, f"{one.prefix}{error}", "correct it") from error
     return tuple(sightings)
 
 
-def _robot_of(sighting: Fields, role: str, names: list[str]) -> str:
-    section = sighting.section(role, f"add {role}: {{robot: NAME, pose: [x, y, yaw]}}")
-    name = section.text("robot", "give the robot's name")
+def _priors(f: Fields, names: list[str]) -> tuple[FleetPrior, ...]:
+    priors = []
+    remedy = f"give {{of: r2, in: r1}} and {', '.join(PRIORS)}, or any of them"
+    for one in _entries(f, "known", "known", MOST_PRIORS, remedy):
+        one.refuse_unknown("of", "in", *PRIORS)
+        mov, ref = (_robot(one, role, names) for role in ("of", "in"))
+        told = [FleetPrior(ref, mov, prior) for prior in priors_of(one, PLACES)]
+        if not told:
+            raise one.error(" or ".join(PRIORS), "is missing", remedy)
+        priors += told
+    return tuple(priors)
+
+
+def _entries(f: Fields, key: str, each: str, most: int, remedy: str) -> Iterator[Fields]:
+    """The mappings of a list, each called so and by its number."""
+    entries = f.values.get(key, [])
+    if entries == "":
+        entries = []
+    if not isinstance(entries, list) or len(entries) > most:
+        raise f.error(key, f"is {shown(entries)}", f"give a list of at most {most:,}")
+    for number, entry in enumerate(entries, 1):
+        if not isinstance(entry, dict):
+            raise f.error(f"{each} {number}", f"is {shown(entry)}, not a mapping", remedy)
+        yield Fields(f.source, entry, f"{each} {number}: ")
+
+
+def _robot(section: Fields, key: str, names: list[str]) -> str:
+    name = section.text(key, "give the robot's name")
     if name not in names:
         found, there = f"is {shown(name)}, which is none of the robots", ", ".join(names[:8])
-        raise section.error("robot", found, f"there are {there}")
+        raise section.error(key, found, f"there are {there}")
     return name
 
 
@@ -113,12 +140,7 @@ def fleet_to_bytes(fleet: Fleet, files: Mapping[str, str]) -> bytes:
     files : of each robot the name of its map's YAML file
     """
     lines = [f"anchor: {quoted(fleet.anchor)}", "robots:"]
-    for name in fleet.maps:
-        known = ""
-        if name in fleet.known:
-            inside = known_to_bytes([fleet.known[name]]).decode().split("{", 1)[1].split("}")[0]
-            known = f", known: {{{inside}}}"
-        lines.append(f"  {quoted(name)}: {{map: {quoted(files[name])}{known}}}")
+    lines += [f"  {quoted(name)}: {{map: {quoted(files[name])}}}" for name in fleet.maps]
     lines.append("sightings:" if fleet.sightings else "sightings: []")
     for seen in fleet.sightings:
         entry = known_to_bytes([seen.observation]).decode()
@@ -126,4 +148,8 @@ def fleet_to_bytes(fleet: Fleet, files: Mapping[str, str]) -> bytes:
         for role, name in (("observer", seen.observer), ("observed", seen.observed)):
             entry = entry.replace(f"{role}: {{pose", f"{role}: {{robot: {quoted(name)}, pose", 1)
         lines.append(f"  - {indent(entry, '    ').strip()}")
+    lines += ["known:"] * bool(fleet.priors)
+    for told in fleet.priors:
+        of = f"of: {quoted(told.mov)}, in: {quoted(told.ref)}"
+        lines.append(f"  - {{{of}, {prior_text(told.prior, PLACES)}}}")
     return ("\n".join(lines) + "\n").encode()

@@ -36,6 +36,7 @@ OBSERVATION_FILE = "observation.yaml"
 ROUGH_OBSERVATION_FILE = "observation_rough.yaml"
 
 MOST_OBSERVATIONS = 64  # of one pair; their YAML stays far below what the parser takes
+PLACES = "map1", "map2"  # keys of a place in either map
 
 
 def read_observations(path: Path | str) -> tuple[Observation, ...]:
@@ -79,17 +80,25 @@ def _known(f: Fields) -> Iterator[Known]:
     if any(key in f.values for key in SIGHTING) or not any(key in f.values for key in PRIORS):
         sighting = {key: value for key, value in f.values.items() if key in SIGHTING}
         yield observation_of(Fields(f.source, sighting, f.prefix))
+    yield from priors_of(f)
+
+
+def priors_of(f: Fields, places: tuple[str, str] = PLACES) -> Iterator[Prior]:
+    """What an entry holds beside a sighting; raises InputFileError.
+
+    places : keys of a place in either map
+    """
     for key, read in PRIORS.items():
         if key in f.values:
-            part = f.section(key, f"give a mapping, as in {EXAMPLES[key]}")
+            example = EXAMPLES[key].format(*places)
+            part = f.section(key, f"give a mapping, as in {example}")
             try:
-                yield read(part)
+                yield read(part, places)
             except SettingError as error:  # "initial: sigma_x is −1 m; it must be …"
-                raise InputFileError(f.source, f.prefix + str(error), f"as in {EXAMPLES[key]}") from error
+                raise InputFileError(f.source, f.prefix + str(error), f"as in {example}") from error
 
 
-def initial_pose(f: Fields) -> InitialPose:
-    """A rough pose of one frame in another: keys pose, sigma, about; raises InputFileError."""
+def _initial(f: Fields, _: tuple[str, str]) -> InitialPose:
     f.refuse_unknown("pose", "sigma", "about")
     pose = Pose2(*f.pose("pose", (3,), "give [x, y, yaw] of map 2's frame in map 1's; m, m, rad"))
     sigma, about = [SIGMA_XY, SIGMA_XY, SIGMA_YAW], [0.0, 0.0]
@@ -100,27 +109,31 @@ def initial_pose(f: Fields) -> InitialPose:
     return InitialPose(pose, *sigma, *about)
 
 
-def _turn(f: Fields) -> TurnPrior:
+def _turn(f: Fields, _: tuple[str, str]) -> TurnPrior:
     f.refuse_unknown("yaw", "sigma")
     yaw = f.number("yaw", "give how far map 2's frame is turned in map 1's; radians")
     sigma = optional_number(f, "sigma", "give radians, or leave it out")
     return TurnPrior(yaw) if sigma is None else TurnPrior(yaw, sigma)
 
 
-def _near(f: Fields) -> NearPlace:
-    f.refuse_unknown("map1", "map2", "radius")
-    ref = f.pose("map1", (2,), "give [x, y] of the place in map 1; m")
-    mov = f.pose("map2", (2,), "give [x, y] of the same place in map 2; m")
+def _near(f: Fields, places: tuple[str, str]) -> NearPlace:
+    f.refuse_unknown(*places, "radius")
+    ref = f.pose(places[0], (2,), "give [x, y] of the place in map 1; m")
+    mov = f.pose(places[1], (2,), "give [x, y] of the same place in map 2; m")
     radius = optional_number(f, "radius", "give metres, or leave it out")
     return NearPlace(ref[0], ref[1], mov[0], mov[1], NEAR_RADIUS if radius is None else radius)
 
 
 SIGHTING = ("observer", "observed", "measurement")
-PRIORS: dict[str, Callable[[Fields], Prior]] = {"initial": initial_pose, "turn": _turn, "near": _near}
+PRIORS: dict[str, Callable[[Fields, tuple[str, str]], Prior]] = {
+    "initial": _initial,
+    "turn": _turn,
+    "near": _near,
+}
 EXAMPLES = {
-    "initial": "initial: {pose: [x, y, yaw], sigma: [m, m, rad]}",
-    "turn": "turn: {yaw: rad, sigma: rad}",
-    "near": "near: {map1: [x, y], map2: [x, y], radius: m}",
+    "initial": "initial: {{pose: [x, y, yaw], sigma: [m, m, rad]}}",
+    "turn": "turn: {{yaw: rad, sigma: rad}}",
+    "near": "near: {{{}: [x, y], {}: [x, y], radius: m}}",
 }
 
 
@@ -177,22 +190,31 @@ def known_to_bytes(known: Sequence[Known]) -> bytes:
     """
     if not 1 <= len(known) <= MOST_OBSERVATIONS:
         raise SettingError(f"a file holds 1 to {MOST_OBSERVATIONS} observations, not {len(known)}")
-    entries = ["\n".join(_lines(one) if isinstance(one, Observation) else [_prior(one)]) for one in known]
+    entries = ["\n".join(_lines(one) if isinstance(one, Observation) else [_line(one)]) for one in known]
     if len(entries) > 1:
         entries = [f"- {indent(entry, '  ').lstrip()}" for entry in entries]
     return ("\n".join(entries) + "\n").encode()
 
 
-def _prior(prior: Prior) -> str:
+def _line(prior: Prior) -> str:
+    remark = {
+        InitialPose: "map 2's frame in map 1's: m, m, rad",
+        TurnPrior: "of map 2's frame in map 1's: rad",
+        NearPlace: "one place: m",
+    }
+    return f"{prior_text(prior)}  # {remark[type(prior)]}"
+
+
+def prior_text(prior: Prior, places: tuple[str, str] = PLACES) -> str:
+    """As it stands in a file; ``places``: keys of a place in either map."""
     if isinstance(prior, InitialPose):
         pose, sigma = _list(prior.pose.array().tolist()), _list(prior.sigmas.tolist())
         about = f", about: {_list(prior.about.tolist())}" if prior.about.any() else ""
-        return f"initial: {{pose: {pose}, sigma: {sigma}{about}}}  # map 2's frame in map 1's: m, m, rad"
+        return f"initial: {{pose: {pose}, sigma: {sigma}{about}}}"
     if isinstance(prior, TurnPrior):
-        yaw, sigma = number_text(prior.yaw), number_text(prior.sigma)
-        return f"turn: {{yaw: {yaw}, sigma: {sigma}}}  # of map 2's frame in map 1's: rad"
+        return f"turn: {{yaw: {number_text(prior.yaw)}, sigma: {number_text(prior.sigma)}}}"
     ref, mov = _list([prior.ref_x, prior.ref_y]), _list([prior.mov_x, prior.mov_y])
-    return f"near: {{map1: {ref}, map2: {mov}, radius: {number_text(prior.radius)}}}  # one place: m"
+    return f"near: {{{places[0]}: {ref}, {places[1]}: {mov}, radius: {number_text(prior.radius)}}}"
 
 
 def _lines(o: Observation) -> list[str]:

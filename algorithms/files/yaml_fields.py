@@ -28,6 +28,7 @@ WIDEST_ROBOT = 100.0  # metres
 TRUE = ("true", "yes", "on", "y")
 HEADER = re.compile(rb"\A(\xef\xbb\xbf)?%YAML:[^\r\n]*")  # of OpenCV's FileStorage
 FALSE = ("false", "no", "off", "n")
+TEXT = "tag:yaml.org,2002:str"  # how the parser calls what is neither a number nor a word of YAML's own
 
 
 @dataclass(frozen=True)
@@ -272,9 +273,11 @@ def number_text(value: float) -> str:
 
 
 def quoted(text: str) -> str:
-    """A text as it stands in a YAML file: plain where that is safe."""
-    if re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", text):
-        return text
+    """A text as it stands in a YAML file: plain where every parser takes that for the text."""
+    if re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", text) and as_number(text) is None:
+        kind = yaml.resolver.Resolver().resolve(yaml.ScalarNode, text, (True, False))  # type: ignore[no-untyped-call]
+        if kind == TEXT:  # not null, no, 2024-01-01
+            return text
     whole = yaml.safe_dump(text, default_style='"', allow_unicode=True, width=float("inf"))
     return str(whole).rstrip("\n")
 

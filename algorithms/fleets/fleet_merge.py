@@ -18,12 +18,9 @@ from algorithms.fleets.island import Island, island_of
 from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, find_pair, pair_orders
 from algorithms.observations.fleet import Fleet
 from algorithms.observations.observation import encounter
-from algorithms.verdict.decision import VerdictConfig
 
 RunPairs = Callable[[Fleet, Sequence[PairOrder]], Iterator[PairFinding]]
 """Merges pairs, in any order, wherever there are workers."""
-
-ACCEPT_FROM = VerdictConfig().accept_from
 
 
 @dataclass(frozen=True)
@@ -72,8 +69,8 @@ class FleetResult:
     @property
     def forced(self) -> frozenset[str]:
         """Robots of pairs whose answer is not likely enough, and which was taken all the same."""
-        weak = (number for number, likely in self.likely.items() if likely < ACCEPT_FROM)
-        return frozenset(self.findings[number].order.mov for number in weak)
+        found = ((self.findings[number], likely) for number, likely in self.likely.items())
+        return frozenset(finding.order.mov for finding, likely in found if likely < finding.accept_from)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,13 +90,16 @@ def in_turn(fleet: Fleet, orders: Sequence[PairOrder]) -> Iterator[PairFinding]:
     return map(partial(find_pair, fleet), orders)
 
 
-def run_fleet(fleet: Fleet, run_pairs: RunPairs = in_turn, force: bool = False) -> Iterator[FleetStep]:
+def run_fleet(
+    fleet: Fleet, run_pairs: RunPairs = in_turn, force: bool = False, further: Sequence[PairFinding] = ()
+) -> Iterator[FleetStep]:
     """Yield a step for every pair that was merged; the last step is the FleetResult.
 
+    further : what was found of pairs of which nothing is known
     force  : take the likeliest answers however unlikely they are, and take no robot out again
     raises : TooLargeError where a merged map would be over the bound
     """
-    findings = yield from _merged(fleet, pair_orders(fleet), run_pairs, [])
+    findings = yield from _merged(fleet, pair_orders(fleet), run_pairs, further)
     result = joined(fleet, findings, force)
     lonely = _unseen(result)
     if lonely:
@@ -148,7 +148,7 @@ def joined(fleet: Fleet, findings: Sequence[PairFinding], force: bool = False) -
     force : as of ``run_fleet``
     """
     if force:
-        return _put_together(fleet, findings, findings, {}, accept_from=0.0)
+        return _put_together(fleet, findings, findings, {}, force)
     refused: dict[str, str] = {}
     while True:
         use = [f for f in findings if not {f.order.ref, f.order.mov} & set(refused)]
@@ -187,12 +187,14 @@ def _put_together(
     findings: Sequence[PairFinding],
     use: Sequence[PairFinding],
     refused: Mapping[str, str],
-    accept_from: float = ACCEPT_FROM,
+    force: bool = False,
 ) -> FleetResult:
     graph = AnswerGraph(list(fleet.maps), use, _area(fleet))
     best = graph.best()
     likely = {number: probability_of(graph, best, number) for number in best.chosen}
-    sure = {number: k for number, k in best.chosen.items() if likely[number] >= accept_from}
+    sure = {
+        number: k for number, k in best.chosen.items() if force or likely[number] >= use[number].accept_from
+    }
     parts = nx.connected_components(graph.ties(sure))
     islands = []
     for part in sorted(parts, key=lambda part: (fleet.anchor not in part, -len(part), min(part))):
@@ -227,12 +229,16 @@ def _left_out(
     for number, seen in enumerate(fleet.sightings):
         if of_sighting.get(number) in chosen:
             continue
-        distance, reason = None, findings[of_sighting[number]].reason
+        finding = findings[of_sighting[number]]
+        distance, reason = None, finding.said
         for island in islands:
             if seen.observer in island.poses and seen.observed in island.poses:
                 T = island.poses[seen.observer].inverse() @ island.poses[seen.observed]
                 at = encounter(seen.observation)
                 distance = float(np.linalg.norm(T.apply(at.x_mov) - at.x_ref))
-                reason = f"{seen.observer}'s sighting of {seen.observed} would put it {distance:.1f} m off"
+                if not finding.failed:  # else it says what is wrong with the sighting
+                    reason = (
+                        f"{seen.observer}'s sighting of {seen.observed} would put it {distance:.1f} m off"
+                    )
         out.append(LeftOut(number, distance, reason))
     return tuple(out)

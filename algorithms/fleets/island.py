@@ -9,15 +9,19 @@ from math import exp, log
 import cv2
 import networkx as nx
 import numpy as np
+import numpy.typing as npt
 
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.fleets.consistent_set import AnswerGraph
 from algorithms.fleets.pose_graph import PoseSolution, solve
-from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, GridMap
+from algorithms.maps.grid_map import FREE, FREE_UP_TO, OCCUPIED_FROM, CellArray, GridMap
 from algorithms.maps.map_fusion import Fusion, fuse
 
 BESIDE = 0.2  # metres; walls so near to each other are one, in maps that bend and whose cells end anywhere
 LEAST_WALL = 2.0  # metres; of less that contradicts nothing is concluded
+
+CountArray = npt.NDArray[np.uint8]
+"""(H, W) of how many robots; a fleet has fewer than it can count."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,23 +41,35 @@ class Island:
     fusion: Fusion
 
     def denied(self) -> dict[str, tuple[float, float]]:
-        """Robots of whose walls the others' maps deny more than they confirm: metres of either."""
+        """Robots of whose walls the others' maps deny more than they confirm: metres of either.
+
+        A wall is denied where others saw floor and none of them a wall beside it. It counts against a robot,
+        too, where it is the one that saw floor, unless as many of the others saw floor there as the wall.
+        """
         layers = self.fusion.layers
         if len(layers) < 3:
             return {}
         cell = self.fusion.merged.resolution
         reach = max(1, round(BESIDE / cell))
-        near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
-        walls = [(layer >= OCCUPIED_FROM).astype(np.uint8) for layer in layers]
-        free = [(layer >= FREE) & (layer <= FREE_UP_TO) for layer in layers]
-        wall_count, free_count = np.sum(walls, axis=0), np.sum(free, axis=0)
+        around = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
+
+        def seen(layer: CellArray) -> tuple[CountArray, CountArray, CountArray]:
+            """Its walls, what lies beside them, and floor that does not."""
+            wall = (layer >= OCCUPIED_FROM).astype(np.uint8)
+            near = np.asarray(cv2.dilate(wall, around), dtype=np.uint8)
+            return wall, near, ((layer >= FREE) & (layer <= FREE_UP_TO) & (near == 0)).astype(np.uint8)
+
+        some_wall, some_near, some_floor = (np.zeros(layers[0].shape, dtype=np.uint8) for _ in range(3))
+        for layer in layers:
+            for count, part in zip((some_wall, some_near, some_floor), seen(layer), strict=True):
+                count += part
         out = {}
-        for name, wall, floor in zip(self.poses, walls, free, strict=True):
-            others_wall = (wall_count - wall > 0).astype(np.uint8)
-            others_free = free_count - floor > 0
-            confirmed = (wall > 0) & (cv2.dilate(others_wall, near) > 0)
-            lone = (wall > 0) & ~confirmed & others_free
-            missing = (others_wall > 0) & floor & (cv2.dilate(wall, near) == 0)
+        for name, layer in zip(self.poses, layers, strict=True):
+            wall, near, floor = seen(layer)
+            others_near, others_floor = some_near - near, some_floor - floor
+            confirmed = (wall > 0) & (others_near > 0)
+            lone = (wall > 0) & (others_near == 0) & (others_floor > 0)
+            missing = (floor > 0) & (some_wall > 0) & (others_near > others_floor)
             agree, deny = cell * int(confirmed.sum()), cell * int(lone.sum() + missing.sum())
             if deny > max(agree, LEAST_WALL):
                 out[name] = agree, deny

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.common.errors import MapMergeError
+from algorithms.common.errors import MapMergeError, NoAnswerError
 from algorithms.common.pose import FloatArray, Pose2
+from algorithms.common.robot_names import RobotNames
 from algorithms.methods import registry
 from algorithms.methods.manual_merge import ManualMerge
 from algorithms.methods.merge_result import MergeResult
@@ -19,10 +20,15 @@ from algorithms.methods.suggestions import suggestions_of
 from algorithms.observations.fleet import Fleet
 from algorithms.observations.observation import encounter
 from algorithms.observations.pair_problem import Known, PairProblem
+from algorithms.verdict.decision import VerdictConfig
 from algorithms.verdict.ranking import WINDOW_EDGE
 
 LEAST_LIKELY = 0.01  # an answer that is less likely is not kept
 SUREST = 1e-4  # so likely is it at least that none of the answers is right
+ACCEPT_FROM = VerdictConfig().accept_from
+SHORT_OF_IT = (
+    0.999  # of the probability from which on a merge is accepted: what one has that is refused all the same
+)
 
 
 @dataclass(frozen=True)
@@ -54,7 +60,10 @@ class PairFinding:
 
     pivot      : (2,) where its answers are compared; metres, mov frame
     hypotheses : the likeliest first; () where the method found none, or could not be run
-    reason     : the verdict's sentence, or why there is none
+    reason     : the verdict's sentence, or why there is none; on robot 1 and robot 2
+    failed     : it could not be merged at all: its maps, or what is known of them, cannot be
+    accept_from : so likely must an answer be, by itself and the loops that it closes; how likely depends on
+                 what its method goes by
     """
 
     order: PairOrder
@@ -62,19 +71,25 @@ class PairFinding:
     hypotheses: tuple[Hypothesis, ...]
     reason: str
     accepted: bool = False
+    accept_from: float = ACCEPT_FROM
+    failed: bool = False
+
+    @property
+    def said(self) -> str:
+        """The reason with the robots' names in it."""
+        return RobotNames(self.order.ref, self.order.mov).told(self.reason)
 
 
 def pair_orders(fleet: Fleet) -> list[PairOrder]:
     """A merge for every observer and observed robot, of all its sightings where one transform can agree with
     them; sightings that cannot be true together are merged one by one, since a lie must spoil no other. And
-    one of the anchor and each robot whose pose is roughly known.
+    one for every two robots of which nothing but something else is known.
     """
     by_pair: dict[tuple[str, str], list[int]] = {}
     for number, seen in enumerate(fleet.sightings):
         by_pair.setdefault((seen.observer, seen.observed), []).append(number)
-    for name in fleet.known:
-        if name != fleet.anchor:
-            by_pair.setdefault((fleet.anchor, name), [])
+    for told in fleet.priors:
+        by_pair.setdefault((told.ref, told.mov), [])
     orders = []
     for (ref, mov), numbers in sorted(by_pair.items()):
         agree = all(_agree(fleet, a, b) for a, b in combinations(numbers, 2))
@@ -95,8 +110,8 @@ def _agree(fleet: Fleet, a: int, b: int) -> bool:
 def known_of(fleet: Fleet, order: PairOrder) -> tuple[Known, ...]:
     """What is known of how the maps of an order lie."""
     seen = tuple(fleet.sightings[number].observation for number in order.sightings)
-    rough = fleet.known.get(order.mov) if order.ref == fleet.anchor else None
-    return seen if rough is None else (*seen, rough)
+    rough = (told.prior for told in fleet.priors if (told.ref, told.mov) == (order.ref, order.mov))
+    return (*seen, *rough)
 
 
 def find_pair(fleet: Fleet, order: PairOrder, seed: int = 0) -> PairFinding:
@@ -109,29 +124,34 @@ def find_pair(fleet: Fleet, order: PairOrder, seed: int = 0) -> PairFinding:
         result = registry.merge(problem.ref, problem.mov, known, method, config, seed)
         return finding_of(order, problem, config, result)
     except MapMergeError as error:
-        return PairFinding(order, np.zeros(2), (), str(error))
+        failed = not isinstance(error, NoAnswerError)
+        return PairFinding(order, np.zeros(2), (), str(error), failed=failed)
 
 
 def finding_of(order: PairOrder, problem: PairProblem, config: Any, result: MergeResult) -> PairFinding:
     """What a merge of the pair says; an answer that a person chose stands alone."""
+    accept_from = ACCEPT_FROM if result.by_person else config.verdict.accept_from
     if result.by_person:
         sure = log((1 - SUREST) / SUREST)
         answers: Sequence[Hypothesis] = [Hypothesis(result.T_ref_mov, result.covariance, 1 - SUREST, sure)]
     else:
-        answers = _hypotheses(result, ManualMerge(problem, config))
+        answers = _hypotheses(result, ManualMerge(problem, config), accept_from)
     accepted = result.verdict.accepted or result.by_person
-    return PairFinding(order, problem.pivot, tuple(answers), result.verdict.reason, accepted)
+    return PairFinding(order, problem.pivot, tuple(answers), result.verdict.reason, accepted, accept_from)
 
 
-def _hypotheses(result: MergeResult, manual: ManualMerge) -> tuple[Hypothesis, ...]:
+def _hypotheses(result: MergeResult, manual: ManualMerge, accept_from: float) -> tuple[Hypothesis, ...]:
     kept = suggestions_of(result)
-    none = log(max(SUREST, 1.0 - sum(each.probability for each in kept)))
+    likely = sum(each.probability for each in kept)
+    none = max(SUREST, 1.0 - likely)
+    if kept and not result.verdict.accepted:  # its method may doubt an answer that the walls find likely
+        none = max(none, kept[0].probability / (SHORT_OF_IT * accept_from) - likely)
     return tuple(
         Hypothesis(
             each.T_ref_mov,
             result.covariance if each.number == 1 else manual.covariance(each.weighed),
             each.probability,
-            log(each.probability) - none,
+            log(each.probability / none),
         )
         for each in kept
         if each.probability >= LEAST_LIKELY

@@ -10,9 +10,12 @@ from threading import RLock
 from typing import Any
 
 from algorithms.common.pose import FloatArray, Pose2
+from algorithms.common.robot_names import UNNAMED
 from app.drawing.draw_items import Item
 from app.drawing.palette import Palette, css
 from app.drawing.scene_layout import Rect
+
+NAMED = ("state", "readout", "legend")  # words above the map that are on robots and maps
 
 
 class BrowserMessages(ABC):
@@ -24,6 +27,8 @@ class BrowserMessages(ABC):
     def __init__(self) -> None:
         self._pending: dict[str, Any] = {}
         self._hud: dict[str, Any] = {}
+        self._shown: dict[str, Any] = {}  # the same with the robots' names
+        self.names = UNNAMED  # put into words above the map and beside signs on it
         self.placed = 0  # how often a map was put anywhere
         self._lock = RLock()  # widgets call from many threads; what gathers while one sends is not lost
 
@@ -34,15 +39,23 @@ class BrowserMessages(ABC):
     def layer(self, name: str, items: list[Item] | None) -> None:
         """Replace a layer of ink; None removes it."""
         with self._lock:
-            self._pending.setdefault("layers", {})[name] = items or None
+            self._pending.setdefault("layers", {})[name] = self._told(items) or None
 
     def hud(self, **words: Any) -> None:
-        """Change words above the map: case, state, mood, progress, legend, frames."""
+        """Change words above the map: case, state, mood, progress, legend, frames, names."""
         with self._lock:
-            changed = {key: value for key, value in words.items() if self._hud.get(key, self) != value}
-            self._hud.update(changed)
+            self._hud.update(words)
+            told = {key: self._told(value) if key in NAMED else value for key, value in words.items()}
+            changed = {key: value for key, value in told.items() if self._shown.get(key, self) != value}
+            self._shown.update(changed)
             if changed:
                 self._pending.setdefault("hud", {}).update(changed)
+
+    def _told(self, shown: Any) -> Any:
+        """A sentence, or items with a text each, with the robots' names in it."""
+        if isinstance(shown, list):
+            return [item | {"t": self.names.told(item["t"])} if "t" in item else item for item in shown]
+        return self.names.told(shown) if shown else shown
 
     def said(self, *names: str) -> dict[str, Any]:
         """What these words above the map are; None for those that were never said."""

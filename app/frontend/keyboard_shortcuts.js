@@ -44,11 +44,11 @@
     for (const [title, rows] of GROUPS) {
       if (!rows.length) continue;
       const list = element("dl");
-      for (const [key, words] of rows) {
+      for (const [key, does] of rows) {
         const parts = key.split(" ").map((part) => (/^[a-z,]+$/.test(part) ? element("span", part) : element("kbd", part)));
-        list.append(element("dt", "", ...parts), element("dd", words));
+        list.append(element("dt", "", ...parts), element("dd", S.kit.named(does)));
       }
-      grid.append(element("section", "", element("h3", title), list));
+      grid.append(element("section", "", element("h3", S.kit.named(title)), list));
     }
     sheet.append(element("header", "", element("h2", "Keys"), close), grid);
     sheet.onclick = (e) => { if (e.target === sheet) sheet.close(); }; // beside it

@@ -4,7 +4,7 @@
 (() => {
   const S = window.mapmeld;
   if (S.compare) { S.compare.reset(); return; }
-  const { viewer, metre } = S.kit;
+  const { viewer, metre, named } = S.kit;
   const NAMES = { overlay: "Overlay", blink: "Blink", curtain: "Curtain", difference: "Difference" };
   const HINTS = {
     overlay: "What there is now.",
@@ -93,7 +93,6 @@
   function makeCurtain() {
     const handle = make("div", "mm-handle", "◂▸"), line = make("div", "mm-rule");
     handle.setAttribute("role", "slider"); handle.tabIndex = 0; handle.title = "Drag, or use the arrow keys.";
-    handle.setAttribute("aria-label", "Curtain between map 1 and map 2");
     handle.setAttribute("aria-valuemin", 2); handle.setAttribute("aria-valuemax", 98);
     handle.onkeydown = (e) => {
       const step = { ArrowLeft: -0.01, ArrowRight: 0.01, PageDown: -0.1, PageUp: 0.1 }[e.key];
@@ -108,7 +107,7 @@
       };
       part.onpointerup = part.onpointercancel = () => { delete part.dataset.held; };
     }
-    return make("div", "mm-curtain", line, make("b", "mm-left", "map 1"), make("b", "mm-right", "map 2"), handle);
+    return make("div", "mm-curtain", line, make("b", "mm-left"), make("b", "mm-right"), handle);
   }
 
   // --- words and buttons ------------------------------------------------------------------------
@@ -116,7 +115,7 @@
     group = make("span", "");
     group.setAttribute("role", "group"); group.setAttribute("aria-label", "Compare");
     curtain = makeCurtain();
-    turns = make("div", "mm-turns", button("map 1", "Stay on map 1.", () => hold(0)), button("map 2", "Stay on map 2.", () => hold(1)),
+    turns = make("div", "mm-turns", button("", "", () => hold(0)), button("", "", () => hold(1)),
       button("", "", () => hold(C.held ? null : C.shown)));
     hud.prepend(curtain);
     hud.append(turns);
@@ -125,6 +124,15 @@
     for (const element of [group, curtain, turns]) S.kit.keep(element);
     show();
   }
+  function name() { // who the two maps are
+    const sides = [named("map 1"), named("map 2")];
+    curtain.querySelector("[role=slider]").setAttribute("aria-label", named("Curtain between map 1 and map 2"));
+    sides.forEach((side, k) => {
+      curtain.querySelectorAll("b")[k].textContent = turns.children[k].textContent = side;
+      turns.children[k].title = named(`Stay on map ${k + 1}.`);
+    });
+    for (const b of group.children) b.title = named(HINTS[b.dataset.mode]);
+  }
   function show() {
     if (!group) return;
     const modes = S.view === "map" ? C.modes : [];
@@ -132,12 +140,13 @@
     if (group.dataset.modes !== modes.join()) {
       group.dataset.modes = modes.join();
       group.replaceChildren(...modes.map((mode) => {
-        const b = button(NAMES[mode], HINTS[mode], () => S.tell("compare", { mode }));
+        const b = button(NAMES[mode], "", () => S.tell("compare", { mode }));
         b.dataset.mode = mode;
         return b;
       }));
     }
     for (const b of group.children) b.setAttribute("aria-pressed", b.dataset.mode === C.mode);
+    name();
     const mode = active();
     curtain.hidden = mode !== "curtain";
     turns.hidden = mode !== "blink";
@@ -195,11 +204,12 @@
   }
 
   function apply(message) {
-    const told = message.compare;
-    if (!told) return;
-    if (told.mode && told.mode !== C.mode) { began = performance.now(); C.shown = 0; C.held = calm.matches; }
-    if (told.places) C.chosen = null;
-    Object.assign(C, told);
+    const news = message.compare;
+    if (message.hud?.names !== undefined) show();
+    if (!news) return;
+    if (news.mode && news.mode !== C.mode) { began = performance.now(); C.shown = 0; C.held = calm.matches; }
+    if (news.places) C.chosen = null;
+    Object.assign(C, news);
     show(); redraw();
   }
   function frame(time) {

@@ -108,6 +108,11 @@
     project: (frame, p) => project(camera, frame, p),
     maps: S.maps, metre: metre(camera), wide: ink.clientWidth, high: ink.clientHeight, dark: S.dark,
   });
+  // A sentence on robot 1 and map 2 with the robots' names in it, as algorithms/common/robot_names.py has it.
+  const named = (text) => (S.hud.names ? text.replace(/\b([Rr]obot|[Mm]ap) ([12])('s)?/g, (_, what, n, s) => {
+    const name = S.hud.names[n - 1];
+    return /r/i.test(what[0]) ? name + (s || "") : `${name}'s${s ? "" : " map"}`;
+  }) : text);
   const mapped = () => (S.hud.frames || []).some(Boolean); // an empty page has nothing to measure or to explain
   function readings(g, view, camera, colour) { // what a click and the pointer read off the map
     const x = 18, y = view.high - 22;
@@ -118,7 +123,7 @@
       const within = (k) => S.hud.frames[k] && places[k][0] >= S.hud.frames[k][2] && places[k][1] >= S.hud.frames[k][3]
         && places[k][0] <= S.hud.frames[k][4] && places[k][1] <= S.hud.frames[k][5];
       const k = Math.max(0, places.findIndex((_, n) => within(n))), frame = S.hud.frames[k];
-      if (frame) words(g, view, `x ${(places[k][0] + frame[0]).toFixed(2)} m   y ${(places[k][1] + frame[1]).toFixed(2)} m   in map ${k + 1}`.replaceAll("-", "−"), x, y - 42, colour, 11);
+      if (frame) words(g, view, named(`x ${(places[k][0] + frame[0]).toFixed(2)} m   y ${(places[k][1] + frame[1]).toFixed(2)} m   in map ${k + 1}`.replaceAll("-", "−")), x, y - 42, colour, 11);
     }
   }
   function paint(time) {
@@ -311,7 +316,7 @@
       element.addEventListener(kind, (e) => e.stopPropagation());
     }
   };
-  S.kit = { keep, viewer, metre, words, aim, camera: () => hooked && hooked.camera, canvas: () => canvas };
+  S.kit = { keep, viewer, metre, words, named, aim, camera: () => hooked && hooked.camera, canvas: () => canvas };
   window.mapmeld = S;
   document.title = "mapmeld";
 

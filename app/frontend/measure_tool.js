@@ -81,7 +81,7 @@
     const [dx, dy] = [M.line.b[0] - M.line.a[0], M.line.b[1] - M.line.a[1]];
     plate(g, view, [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], along, [
       [`${text(M.line.metres, M.line.metres < 10 ? 3 : 2)} m  at ${text(M.line.degrees, 1)}°`, 14],
-      [`Δx ${text(dx, 2)} m, Δy ${text(dy, 2)} m in map 1`, 11],
+      [S.kit.named(`Δx ${text(dx, 2)} m, Δy ${text(dy, 2)} m in map 1`), 11],
     ]);
   }
   // Lines of text on a plate beside a line on the map: on the side that is up, and never over it.

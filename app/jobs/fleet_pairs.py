@@ -25,8 +25,9 @@ def run_pairs(
         executor = SerialExecutor()
     shared = Shared.of(fleet)
     for number, answer in executor.run(_work, (Task(order, shared) for order in orders), stop):
-        lost = isinstance(answer, LostTask)
-        yield PairFinding(orders[number], np.zeros(2), (), answer.reason) if lost else answer
+        if isinstance(answer, LostTask):
+            answer = PairFinding(orders[number], np.zeros(2), (), answer.reason, failed=True)
+        yield answer
 
 
 def _work(fleet: Fleet, order: PairOrder) -> PairFinding:

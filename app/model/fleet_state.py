@@ -7,14 +7,14 @@ from dataclasses import dataclass, field, replace
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import RobotNames
 from algorithms.fleets.fleet_merge import FleetResult, poses_so_far
 from algorithms.fleets.island import Island
 from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, known_of, pair_orders
 from algorithms.maps.grid_map import GridMap
-from algorithms.observations.fleet import NAME_RULE, Fleet, FleetSighting, is_name
+from algorithms.observations.fleet import LONGEST_NAME, NAME_RULE, Fleet, FleetPrior, FleetSighting, is_name
 from algorithms.observations.observation import Observation
 from algorithms.observations.pair_problem import Known
-from algorithms.observations.priors import InitialPose
 from app.model.merge_inputs import MergeInputs
 
 FindingKey = tuple[GridMap, GridMap, tuple[Known, ...]]
@@ -52,6 +52,23 @@ class FleetState:
         """The maps that it has become; () before."""
         return () if self.result is None else self.result.islands
 
+    @property
+    def further(self) -> tuple[PairFinding, ...]:
+        """What was accepted of pairs of which nothing is known: a person has opened, merged or laid them."""
+        known = [{order.ref, order.mov} for order in pair_orders(self.fleet)]
+        maps, further = self.fleet.maps, []
+        for (ref, mov, told), finding in self.found.items():
+            one, other = finding.order.ref, finding.order.mov
+            same = maps.get(one) is ref and maps.get(other) is mov
+            if finding.accepted and not told and same and {one, other} not in known:
+                further.append(finding)
+        return tuple(further)
+
+    @property
+    def orders(self) -> list[PairOrder]:
+        """Pairs of which something is known or was found."""
+        return [*pair_orders(self.fleet), *(finding.order for finding in self.further)]
+
     # --- what a person changes ----------------------------------------------------------------------
 
     def with_fleet(self, fleet: Fleet) -> FleetState:
@@ -59,26 +76,27 @@ class FleetState:
         return replace(self, fleet=fleet, hidden=self.hidden & set(fleet.maps), result=None)
 
     def with_robot(self, name: str, grid: GridMap) -> FleetState:
-        """One robot more; its name gets a number where there is one of that name. Raises SettingError."""
+        """One robot more, called so as far as it can be; raises SettingError."""
         return self.with_fleet(replace(self.fleet, maps={**self.fleet.maps, self.unused(name): grid}))
 
     def unused(self, name: str) -> str:
-        """The name, or with a number behind it where a robot has it."""
+        """What is a robot's name in it, with a number behind it where a robot has that."""
+        letters = "".join(each for each in name if each.isprintable() and each != "/")
+        name = letters.strip()[: LONGEST_NAME - 3].strip() or "robot"
         names = [name, *(f"{name}_{k}" for k in range(2, len(self.robots) + 3))]
         return next(each for each in names if each not in self.fleet.maps)
 
     def without_robot(self, name: str) -> FleetState:
-        """One robot less, with all that it saw and that saw it; raises SettingError below two robots."""
+        """One robot less, with all that is known of it; raises SettingError below two robots."""
         f = self.fleet
         maps = {each: grid for each, grid in f.maps.items() if each != name}
         left = tuple(seen for seen in f.sightings if name not in (seen.observer, seen.observed))
-        stays = f.anchor != name
-        known = {each: prior for each, prior in f.known.items() if stays and each != name}
-        return self.with_fleet(Fleet(maps, left, known, f.anchor if stays else ""))
+        priors = tuple(told for told in f.priors if name not in (told.ref, told.mov))
+        return self.with_fleet(Fleet(maps, left, priors, f.anchor if f.anchor != name else ""))
 
     def renamed(self, old: str, new: str) -> FleetState:
         """The same robot under another name; raises SettingError where another has it, or it is none."""
-        if not is_name(new) or new != new.strip():
+        if not is_name(new):
             raise SettingError(f"{new!r} is no name for a robot; {NAME_RULE}")
         if new in self.fleet.maps:
             raise SettingError(f"there is a robot {new} already")
@@ -93,7 +111,7 @@ class FleetState:
                 replace(seen, observer=called(seen.observer), observed=called(seen.observed))
                 for seen in f.sightings
             ),
-            {called(name): prior for name, prior in f.known.items()},
+            tuple(replace(told, ref=called(told.ref), mov=called(told.mov)) for told in f.priors),
             called(f.anchor),
         )
         found = {
@@ -106,26 +124,8 @@ class FleetState:
         return replace(self, fleet=fleet, found=found, hidden=hidden, result=None)
 
     def anchored(self, name: str) -> FleetState:
-        """The result is to be in that robot's frame.
-
-        What is known of the two robots is known the other way round. Of the others a pose in the old anchor's
-        frame says nothing in the new one's until it is found how the two lie: raises SettingError.
-        """
-        f = self.fleet
-        if name == f.anchor:
-            return self
-        known, others = {}, {each: told for each, told in f.known.items() if each != name}
-        if name in f.known:
-            told = f.known[name]
-            x, y = told.pose.apply(told.about).tolist()
-            known[f.anchor] = replace(told, pose=told.pose.inverse(), about_x=x, about_y=y)
-        placed: Mapping[str, Pose2] = {} if self.result is None else self.result.placed
-        if others and name not in placed:
-            told_in = f"{', '.join(others)}: known in the frame of {f.anchor}"
-            raise SettingError(f"{told_in}; press Merge before {name} becomes the anchor")
-        for each, told in others.items():
-            known[each] = replace(told, pose=placed[name].inverse() @ told.pose)
-        return self.with_fleet(replace(f, anchor=name, known=known))
+        """The result is to be in that robot's frame."""
+        return self if name == self.fleet.anchor else self.with_fleet(replace(self.fleet, anchor=name))
 
     def toggled(self, name: str) -> FleetState:
         """The robot's map is hidden, or shown again."""
@@ -136,34 +136,28 @@ class FleetState:
     def pair(self, order: PairOrder) -> MergeInputs:
         """The inputs of two robots: their maps, and what is known of how they lie."""
         maps, known = self.fleet.maps, known_of(self.fleet, order)
-        inputs = MergeInputs.pair(maps[order.ref], maps[order.mov], name=f"{order.ref} saw {order.mov}")
-        named = replace(inputs, robots=(order.ref, order.mov))
+        verb = "and" if known and not order.sightings else "saw"
+        inputs = MergeInputs.pair(maps[order.ref], maps[order.mov], name=f"{order.ref} {verb} {order.mov}")
+        named = replace(inputs, names=RobotNames(order.ref, order.mov))
         return named.knowing(known, None if known else "sighting")
 
     def open(self, order: PairOrder) -> FleetState:
         return replace(self, opened=order)
 
     def closed(self, known: Sequence[Known], finding: PairFinding | None) -> FleetState:
-        """Back from the pair that is open, with what is known of it now, and what a merge said of it.
-
-        Of what is known a fleet keeps sightings, and a rough pose in the anchor's frame.
-        """
+        """Back from the pair that is open, with what is known of it now, and what a merge said of it."""
         order, f, state = self.opened, self.fleet, replace(self, opened=None)
         if order is None:
             return self
         if tuple(known) != known_of(f, order):
-            seen = [one for one in known if isinstance(one, Observation)]
+            pair = order.ref, order.mov
+            seen = [FleetSighting(*pair, one) for one in known if isinstance(one, Observation)]
+            rough = [FleetPrior(*pair, one) for one in known if not isinstance(one, Observation)]
             others = [each for k, each in enumerate(f.sightings) if k not in order.sightings]
-            mine = [FleetSighting(order.ref, order.mov, one) for one in seen]
-            rough = dict(f.known)
-            if order.ref == f.anchor:
-                rough.pop(order.mov, None)
-                for one in known:
-                    if isinstance(one, InitialPose):
-                        rough[order.mov] = one
-            numbers = tuple(range(len(others), len(others) + len(mine)))
-            order = replace(order, sightings=numbers)
-            state = state.with_fleet(replace(f, sightings=(*others, *mine), known=rough))
+            priors = [told for told in f.priors if (told.ref, told.mov) != pair]
+            order = replace(order, sightings=tuple(range(len(others), len(others) + len(seen))))
+            fleet = replace(f, sightings=(*others, *seen), priors=(*priors, *rough))
+            state = state.with_fleet(fleet)
         if finding is not None:
             state = replace(state.with_finding(replace(finding, order=order)), result=None)
         return state
@@ -208,6 +202,6 @@ class FleetState:
         """Robots that lie together, the anchor's group first: as they were found, or as far as pairs go."""
         if self.result is not None:
             return [island.poses for island in self.result.islands]
-        findings = [found for order in pair_orders(self.fleet) if (found := self.finding(order)) is not None]
+        findings = [found for order in self.orders if (found := self.finding(order)) is not None]
         together = poses_so_far(self.fleet, findings)
         return [together, *({name: Pose2()} for name in self.robots if name not in together)]

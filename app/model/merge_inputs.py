@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.files.case_folder import Case
 from algorithms.files.truth_file import Truth
 from algorithms.maps.grid_map import GridMap, remarks_on
@@ -64,7 +65,7 @@ class MergeInputs:
     truth        : the known answer of a sample
     choice       : which kind of knowledge is to be used
     aside        : what is known beside, and not used
-    robots       : what the two are called
+    names        : what the two robots are called; what these inputs say is on robot 1 and robot 2
     """
 
     maps: tuple[MapSlot, ...] = (MapSlot(), MapSlot())
@@ -74,7 +75,7 @@ class MergeInputs:
     priors: tuple[Prior, ...] = ()
     choice: Choice = "nothing"
     aside: tuple[Known, ...] = ()
-    robots: tuple[str, str] = ("robot 1", "robot 2")
+    names: RobotNames = UNNAMED
 
     @staticmethod
     def pair(

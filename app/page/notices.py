@@ -25,7 +25,7 @@ class Notices:
         if not isinstance(error, InputFileError):  # that begins with a file's name
             text = text[:1].upper() + text[1:]
         with self._locks.drawing:
-            self.show(title, text, "orange")
+            self.show(title, self._messages.names.told(text), "orange")
             self._messages.hud(state=text, mood="failed", progress=None)
             self._messages.flush()
 

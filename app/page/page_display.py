@@ -9,6 +9,7 @@ from typing import Any
 import viser
 
 from algorithms.common.errors import NoAnswerError
+from algorithms.common.robot_names import UNNAMED
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import AugmentDetail, PlaneDetail
 from algorithms.verdict.contradictions import Contradictions
@@ -70,7 +71,10 @@ class PageDisplay:
     def show_inputs(self, layout: SceneLayout) -> None:
         """Both maps side by side, as they were loaded."""
         state, panels, inputs = self._state, self._panels, self._state.inputs
-        panels.transform.offer(inputs.complete)
+        names = self.messages.names = inputs.names
+        self.messages.hud(names=None if names == UNNAMED else [names.ref, names.mov])
+        panels.charts.name(names)
+        panels.transform.offer(inputs.complete, names)
         panels.files.extendable(len(inputs.grids) == len(inputs.maps) and state.fleet is None)
         panels.knowledge.show(inputs, inputs.chosen_prior)
         panels.charts.clear()
@@ -138,7 +142,7 @@ class PageDisplay:
         panels.charts.show(state.run, follow=True)
         panels.charts.tell(html)
         panels.export.offer(ResultFiles(result, state.inputs, state.result_config))
-        panels.what_if.offer(result)
+        panels.what_if.offer(result, state.inputs.names)
         self.draw(live=live)
         self.views.comparison.offer(state.contradictions, state.palette)
         self.messages.hud(mood=verdict_text.mood(result.verdict), progress=None)
@@ -151,7 +155,7 @@ class PageDisplay:
             self._panels.export.offer(None)
             self._panels.what_if.offer(None)
             self._panels.charts.show(self._state.run, follow=True)
-            self._panels.charts.tell(box(str(error), "refused"))
+            self._panels.charts.tell(box(self.messages.names.told(str(error)), "refused"))
             self.views.map.apart()
             self.draw(live=False)
             self.messages.hud(state=str(error), mood="refused", progress=None)

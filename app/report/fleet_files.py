@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.common.pose import Pose2
 from algorithms.files.map_file import map_to_bytes
 from algorithms.files.yaml_fields import number_text, quoted
 from algorithms.fleets.fleet_merge import FleetResult
@@ -16,6 +15,7 @@ from algorithms.fleets.island import Island
 from algorithms.observations.fleet import Fleet
 from app.report.fleet_report import fleet_page
 from app.report.result_files import MERGED, PAGE_FILE, REPORT_FILE, plain, report_json
+from app.report.ros_transform import publish_command
 from app.system.version import versions
 
 TRANSFORMS_FILE = "transforms.yaml"
@@ -55,16 +55,9 @@ def transforms_yaml(result: FleetResult) -> bytes:
             x, y, theta = (number_text(value) for value in (T.x, T.y, T.theta))
             lines.append(f"    {quoted(name)}:")
             lines.append(f"      T_root_robot: {{x: {x}, y: {y}, theta: {theta}}}")
-            lines.append(f'      publish: "{publish_command(island.root, name, T)}"')
+            command = publish_command(T, f"{island.root}/map", f"{name}/map")
+            lines.append(f"      publish: {quoted(command)}")
     return ("\n".join(lines) + "\n").encode()
-
-
-def publish_command(root: str, name: str, T: Pose2) -> str:
-    """The command that tells ROS 2 where a robot's map lies in another's."""
-    return (
-        f"ros2 run tf2_ros static_transform_publisher --x {T.x:.6f} --y {T.y:.6f} --yaw {T.theta:.6f} "
-        f"--frame-id {root}/map --child-frame-id {name}/map"
-    )
 
 
 def graph_g2o(result: FleetResult) -> bytes:
@@ -136,5 +129,5 @@ def _pair(number: int, result: FleetResult) -> Mapping[str, Any]:
             {"T_ref_mov": asdict(answer.T_ref_mov), "probability": answer.probability}
             for answer in finding.hypotheses
         ],
-        "verdict": finding.reason,
+        "verdict": finding.said,
     }

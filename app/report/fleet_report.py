@@ -160,13 +160,14 @@ def robot_rows(fleet: Fleet, result: FleetResult) -> Iterable[tuple[str, ...]]:
         for name in (each for each in fleet.maps if each in island.poses):
             T = island.poses[name]
             where = "root" if name == island.root else f"± {_deviation(fleet, island, name):.2f} m"
+            alone = number > 1 and len(island.poses) == 1
             yield (
                 name,
-                "the anchor's" if number == 1 else f"island {number}",
+                "the anchor's" if number == 1 else "alone" if alone else f"island {number}",
                 f"{T.x:.3f}",
                 f"{T.y:.3f}",
                 f"{degrees(T.theta):.2f}°",
-                verdict_text.likelihood(island.probability[name]),
+                "–" if alone else verdict_text.likelihood(island.probability[name]),
                 result.refused.get(name, where),
             )
 
@@ -189,7 +190,7 @@ def _pairs(result: FleetResult) -> Iterable[Sequence[str]]:
     for number, finding in enumerate(result.findings):
         likely = result.likely.get(number)
         shown = "–" if likely is None else verdict_text.likelihood(likely).replace(" ", "\u00a0")
-        yield finding.order.ref, finding.order.mov, shown, finding.reason
+        yield finding.order.ref, finding.order.mov, shown, finding.said
 
 
 def _section(title: str, *parts: str) -> str:

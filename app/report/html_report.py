@@ -7,6 +7,7 @@ from html import escape
 from math import degrees
 from typing import Any
 
+from algorithms.common.robot_names import RobotNames
 from algorithms.files.observation_file import known_to_bytes
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
@@ -25,7 +26,7 @@ from app.model.settings import Setting, settings_of, text_for, value_at
 from app.model.status_text import typeset
 from app.report import report_figures as outcome
 from app.report.result_rows import STAGES, numbers
-from app.report.ros_transform import publish_command
+from app.report.ros_transform import frames_of, publish_command
 from app.system.cancellation import Check, never_cancelled
 from app.system.data_paths import asset
 
@@ -55,16 +56,17 @@ def report_page(
     """
     found, name = find_conflicts(result.fusion), inputs.name or "two maps"
     title = f"{result.verdict.outcome.value.capitalize()}: {name}"
+    names = inputs.names
     parts = [
         _verdict(result, inputs),
         _pictures(result, inputs, found, check),
-        _section("How likely it is right", *_likely(result)),
-        _section("Contradictions, place by place", *_places(found)),
+        _section("How likely it is right", *_likely(result, names)),
+        _section("Contradictions, place by place", *_places(found, names)),
         _section("The numbers", _table(numbers(result, inputs, config), "two")),
-        _proof(result, config),
+        _proof(result, config, names),
         _section("What was known", *_known(inputs)),
         _section("How it was merged", *_settings(result, config, report)),
-        _section("How to use it", *_use(result)),
+        _section("How to use it", *_use(result, names)),
     ]
     made = ", ".join(f"{package} {number}" for package, number in report["versions"].items())
     html = (
@@ -82,45 +84,46 @@ def report_page(
 
 
 def _verdict(result: MergeResult, inputs: MergeInputs) -> str:
-    verdict, T = result.verdict, result.T_ref_mov
-    then = verdict_text.remedy(result)
+    verdict, T, told = result.verdict, result.T_ref_mov, inputs.names.told
+    then = told(verdict_text.remedy(result))
     stop, reason = STRONG.get(verdict.outcome, ""), verdict.reason
     if stop:  # what follows "Refused: " or "Merged, bent: ", as a sentence
         reason = reason.partition(": ")[2]
         reason = reason[:1].upper() + reason[1:]
+    reason = told(reason)
     more = f'<p class="then">{escape(then)}</p>' if then else ""
     found = "No robot should act on this transform or on a map made with it. The best place that was found:"
-    where = "Map 2 lies in map 1 at" if verdict.accepted else found
+    where = told("Map 2 lies in map 1 at") if verdict.accepted else found
     place = typeset(f"{where} x {T.x:.3f} m, y {T.y:.3f} m, turned by {degrees(T.theta):.2f}°.")
-    read = "".join(f"<p>{escape(remark)}</p>" for remark in inputs.readings())
+    read = "".join(f"<p>{escape(told(remark))}</p>" for remark in inputs.readings())
     return (
         f'<div class="verdict {verdict_text.mood(verdict)}">{stop}<p>{escape(reason)}</p>{more}</div>'
-        f"{read}<p>{place}</p>"
+        f"{read}<p>{escape(place)}</p>"
     )
 
 
 def _pictures(result: MergeResult, inputs: MergeInputs, found: Contradictions, check: Check) -> str:
     check(0.3)
-    figures = []
+    figures, told = [], inputs.names.told
     if inputs.ref is not None and inputs.mov is not None:
-        drawn = outcome.sources(inputs.ref, inputs.mov, inputs.observations, result.encounters)
+        drawn = outcome.sources(inputs.ref, inputs.mov, inputs.observations, result.encounters, inputs.names)
         said = "The maps as they came, each in its own frame"
-        said += ", and what robot 1 saw of robot 2." if inputs.observations else "."
+        said += told(", and what robot 1 saw of robot 2.") if inputs.observations else "."
         figures.append(_figure(drawn, said))
     check(0.45)
-    said = (
+    said = told(
         "Map 2 on map 1 under the transform. A contradiction is a wall of one map on the other's free floor; "
         "a cell's breadth of it along a wall means nothing."
     )
-    figures.append(_figure(outcome.overlay(result, inputs.observations), said))
+    figures.append(_figure(outcome.overlay(result, inputs.observations, inputs.names), said))
     check(0.65)
     said = "Only what contradicts by more than the breadth of a wall. The numbers are those of the table."
-    figures.append(_figure(outcome.difference(result, found), said))
+    figures.append(_figure(outcome.difference(result, found, inputs.names), said))
     check(0.85)
     return _section("Pictures", *figures)
 
 
-def _likely(result: MergeResult) -> list[str]:
+def _likely(result: MergeResult, names: RobotNames) -> list[str]:
     verdict = result.verdict
     said = (
         f"{merges_of(verdict.probability).capitalize()}, by what merges of simulated buildings teach: "
@@ -130,7 +133,7 @@ def _likely(result: MergeResult) -> list[str]:
         "What moves the probability: to the right what speaks for the merge, to the left what speaks against "
         "it, beside a typical right merge."
     )
-    figure = _figure(bars(verdict, LIGHT), caption)
+    figure = _figure(bars(verdict, LIGHT, names), caption)
     cleared = ""
     if verdict.cleared_cells:
         cleared = (
@@ -140,24 +143,26 @@ def _likely(result: MergeResult) -> list[str]:
     return [f"<p>{escape(said)}</p>", figure, cleared]
 
 
-def _places(found: Contradictions) -> list[str]:
-    said = f"<p>{escape(summary(found))}</p>"
+def _places(found: Contradictions, names: RobotNames) -> list[str]:
+    said = f"<p>{escape(names.told(summary(found)))}</p>"
     if not found.places:
         return [said]
     rows = []
     for n, place in enumerate(found.places[:MOST_PLACES], 1):
         sizes = (f"{place.wall:.1f} m", f"{2 * place.radius:.1f} m")
-        rows.append((str(n), whose(place), *sizes, signed(place.x), signed(place.y)))
+        rows.append((str(n), names.told(whose(place)), *sizes, signed(place.x), signed(place.y)))
     return [said, _table(rows, "places", ("place", "whose", "wall", "across", "x (m)", "y (m)"))]
 
 
-def _proof(result: MergeResult, config: Any) -> str:
+def _proof(result: MergeResult, config: Any, names: RobotNames) -> str:
     state, measure = result.proof, measure_of(config)
     if state is None:
         return ""
-    parts = [f"<p>{escape(words.proof_says(state, measure))} {state.nodes:,} blocks were bounded.</p>"]
+    says = names.told(words.proof_says(state, measure))
+    parts = [f"<p>{escape(says)} {state.nodes:,} blocks were bounded.</p>"]
     if len(state.turns):
-        parts.append(_figure(outcome.proof(state, measure), "The best value at every turn of map 2."))
+        said = names.told("The best value at every turn of map 2.")
+        parts.append(_figure(outcome.proof(state, measure, names), said))
     if rows := charts.proof_rows(state, measure):
         head = ("on the search's raster", "turn", measure.unit or measure.name, "of the best")
         parts.append(_table(rows, head=head))
@@ -168,7 +173,7 @@ def _known(inputs: MergeInputs) -> list[str]:
     if not inputs.known:
         return ["<p>Nothing but the maps: the place was found by their walls alone.</p>"]
     said = counted(inputs.known)
-    text = escape(known_to_bytes(inputs.known).decode().rstrip())
+    text = escape(inputs.names.told(known_to_bytes(inputs.known).decode().rstrip()))
     return [f"<p>{said[0].upper()}{said[1:]}. As it stands in observation.yaml:</p><pre>{text}</pre>"]
 
 
@@ -191,16 +196,21 @@ def _setting(setting: Setting, standard: Any) -> Row:
     return setting.label, shown if usual == setting.default else f"{shown} (usually {instead})"
 
 
-def _use(result: MergeResult) -> list[str]:
+def _use(result: MergeResult, names: RobotNames) -> list[str]:
     if not result.verdict.accepted:
         return ["<p>Refused: there is nothing to publish. See what would help, at the top.</p>"]
+    said = (
+        "Tell ROS 2 where map 2's frame lies in map 1's, while both robots run:",
+        "Serve the merged map, which is in map 1's frame, to Nav2:",
+        "The transform takes points of map 2 to map 1: p₁ = R(θ) p₂ + (x, y). It is in transform.yaml, "
+        "with all its digits; its covariance, the verdict and every setting are in report.json.",
+    )
+    publish, serve, where = (f"<p>{escape(names.told(each), quote=False)}</p>" for each in said)
+    command = publish_command(result.T_ref_mov, *frames_of(names))
     return [
-        "<p>Tell ROS 2 where map 2's frame lies in map 1's, while both robots run:</p>",
-        f"<pre>{escape(publish_command(result))}</pre>",
-        "<p>Serve the merged map, which is in map 1's frame, to Nav2:</p>",
-        "<pre>ros2 run nav2_map_server map_server --ros-args -p yaml_filename:=merged.yaml</pre>",
-        "<p>The transform takes points of map 2 to map 1: p₁ = R(θ) p₂ + (x, y). It is in transform.yaml, "
-        "with all its digits; its covariance, the verdict and every setting are in report.json.</p>",
+        f"{publish}<pre>{escape(command)}</pre>",
+        f"{serve}<pre>ros2 run nav2_map_server map_server --ros-args -p yaml_filename:=merged.yaml</pre>",
+        where,
     ]
 
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from algorithms.common.pose import FloatArray
+from algorithms.common.robot_names import RobotNames
 from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
@@ -31,7 +32,9 @@ FINE = 1.75  # pixels of a map to one of its sheet: crisp in print
 FAINT: Rgb = (203, 209, 217)  # walls that are not the point
 
 
-def sources(ref: GridMap, mov: GridMap, seen: Sequence[Observation], met: Sequence[Encounter]) -> str:
+def sources(
+    ref: GridMap, mov: GridMap, seen: Sequence[Observation], met: Sequence[Encounter], names: RobotNames
+) -> str:
     """Both maps as they came, with the sightings in them."""
     in_ref = [o.observer.xy for o in seen] + [at.x_ref for at in met]
     marks = ((ref, in_ref), (mov, [at.x_mov for at in met]))
@@ -45,7 +48,7 @@ def sources(ref: GridMap, mov: GridMap, seen: Sequence[Observation], met: Sequen
         rect = _widened(views[k][0], PAIR / high)
         view = RasterView(rect, int(FINE * PAIR), int(FINE * high))
         plot = scene(sheet, x, 20, PAIR, high, view)
-        sheet.text(x, 12, f"map {k + 1}{roles[k]}", 12, colour=colours[k], bold=True)
+        sheet.text(x, 12, names.told(f"map {k + 1}") + roles[k], 12, colour=colours[k], bold=True)
         plot.image(draw_map(view, LIGHT, grid, colours[k]))
         for number, (o, at) in enumerate(zip(seen, met, strict=True), 1):
             label = "" if len(seen) == 1 else f" {number}"
@@ -55,20 +58,17 @@ def sources(ref: GridMap, mov: GridMap, seen: Sequence[Observation], met: Sequen
                 sheet.path(ends, LIGHT.text, 1.6, dash="5 4")
                 sheet.dot(*ends[1].tolist(), 6, None, LIGHT.conflict, width=2)
                 robot(plot, o.observer.xy, o.observer.theta, LIGHT.ref)
-                _name(plot, o.observer.xy, f"robot 1{label}", LIGHT.ref)
+                _name(plot, o.observer.xy, names.ref + label, LIGHT.ref)
             else:
                 robot(plot, at.x_mov, o.observed_heading, LIGHT.mov)
-                _name(plot, at.x_mov, f"robot 2{label}", LIGHT.mov)
+                _name(plot, at.x_mov, names.mov + label, LIGHT.mov)
         sheet.rect(x, 20, PAIR, high, None, LIGHT.margin, 0.4)
         scale_bar(plot)
-    return sheet.svg(
-        "Both maps as they came: robot 1 and the place where it saw robot 2, robot 2 in its own map"
-        if seen
-        else "Both maps as they came"
-    )
+    how = ": robot 1 and the place where it saw robot 2, robot 2 in its own map" if seen else ""
+    return sheet.svg(names.told(f"Both maps as they came{how}"))
 
 
-def overlay(result: MergeResult, seen: Sequence[Observation]) -> str:
+def overlay(result: MergeResult, seen: Sequence[Observation], names: RobotNames) -> str:
     """Both maps under the transform: whose wall it is, where they agree, where they contradict."""
     ref, mov = result.fusion.ref_cells, result.fusion.mov_cells
     walls, free = (ref >= OCCUPIED_FROM, mov >= OCCUPIED_FROM), (is_free(ref), is_free(mov))
@@ -78,13 +78,14 @@ def overlay(result: MergeResult, seen: Sequence[Observation]) -> str:
         there = result.T_ref_mov.apply(result.pivot)
         heading = None if o.observed_heading is None else o.observed_heading + result.T_ref_mov.theta
         robot(plot, there, heading, LIGHT.mov)
-        _name(plot, o.observer.xy, "robot 1", LIGHT.ref)
-        _name(plot, there, "robot 2", LIGHT.mov)
-    chips = (("map 1", LIGHT.ref), ("map 2", LIGHT.mov), ("both", LIGHT.agreed))
+        _name(plot, o.observer.xy, names.ref, LIGHT.ref)
+        _name(plot, there, names.mov, LIGHT.mov)
+    maps = (names.told("map 1"), LIGHT.ref), (names.told("map 2"), LIGHT.mov)
+    chips = (*maps, ("both", LIGHT.agreed))
     return _finish(plot, (*chips, ("contradiction", LIGHT.conflict)), "The merged map")
 
 
-def difference(result: MergeResult, found: Contradictions) -> str:
+def difference(result: MergeResult, found: Contradictions, names: RobotNames) -> str:
     """Walls that the other map denies, in the colour of their map, and the numbered places they make."""
     fusion = result.fusion
     walls = np.maximum(fusion.ref_cells, fusion.mov_cells) >= OCCUPIED_FROM
@@ -99,14 +100,14 @@ def difference(result: MergeResult, found: Contradictions) -> str:
         plot.sheet.dot(x, y, 8, LIGHT.conflict)
         plot.sheet.text(x, y + 3.6, str(n), 10.5, "middle", "#fff", bold=True)
     chips = (
-        ("map 1 alone, where map 2 saw floor", LIGHT.ref),
-        ("map 2 alone, where map 1 saw floor", LIGHT.mov),
+        (names.told("map 1 alone, where map 2 saw floor"), LIGHT.ref),
+        (names.told("map 2 alone, where map 1 saw floor"), LIGHT.mov),
         ("other walls", FAINT),
     )
     return _finish(plot, chips, "Where the maps contradict each other")
 
 
-def proof(state: ProofState, measure: ObjectiveLabel) -> str:
+def proof(state: ProofState, measure: ObjectiveLabel, names: RobotNames) -> str:
     """What is known of every turn of the circle: no transform at that turn is better than its ceiling."""
     finite = state.ceilings[np.isfinite(state.ceilings)]
     chart = charts.proof(state, float(finite.max()) if len(finite) else 0.0, measure)
@@ -114,9 +115,8 @@ def proof(state: ProofState, measure: ObjectiveLabel) -> str:
     sheet = SvgCanvas(252, FULL)
     plot = SvgPlot(sheet, 50, 8, FULL - 66, 180, (-180.0, 180.0), chart.up)
     draw_chart(plot, chart, LIGHT)
-    plot.axes(
-        "turn of map 2 (°), the whole circle", measure.row, (-180, -90, 0, 90, 180), ticks(*chart.up, 4)
-    )
+    across = names.told("turn of map 2 (°), the whole circle")
+    plot.axes(across, measure.row, (-180, -90, 0, 90, 180), ticks(*chart.up, 4))
     entries = (
         ("ceiling: nothing is better", LIGHT.margin, "line"),
         ("best that was met", LIGHT.particle, "line"),

@@ -7,7 +7,7 @@ import json
 import math
 import zipfile
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, is_dataclass
+from dataclasses import asdict, dataclass, field, is_dataclass, replace
 from enum import Enum
 from typing import Any
 
@@ -16,6 +16,7 @@ import numpy as np
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import UNNAMED
 from algorithms.files.map_file import map_to_bytes
 from algorithms.files.observation_file import OBSERVATION_FILE, known_to_bytes
 from algorithms.maps.map_fusion import Fusion
@@ -190,9 +191,9 @@ def result_files(
     files: dict[str, bytes] = {}
     if with_merged:
         files |= map_to_bytes(result.fusion.merged, MERGED)
-        files[TRANSFORM_FILE] = transform_yaml(result)
+        files[TRANSFORM_FILE] = transform_yaml(result, inputs.names)
     if are_wanted(result) and inputs.ref is not None and inputs.mov is not None:
-        files |= suggestion_files(result, inputs.ref, inputs.mov)
+        files |= suggestion_files(result, inputs.ref, inputs.mov, inputs.names)
     check(0.1)
     files[OVERLAY_FILE] = overlay_png(result)
     check(0.2)
@@ -220,11 +221,22 @@ class ResultFiles:
         if not self._made:
             i, maps = self.inputs, {"map1": self.inputs.ref, "map2": self.inputs.mov}
             named = {"pair": i.name} | {key: grid.name if grid else "" for key, grid in maps.items()}
-            report = report_of(self.result, self.config, inputs=named, warnings=i.readings())
+            if i.names != UNNAMED:
+                named |= {"robot1": i.names.ref, "robot2": i.names.mov}
+            warnings = [i.names.told(remark) for remark in i.readings()]
+            verdict = self.result.verdict
+            told = {"reason": i.names.told(verdict.reason), "hint": i.names.told(verdict.hint)}
+            result = replace(self.result, verdict=replace(verdict, **told))
+            report = report_of(result, self.config, inputs=named, warnings=warnings)
             files = result_files(self.result, i, self.config, report, with_merged=True, check=check)
-            known = {OBSERVATION_FILE: known_to_bytes(i.known)} if i.known else {}
+            known = {OBSERVATION_FILE: known_file(i)} if i.known else {}
             self._made.update(known | files)
         return self._made
+
+
+def known_file(inputs: MergeInputs) -> bytes:
+    """What is known, as an observation file; its remarks name the robots."""
+    return inputs.names.told(known_to_bytes(inputs.known).decode()).encode()
 
 
 def zip_bytes(files: Mapping[str, bytes]) -> bytes:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import degrees, isfinite, sqrt
 from typing import Any
 
 import numpy as np
 
 from algorithms.common.pose import Pose2, pose_error
+from algorithms.common.robot_names import RobotNames
 from algorithms.maps.map_fusion import fuse
 from algorithms.methods.merge_result import MergeResult
 from algorithms.observations.observation import Encounter, Observation
@@ -37,6 +39,15 @@ STAGES = {
 
 def numbers(result: MergeResult, inputs: MergeInputs, config: Any = None) -> list[tuple[str, ...]]:
     """The transform with its standard deviations, its value, and the figures of merit."""
+    return named(_numbers(result, inputs, config), inputs.names)
+
+
+def named(rows: Iterable[tuple[str, ...]], names: RobotNames) -> list[tuple[str, ...]]:
+    """Rows on robot 1 and robot 2, with the robots' names in them."""
+    return [tuple(map(names.told, row)) for row in rows]
+
+
+def _numbers(result: MergeResult, inputs: MergeInputs, config: Any) -> list[tuple[str, ...]]:
     T, verdict = result.T_ref_mov, result.verdict
     at_robot, turn = _deviations(result)
     rows: list[tuple[str, ...]] = [("made", result.method)] if result.by_person else []

@@ -6,6 +6,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict
 
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.suggestions import MOST, Suggestion, suggestions_of
@@ -28,14 +29,16 @@ def picture_file(number: int) -> str:
 SUGGESTION_FILES = (SUGGESTIONS_FILE, *(picture_file(number) for number in range(1, MOST + 1)))
 
 
-def suggestion_files(result: MergeResult, ref: GridMap, mov: GridMap) -> dict[str, bytes]:
+def suggestion_files(
+    result: MergeResult, ref: GridMap, mov: GridMap, names: RobotNames = UNNAMED
+) -> dict[str, bytes]:
     """All of these files by name; the pictures come first."""
     choices = suggestions_of(result)
     files = {
         picture_file(each.number): png_bytes(thumbnail(ref, mov, each.T_ref_mov, LIGHT, PICTURE_SIZE))
         for each in choices
     }
-    plain = [_plain(each) for each in choices]
+    plain = [_plain(each, names) for each in choices]
     files[SUGGESTIONS_FILE] = (json.dumps(plain, ensure_ascii=False, indent=2) + "\n").encode()
     return files
 
@@ -54,10 +57,10 @@ def suggestion_rows(choices: Sequence[Suggestion]) -> list[list[str]]:
     ]
 
 
-def _plain(suggestion: Suggestion) -> dict[str, object]:
+def _plain(suggestion: Suggestion, names: RobotNames) -> dict[str, object]:
     """As JSON holds it; metres, radians."""
     seen = suggestion.weighed.evidence
-    names = {OTHERS: "other answers"} | {name: quantity.title for name, quantity in QUANTITIES.items()}
+    titles = {OTHERS: "other answers"} | {name: quantity.title for name, quantity in QUANTITIES.items()}
     return {
         "number": suggestion.number,
         "T_ref_mov": asdict(suggestion.T_ref_mov),
@@ -65,7 +68,7 @@ def _plain(suggestion: Suggestion) -> dict[str, object]:
         "agreeing_wall_m": seen.shared_wall * (1 - seen.contradiction),
         "shared_wall_m": seen.shared_wall,
         "shared_floor_m2": seen.floor,
-        "against": [names[name] for name in suggestion.against],
+        "against": [names.told(titles[name]) for name in suggestion.against],
         "contributions": dict(suggestion.contributions),
         "picture": picture_file(suggestion.number),
     }

@@ -25,7 +25,12 @@ class CellQuota:
         """Have so many cells in place of those before; raises TooLargeError, which changes nothing."""
         with self._lock:
             others = sum(self._held.values()) - self._held.get(who, 0)
-            if others and others + cells > self._most:
+            if cells > self._most:
+                raise TooLargeError(
+                    f"these maps have {cells / 1e6:.0f} million cells, and a page holds "
+                    f"{self._most / 1e6:.0f} million at most; make them coarser"
+                )
+            if others + cells > self._most:
                 raise TooLargeError(
                     f"these maps have {cells / 1e6:.0f} million cells, and the other tabs of this server "
                     f"hold {others / 1e6:.0f} of the {self._most / 1e6:.0f} million that there may be; "

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
 import zipfile
 
 import pytest
 from driver import READY, Tab, settle
 
+from algorithms.common.robot_names import WORDS
 from algorithms.files.case_folder import read_case
 from algorithms.files.fleet_archive import fleet_to_files
 from algorithms.files.fleet_file import read_fleet
+from app.model.fleet_state import FleetState
 from app.page.application import make_server
 from app.page.fleet.fleet_display import READY as OF_ROBOTS
 from app.report.result_files import zip_bytes
@@ -123,6 +126,77 @@ def test_robots_are_renamed_hidden_made_the_anchor_and_removed_and_undo_goes_bac
     for _ in range(3):
         island.page.get_by_role("button", name="Undo").click()
     settle(lambda: "r2" in robots(island), "the old name")
+
+
+SAID = """() => [
+    document.body.innerText, JSON.stringify(mapmeld.layers), JSON.stringify(mapmeld.hud),
+    ...[...document.querySelectorAll("[title], [aria-label]")].flatMap((e) => [e.title, e.ariaLabel || ""]),
+    ...[...document.querySelectorAll("svg text")].map((e) => e.textContent)].join("\\n")"""
+FILES = re.compile(r"Map [12]: (YAML|image)")  # the buttons that load two other maps
+
+
+def of_two(tab: Tab) -> list[str]:
+    """What the page calls robot 1 or 2, map 1 or 2."""
+    return [found[0] for found in WORDS.finditer(FILES.sub("", tab.page.evaluate(SAID)))]
+
+
+def test_an_opened_pair_is_told_by_its_robots_names_and_two_maps_without_names_as_ever(open_tab, tmp_path):
+    fleet = FleetState(read_fleet(fleets()["corridor_fleet_loop"]))
+    called = fleet.renamed("r1", "Bob").renamed("r2", "<i>Alice").fleet
+    (tmp_path / "fleet.zip").write_bytes(zip_bytes(fleet_to_files(called)))
+    tab = open_tab(size=(1400, 900))
+    tab.unfold("Upload your own")
+    tab.page.locator("input[type=file][accept='.zip']").set_input_files(str(tmp_path / "fleet.zip"))
+    settle(lambda: tab.state == OF_ROBOTS.format(3), "the fleet")
+    tab.page.locator("button[data-mm-pair]", has_text="Bob saw <i>Alice").click()
+    settle(lambda: tab.page.locator(".mm-case").inner_text() == "Bob saw <i>Alice", "the pair")
+    tab.press("Instant")
+    tab.press("Merge")
+    tab.wait_for("refused")
+    settle(lambda: tab.page.locator("[data-mm-suggestion]").count(), "what it suggests")
+    assert "little keeps <i>Alice's map in its place" in tab.state
+    assert tab.number("<i>Alice known to")
+    assert of_two(tab) == []
+    for stage in ("Turn", "Shift", "Proof"):
+        tab.press(stage)
+        assert of_two(tab) == []
+    for way in ("Blink", "Curtain", "Heights", "Map"):
+        tab.press(way)
+        tab.page.wait_for_timeout(300)
+        assert of_two(tab) == []
+    tab.press("Move <i>Alice's map by hand")
+    settle(lambda: tab.state.startswith("By hand, would be refused"), "the verdict on it")
+    assert of_two(tab) == []
+    tab.press("Leave it as it was")
+    tab.press("Move the robots by hand")
+    settle(lambda: "<i>Alice, seen here" in {item.get("t") for item in tab.layer("robots")}, "the signs")
+    tab.page.get_by_label("<i>Alice: x (m)").wait_for()
+    assert of_two(tab) == []
+    assert tab.page.locator("i", has_text="Alice").count() == 0  # a name is no HTML
+    tab.choose("Sample", "office_r3_r2")
+    settle(lambda: tab.state == "Ready. Press Merge.", "two maps")
+    assert [entry["t"] for entry in tab.page.evaluate("() => mapmeld.hud.legend")] == ["map 1", "map 2"]
+    settle(lambda: {"robot 1", "robot 2"} <= {item.get("t") for item in tab.layer("robots")}, "the signs")
+    assert "Alice" not in tab.page.evaluate(SAID)
+
+
+def test_a_turn_that_is_known_of_two_maps_is_known_of_the_fleet_and_of_two_robots_again(open_tab):
+    tab = open_tab(size=(1400, 900))
+    tab.choose("Known is", "Roughly the turn")
+    tab.press("Done")
+    tab.press("Add robots")
+    settle(lambda: rows(tab, "pair") == ["robot 1 and robot 2\nnot merged yet"], "what is known")
+    tab.unfold("Add a robot")
+    tab.choose("Or a sample", "apartment, r1")
+    settle(lambda: "apartment_r1" in robots(tab), "a third robot")
+    tab.unfold("The chosen robot")
+    tab.page.locator("button[data-mm-robot]", has_text="apartment_r1").click()
+    tab.press("Remove it")
+    settle(lambda: len(robots(tab)) == 2, "two robots again")
+    tab.page.locator("button[data-mm-pair]").click()
+    settle(lambda: tab.page.locator(".mm-case").inner_text() == "robot 1 and robot 2", "the pair")
+    assert tab.page.get_by_label("Known is", exact=True).first.input_value() == "Roughly the turn"
+    assert tab.page.get_by_label("σ of Δθ (°)", exact=True).is_visible()
 
 
 @pytest.fixture

@@ -22,7 +22,7 @@ from app.cli.progress_bar import bar
 from app.evaluation.table_files import aligned
 
 FIRST = 1_200_000  # seed of the first view; those of tests, samples and RESULTS.md are lower
-ROBOTS, EMPTY = 720, 360  # views
+ROBOTS, EMPTY = 540, 324  # views
 WHOLE = 0.9  # share of a robot that is seen, from which it is an example
 EDGE = 2.0  # pixels; a box nearer to the image's edge is cut off
 

@@ -20,6 +20,7 @@ from algorithms.simulator.views.surfaces.materials import Picture
 from algorithms.simulator.views.surfaces.noise import Tones
 from algorithms.simulator.views.view_scene import ViewScene
 
+FINEST = 0.002  # metres; of what is printed on boards and pictures, nothing is finer
 KNOT = 8  # pixels between the rays that the camera is asked for; those between lie on straight lines
 
 
@@ -104,6 +105,7 @@ def take_picture(
     material = eye.shading.material_of(traced.hits)
     key = (traced.hits.surface.astype(np.int64) * 8 + traced.hits.face) * 16 + traced.mirror
     fine = np.array([one.fine for one in eye.shading.materials])[material]
+    fine &= traced.hits.depth > FINEST * eye.focal
     several = np.flatnonzero(_edges(key.reshape(shape)).ravel() | fine)
     once = np.ones(len(a), dtype=bool)
     once[several] = False

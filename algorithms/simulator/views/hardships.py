@@ -32,6 +32,7 @@ from algorithms.simulator.views.view_scene import Mirror, Poster, ViewScene
 
 HALF_HIDDEN = 0.3, 0.7  # share of a robot that is seen
 WELL_SEEN = 0.95
+FACING = 0.6  # cosine of the angle from a poster's normal under which it is seen, at least
 STEP = 0.01  # metres; a robot beside a wall is at most so far from touching it
 
 
@@ -196,7 +197,9 @@ def poster(stage: Stage, rng: np.random.Generator, robot: bool) -> Staged | None
     )
     middle = (left + right) / 2
     far = float(np.sqrt(((middle - observer.xy) ** 2).sum()))
-    if not max(1.0, stage.distance[0]) <= far <= stage.distance[1]:
+    across = right - left
+    facing = float((observer.xy - middle) @ np.array([across[1], -across[0]])) / width
+    if not max(1.0, stage.distance[0]) <= far <= stage.distance[1] or facing < FACING * far:
         return None
     observer = _turned_to(observer, middle, whole(rng, -2500, 2500))
     scene = stage.dressed(rng, observer, ())

@@ -16,7 +16,7 @@ from algorithms.simulator.views.view_scene import ViewScene
 
 VARIANTS = 8
 DISTANCE, EYE = 2.2, 0.36  # metres; from the camera to the robot's face, and the camera's height
-FOCAL = 1000.0  # pixels
+WIDTH, HEIGHT, FOCAL = 896, 672, 700.0  # pixels
 MARGIN = 0.02  # metres of floor below the robot
 
 
@@ -32,9 +32,10 @@ def robot_picture(variant: int) -> tuple[Picture, float, float]:
     stands = Pose2(1.4 + DISTANCE + body.half_size, 2.5, radians(heading))
     light = Light(brightness=1.1, warmth=uniform(rng, -0.3, 0.5), blur=0.8, noise=1.0, vignetting=0.0)
     scene = ViewScene(plan.finish("office"), ((stands, body),), light=light, seed=variant)
-    camera = Camera(1280, 960, (FOCAL, FOCAL), (639.5, 479.5))
+    middle_u, middle_v = (WIDTH - 1) / 2, (HEIGHT - 1) / 2
+    camera = Camera(WIDTH, HEIGHT, (FOCAL, FOCAL), (middle_u, middle_v))
     photo = render(scene, Pose2(1.4, 2.5, 0.0), camera, EYE, rng)
     scale = FOCAL / DISTANCE  # pixels per metre of what stands where the robot's face is
     width, height = uniform(rng, 0.65, 0.95), uniform(rng, 0.8, 1.1)
-    left, foot = round(639.5 - width / 2 * scale), round(479.5 + (EYE + MARGIN) * scale)
+    left, foot = round(middle_u - width / 2 * scale), round(middle_v + (EYE + MARGIN) * scale)
     return photo[foot - round(height * scale) : foot, left : left + round(width * scale)], width, height

@@ -14,7 +14,7 @@ from algorithms.common.errors import OutputError
 from algorithms.files.atomic_write import check_folder, write_files
 from algorithms.files.fleet_file import FLEET_FILE, read_fleet
 from algorithms.fleets.fleet_merge import FleetResult, PairStep, run_fleet
-from algorithms.maps.grid_map import remarks_on
+from algorithms.observations.fleet import Fleet
 from app.cli.argument_parser import Parser
 from app.cli.executor_flags import add_workers, executor_for
 from app.cli.progress_bar import bar
@@ -42,6 +42,8 @@ The file names the robots and their maps, and who saw whom:
     - observer: {{robot: r1, pose: [31.2, 2.7, 2.964]}}
       observed: {{robot: r2, pose: [24.8, 34.6]}}
       measurement: {{range: 2.97, bearing: 0.406}}
+  known:                                     what else is known of two: initial, turn or near; or left out
+    - {{of: r2, in: r1, turn: {{yaw: 0.1, sigma: 0.1}}}}
 
 Files in the folder of --out:
   merged.yaml, merged.pgm   the map of all robots that are tied to the anchor, in its frame
@@ -71,8 +73,9 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     check_folder(args.out)
     fleet = read_fleet(args.fleet)
     _check_inputs(args)
-    for remark in remarks_on(tuple(fleet.maps.values())):
-        print(f"warning: {remark}", file=sys.stderr)
+    for name, grid in fleet.maps.items():
+        for remark in grid.remarks:
+            print(f"warning: {name}'s map ({grid.name}): {remark}.", file=sys.stderr)
     executor = executor_for(args.jobs, args.scheduler)
     result = _with_bar(run_fleet(fleet, partial(run_pairs, executor), args.force))
     name = args.fleet.resolve().name if args.fleet.is_dir() else args.fleet.stem
@@ -81,7 +84,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     if args.json:
         sys.stdout.write(files[REPORT_FILE].decode())
     else:
-        print(summary(result, len(fleet.maps)), *_robots(result), *_left_out(result), sep="\n")
+        print(summary(result, len(fleet.maps)), *_robots(result), *_left_out(fleet, result), sep="\n")
         print(f"written to {args.out}: {', '.join(files)}")
     return 0 if result.whole else 1
 
@@ -109,11 +112,19 @@ def _robots(result: FleetResult) -> list[str]:
     rows = [["robot", "map", "x (m)", "y (m)", "turn", "likely"]]
     for number, island in enumerate(result.islands, 1):
         for name, T in island.poses.items():
-            likely = verdict_text.likelihood(island.probability[name])
-            where = "merged" if number == 1 else f"island {number}"
+            alone = number > 1 and len(island.poses) == 1
+            likely = "–" if alone else verdict_text.likelihood(island.probability[name])
+            where = "merged" if number == 1 else "alone" if alone else f"island {number}"
             rows.append([name, where, f"{T.x:.3f}", f"{T.y:.3f}", f"{degrees(T.theta):.2f}°", likely])
     return aligned(rows)
 
 
-def _left_out(result: FleetResult) -> list[str]:
-    return [f"sighting {each.number + 1} is left out: {each.reason}" for each in result.left_out]
+def _left_out(fleet: Fleet, result: FleetResult) -> list[str]:
+    """Sightings, and what else is known, that nothing rests on."""
+    said = [f"sighting {each.number + 1} is left out: {each.reason}" for each in result.left_out]
+    priors = {(told.ref, told.mov) for told in fleet.priors}
+    for number, finding in enumerate(result.findings):
+        order = finding.order
+        if not order.sightings and (order.ref, order.mov) in priors and number not in result.chosen:
+            said.append(f"what is known of {order.mov} in {order.ref} is left out: {finding.said}")
+    return said

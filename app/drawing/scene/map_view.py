@@ -146,9 +146,7 @@ class MapView:
             return
         o, *_ = observations = self.inputs.observations
         here, colours = self.layout, self.palette
-        self._messages.layer(
-            "robots", signs.robots(o, self.inputs.robots, here, colours, mov, together, seen)
-        )
+        self._messages.layer("robots", signs.robots(o, here, colours, mov, together, seen))
         further = signs.further(observations, self.inputs.encounters, here, colours, mov, together)
         sight = signs.sight(o, at, here, colours, apart=mov and not together, close=not seen)
         self._messages.layer("sight", further + sight)

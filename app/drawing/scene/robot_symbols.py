@@ -32,14 +32,13 @@ def robot(
 
 def robots(
     o: Observation,
-    names: tuple[str, str],
     layout: SceneLayout,
     colours: Palette,
     mov: bool,
     together: bool,
     seen: bool,
 ) -> list[Item]:
-    """Both robots with their names.
+    """Both robots.
 
     mov      : whether map 2 is there
     together : map 2 lies on map 1; the meeting place is then marked by robot 2 itself
@@ -47,9 +46,9 @@ def robots(
     """
     near, far = _sides(o, 14)
     first = o.observer.xy - layout.anchor_ref
-    items = [mark("robot", first, colours.ref, a=o.observer.theta, r=9, t=names[0], **near)]
+    items = [mark("robot", first, colours.ref, a=o.observer.theta, r=9, t="robot 1", **near)]
     if mov and seen:
-        items.append(robot(ZERO, o.observed_heading, (9, 6), colours.mov, "map2", t=names[1], **far))
+        items.append(robot(ZERO, o.observed_heading, (9, 6), colours.mov, "map2", t="robot 2", **far))
     if not together:
         items.append(mark("ring", ZERO, colours.conflict, r=7, t="x̂₁ seen here", size=11, **far))
         if mov:

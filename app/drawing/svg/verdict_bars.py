@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import exp
 
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.verdict.decision import Outcome, Verdict
 from algorithms.verdict.probability_model import LITTLE, OTHERS, QUANTITIES
 from app.drawing.palette import LIGHT, Palette, Rgb, css
@@ -41,7 +42,7 @@ def titles(verdict: Verdict) -> dict[str, str]:
     return {**weighed, OTHERS: "other answers"}
 
 
-def bars(verdict: Verdict, palette: Palette) -> str:
+def bars(verdict: Verdict, palette: Palette, names: RobotNames = UNNAMED) -> str:
     """A bar per quantity: by how much it moves the log-odds from those of a typical right merge."""
     named = titles(verdict)
     sheet = SvgCanvas(TOP + ROW * len(named) + 26)
@@ -55,7 +56,7 @@ def bars(verdict: Verdict, palette: Palette) -> str:
     for row, name in enumerate(named):
         y, moved = TOP + ROW * row, verdict.contributions.get(name, 0.0)
         colour = LIGHT.mov if moved >= 0 else LIGHT.conflict
-        sheet.text(0, y + 11, named[name], 11)
+        sheet.text(0, y + 11, names.told(named[name]), 11)
         sheet.text(WIDE, y + 11, shown[name], 12, "end", bold=True)
         sheet.rect(0, y + 17, WIDE, 10, palette.margin, alpha=0.15)
         long = middle * min(1.0, abs(moved) / FULL)

@@ -10,7 +10,7 @@ import numpy as np
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import FloatArray, Pose2, wrap_angle
-from algorithms.files.observation_file import OBSERVATION_FILE, known_to_bytes
+from algorithms.files.observation_file import OBSERVATION_FILE
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.pair_problem import Known
 from algorithms.observations.priors import InitialPose, NearPlace, Prior, TurnPrior
@@ -27,6 +27,7 @@ from app.page.run_controller import RunController
 from app.page.tab import Tab
 from app.page.undo.page_snapshot import PageSnapshot
 from app.page.undo.undo_controller import UndoController
+from app.report.result_files import known_file
 from app.web.browser_events import Numbers
 
 PLACES = ("near1", "near2")
@@ -101,7 +102,7 @@ class KnowledgeController:
     def _save(self) -> None:
         with self._locks.action:
             if self._state.inputs.known:
-                self._panels.send(OBSERVATION_FILE, known_to_bytes(self._state.inputs.known))
+                self._panels.send(OBSERVATION_FILE, known_file(self._state.inputs))
 
     # --- the mode in which it is moved on the map -------------------------------------------------------
 

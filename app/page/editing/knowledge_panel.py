@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from html import escape
 from math import degrees, radians
 from typing import Any
 
@@ -110,11 +111,14 @@ class KnowledgePanel:
         mixed = inputs.mixed or choice == "all"
         titles = tuple(title for each, title in TITLES.items() if mixed or each != "all")
         put(self._choice, options=titles, value=TITLES[choice])
-        missing = box(TO_PLACE[choice], "plain") if both and not inputs.complete and not moving else ""
-        put(self._html, content=(_small(TELLS[choice]) if TELLS[choice] else "") + missing)
+        told = inputs.names.told
+        missing = box(told(TO_PLACE[choice]), "plain") if both and not inputs.complete and not moving else ""
+        put(self._html, content=(_small(told(TELLS[choice])) if TELLS[choice] else "") + missing)
         self.observation.show(inputs)
         numbers = {} if prior is None else numbers_of(prior)
         for name, handle in self._numbers.items():
+            label, hint, *_ = FIELDS[name]
+            put(handle, label=told(label), hint=told(hint))
             if name in numbers:
                 value = numbers[name]
                 put(handle, value=round(degrees(value) if name in ANGLES else value, 3))
@@ -137,4 +141,4 @@ class KnowledgePanel:
 
 
 def _small(text: str) -> str:
-    return f'<p style="{SMALL}">{text}</p>'
+    return f'<p style="{SMALL}">{escape(text, quote=False)}</p>'

@@ -68,12 +68,14 @@ class LiveVerdict:
         try:
             result = manual.weigh(T)
         except MapMergeError as error:
-            self._show(box(str(error), "refused"), str(error), "refused")
+            self._show(box(state.inputs.names.told(str(error)), "refused"), str(error), "refused")
             return
         self._slow = perf_counter() - began
         found = state.search.answer if state.search is not None else None
         mood = verdict_text.mood(result.verdict)
-        self._show(weighed_html(result, manual.config, found), verdict_text.of_hand(result), mood)
+        self._show(
+            weighed_html(result, manual.config, found, state.inputs.names), verdict_text.of_hand(result), mood
+        )
 
     def _show(self, html: str, words: str, mood: str) -> None:
         with self._state.locks.drawing:

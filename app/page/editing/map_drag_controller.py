@@ -260,7 +260,7 @@ class MapDragController:
             try:
                 result = manual.weigh(T, method=CHOSEN if chosen else BY_HAND)
             except MapMergeError as error:
-                self._panel.tell(box(str(error), "refused"))
+                self._panel.tell(box(state.inputs.names.told(str(error)), "refused"))
                 return
             self._modes.close()
             run = RunState(state.config)

@@ -8,6 +8,7 @@ from typing import Any
 
 import viser
 
+from algorithms.common.robot_names import UNNAMED
 from algorithms.maps.grid_map import FARTHEST
 from algorithms.observations.observation import MOST_RANGE, SIGMA_BEARINGS, SIGMA_RANGES
 from app.drawing.palette import LIGHT, QUIET
@@ -15,7 +16,7 @@ from app.model import status_text as words
 from app.model.merge_inputs import MergeInputs
 from app.model.observation_draft import ObservationDraft
 from app.page.panels.html_widgets import Action, box, on_choice, on_press, put, table
-from app.report.result_rows import sighting_rows
+from app.report.result_rows import named, sighting_rows
 
 # field -> label, hint, least, most, step; angles in degrees
 FIELDS: dict[str, tuple[str, str, float, float, float]] = {
@@ -42,6 +43,7 @@ class ObservationPanel:
     """Shows where the robots were and what one saw of the other; its widgets only ask."""
 
     def __init__(self, gui: viser.GuiApi) -> None:
+        self._names = UNNAMED
         self._html = gui.add_html("", visible=False)
         quiet: Any = {"color": QUIET, "visible": False}
         hint = "With the mouse, in place of an observation file; or mend the one there is."
@@ -84,6 +86,9 @@ class ObservationPanel:
 
     def show(self, inputs: MergeInputs) -> None:
         """Show the numbers of these inputs; nothing is being placed."""
+        self._names = inputs.names
+        for name, (label, hint, *_) in FIELDS.items():
+            put(self._fields[name], label=self._names.told(label), hint=self._names.told(hint))
         seen, both = bool(inputs.observations), inputs.ref is not None and inputs.mov is not None
         put(self._html, content=observations_html(inputs), visible=seen)
         self._toggle.visible = both and inputs.choice in ("sighting", "all")
@@ -97,7 +102,7 @@ class ObservationPanel:
         draft, several = drafts[chosen], len(drafts) > 1
         self._html.visible = False
         self._toggle.label, self._toggle.color = "Done", LIGHT.ref
-        step = box(words.PLACING[draft.missing], "plain")
+        step = box(self._names.told(words.PLACING[draft.missing]), "plain")
         self._step.content = (box(trouble, "refused") if trouble else "") + step
         self._step.visible = True
         options = tuple(str(number) for number in range(1, len(drafts) + 1))
@@ -136,5 +141,6 @@ def observations_html(inputs: MergeInputs) -> str:
     rows = zip(inputs.observations, inputs.encounters, inputs.doubts(), strict=True)
     for number, (o, at, doubt) in enumerate(rows, 1):
         head = (f"Observation {number} of {total}", "") if total > 1 else ()
-        parts.append((box(doubt, "refused") if doubt else "") + table(sighting_rows(o, at), head))
+        odd = box(inputs.names.told(doubt), "refused") if doubt else ""
+        parts.append(odd + table(named(sighting_rows(o, at), inputs.names), head))
     return "".join(parts)

@@ -3,21 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from html import escape
 from math import degrees, isfinite, radians
 from typing import Any
 
 import viser
 
 from algorithms.common.pose import Pose2, pose_error
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.methods.merge_result import MergeResult
 from app.drawing.palette import LIGHT, QUIET
 from app.model import verdict_text as words
 from app.model.objective_label import measure_of
-from app.page.panels.html_widgets import Action, box, on_press, table
+from app.page.panels.html_widgets import Action, box, on_press, put, table
+from app.report.result_rows import named
 
 HOW = (
     "Drag map 2. To turn it, drag the knob, or hold Shift or Alt. Arrow keys: one cell, with "
     "Shift 1 cm; [ and ]: 0.5°, with Shift 0.1°. The empty ground still pans."
+)
+MOVE, BEGIN_HINT = "Move map 2 by hand", "Drag and turn it over map 1, or mend what the method found."
+LABELS = "T: Δx (m)", "T: Δy (m)", "T: Δθ (°)"
+HINTS = (
+    "Right, in map 1.",
+    "Up, in map 1.",
+    "Counter-clockwise, about the knob's foot: robot 2, or the middle of map 2.",
 )
 SMALL = "margin:2px 12px 6px;font-size:12px;line-height:1.45;opacity:.85"
 FAR = 1e5  # metres
@@ -36,17 +46,17 @@ class TransformPanel:
     """Widgets; they know nothing of maps."""
 
     def __init__(self, gui: viser.GuiApi) -> None:
+        self._names = UNNAMED
         self._folder = gui.add_folder("By hand", order=62.0, visible=False)
         with self._folder:
-            hint = "Drag and turn it over map 1, or mend what the method found."
             icon = viser.Icon.HAND_MOVE
-            self._begin = gui.add_button("Move map 2 by hand", icon=icon, color=QUIET, hint=hint)
-            self._how = gui.add_html(f'<p style="{SMALL}">{HOW}</p>', visible=False)
+            self._begin = gui.add_button(MOVE, icon=icon, color=QUIET, hint=BEGIN_HINT)
+            self._how = gui.add_html(how_html(UNNAMED), visible=False)
             number = {"min": -FAR, "max": FAR, "visible": False}
-            self._x = gui.add_number("T: Δx (m)", 0.0, step=0.01, hint="Right, in map 1.", **number)
-            self._y = gui.add_number("T: Δy (m)", 0.0, step=0.01, hint="Up, in map 1.", **number)
-            hint = "Counter-clockwise, about the knob's foot: robot 2, or the middle of map 2."
-            self._turn = gui.add_number("T: Δθ (°)", 0.0, step=0.1, hint=hint, **number)
+            self._x, self._y, self._turn = (
+                gui.add_number(label, 0.0, step=step, hint=hint, **number)
+                for label, step, hint in zip(LABELS, (0.01, 0.01, 0.1), HINTS, strict=True)
+            )
             self._says = gui.add_html("", visible=False)
             self._refine, self._snap, self._take = (
                 gui.add_button(label, color=colour, visible=False, hint=hint)
@@ -62,13 +72,18 @@ class TransformPanel:
         for handle in (self._x, self._y, self._turn):
             handle.on_update(self._read)
 
-    def offer(self, possible: bool) -> None:
+    def offer(self, possible: bool, names: RobotNames = UNNAMED) -> None:
         """Whether there is anything to move."""
-        self._folder.visible = possible
+        self._folder.visible, told = possible, names.told
+        self._names = names
+        put(self._begin, label=told(MOVE), hint=told(BEGIN_HINT))
+        put(self._how, content=how_html(names))
+        for handle, hint in zip((self._x, self._y, self._turn), HINTS, strict=True):
+            put(handle, hint=told(hint))
 
     def open(self, yes: bool, refine: bool = False, prove: bool = False) -> None:
         """Show what moves map 2; which buttons depends on what the method can do."""
-        self._begin.label = "Leave it as it was" if yes else "Move map 2 by hand"
+        self._begin.label = "Leave it as it was" if yes else self._names.told(MOVE)
         for handle in (self._how, self._x, self._y, self._turn, self._says, self._take):
             handle.visible = yes
         self._refine.visible, self._snap.visible = yes and refine, yes and prove
@@ -89,7 +104,11 @@ class TransformPanel:
         self._typed(field, radians(value) if field == "theta" else value)
 
 
-def weighed_html(result: MergeResult, config: Any, method: Pose2 | None) -> str:
+def how_html(names: RobotNames) -> str:
+    return f'<p style="{SMALL}">{escape(names.told(HOW), quote=False)}</p>'
+
+
+def weighed_html(result: MergeResult, config: Any, method: Pose2 | None, names: RobotNames = UNNAMED) -> str:
     """HTML of what the walls say of a transform, and how far it is off the method's."""
     verdict = result.verdict
     rows: list[tuple[str, ...]] = []
@@ -107,4 +126,4 @@ def weighed_html(result: MergeResult, config: Any, method: Pose2 | None) -> str:
     if method is not None:
         apart, turn = pose_error(result.T_ref_mov, method, result.pivot)
         rows.append(("off the method's answer", f"{apart:.2f} m, {degrees(turn):.1f}°"))
-    return box(words.of_hand(result), words.mood(verdict)) + table(rows)
+    return box(names.told(words.of_hand(result)), words.mood(verdict)) + table(named(rows, names))

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from algorithms.common.errors import MapMergeError, SettingError
 from algorithms.common.pose import FloatArray
 from algorithms.files.fleet_archive import fleet_to_files
-from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, finding_of, pair_orders
+from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, finding_of
 from algorithms.maps.grid_map import GridMap
-from algorithms.observations.fleet import Fleet, FleetSighting
+from algorithms.observations.fleet import Fleet
 from algorithms.observations.pair_problem import PairProblem
 from app.model.fleet_state import FleetState
 from app.model.merge_inputs import MergeInputs
@@ -98,15 +98,16 @@ class FleetController:
             i = self._state.inputs
             if i.ref is None or i.mov is None:
                 return
-            seen = tuple(FleetSighting(*ROBOTS, one) for one in i.observations)
-            fleet = Fleet(dict(zip(ROBOTS, (i.ref, i.mov), strict=True)), seen)
-            opened = FleetState(fleet, i.name).open(PairOrder(*ROBOTS, tuple(range(len(seen)))))
+            fleet = Fleet(dict(zip(ROBOTS, (i.ref, i.mov), strict=True)))
+            opened = FleetState(fleet, i.name).open(PairOrder(*ROBOTS, ()))
             self._modes.leave()
             self._go(opened.closed(i.known, self._found_there(opened)), "make it a fleet")
 
     def _go(self, state: FleetState, label: str) -> None:
         """Show that fleet in place of whatever there is, as a new step."""
         with self._locks.action, self._locks.drawing:
+            if not self._claim(state):
+                return
             self._runs.thread.stop()
             if self._inputs.show(MergeInputs(name=state.name)):
                 self._modes.enter(self._mode)
@@ -114,15 +115,21 @@ class FleetController:
 
     def _take(self, state: FleetState, label: str) -> None:
         """That is the fleet from now on; whoever calls is drawing."""
-        try:
-            self._quota.claim(self, sum(grid.cells.size for grid in state.fleet.maps.values()))
-        except MapMergeError as error:
-            self._notices.report(error)
+        if not self._claim(state):
             return
         self._state.update(fleet=state)
         self._display.show(look=True)
         self._display.say_outcome()
         self._history.note(self._state.snapshot(), label)
+
+    def _claim(self, state: FleetState) -> bool:
+        """Whether there is room for its maps; where there is none, that is told."""
+        try:
+            self._quota.claim(self, sum(grid.cells.size for grid in state.fleet.maps.values()))
+        except MapMergeError as error:
+            self._notices.report(error)
+            return False
+        return True
 
     def _end(self) -> None:
         self._run.stop()
@@ -186,11 +193,11 @@ class FleetController:
         """A row of the lists was pressed."""
         with self._locks.action, self._locks.drawing:
             state = self._shown
-            rows = () if state is None else pair_orders(state.fleet) if what == "pair" else state.robots
+            rows = () if state is None else state.orders if what == "pair" else state.robots
             if state is None or not 0 <= n < len(rows):
                 return
             if what == "pair":
-                self._open(pair_orders(state.fleet)[n])
+                self._open(state.orders[n])
             elif what == "robot":
                 self._panel.choose(state.robots[n])
                 self._show_panel()
@@ -205,7 +212,7 @@ class FleetController:
         with self._locks.action:
             state, edge = self._shown, self._display.edge_at(place)
             if state is not None and edge is not None:
-                self._open(next(each for each in pair_orders(state.fleet) if edge.number in each.sightings))
+                self._open(next(each for each in state.orders if edge.number in each.sightings))
 
     # --- a pair in the page of two maps -----------------------------------------------------------------
 

@@ -12,7 +12,7 @@ from app.page.tab import Tab
 from app.report.fleet_report import summary
 
 READY = "A fleet of {} robots. Press Merge; or press a pair to open it."
-OPENED = "Of the fleet {}: robot 1 is {}, robot 2 {}. What is merged or taken here goes back into it."
+OPENED = "Of the fleet {}: {} and {}. What is merged or taken here goes back into it."
 NEAR = 0.02  # of the picture's size: so near to a line is a click on it
 
 
@@ -43,6 +43,7 @@ class FleetDisplay:
         anchor, box = layout.anchors[state.fleet.anchor], layout.boxes[0]
         self._messages.hud(
             case=state.name,
+            names=[state.fleet.anchor] * 2,  # whose frame all is told in
             frames=[[*anchor.tolist(), *box], None],
             measure=True,
             readout="",

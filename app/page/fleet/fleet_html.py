@@ -88,7 +88,7 @@ def _pair_told(state: FleetState, order: PairOrder) -> tuple[str, str]:
     if found is None:
         return "idle", "not merged yet"
     if not found.hypotheses:
-        return "refused", found.reason
+        return "refused", found.said
     first = verdict_text.likelihood(found.hypotheses[0].probability)
     if found.accepted:
         return "accepted", f"{first} right by itself"

@@ -8,7 +8,6 @@ from typing import Any
 import viser
 
 from algorithms.files.map_file import READABLE_SUFFIXES
-from algorithms.fleets.pair_hypotheses import pair_orders
 from app.drawing.palette import LIGHT, QUIET
 from app.model.fleet_state import FleetState
 from app.page.fleet.fleet_html import pairs_html, robots_html
@@ -90,7 +89,7 @@ class FleetPanel:
         put(self._name, value=self._chosen)
         put(self._anchor, disabled=self._chosen == state.fleet.anchor)
         put(self._remove, disabled=len(state.robots) <= LEAST)
-        put(self._pairs, content=pairs_html(state, pair_orders(state.fleet)))
+        put(self._pairs, content=pairs_html(state, state.orders))
         put(self._download, visible=whole and state.result is not None)
         for handle, default in ((self._observer, 0), (self._observed, 1)):
             value = handle.value if handle.value in state.robots else state.robots[default]

@@ -64,7 +64,7 @@ class FleetRunController:
             if stop.is_set():
                 raise StoppedError
 
-        yield from run_fleet(state.fleet, pairs)
+        yield from run_fleet(state.fleet, pairs, further=state.further)
 
     def part_done(self, step: FleetStep) -> None:
         """More is known of the fleet."""
@@ -94,4 +94,4 @@ class FleetRunController:
 
 def _progress(step: PairStep) -> str:
     order = step.finding.order
-    return f"Merging pairs: {step.done} of {step.total}. {order.ref} and {order.mov}: {step.finding.reason}"
+    return f"Merging pairs: {step.done} of {step.total}. {order.ref} and {order.mov}: {step.finding.said}"

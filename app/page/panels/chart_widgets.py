@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import viser
 from viser import uplot
 
 from algorithms.common.pose import FloatArray
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from app.drawing.palette import LIGHT, css
 from app.model.chart_data import Chart, Curve
 from app.page.panels.html_widgets import put
@@ -23,7 +25,7 @@ def add_chart(gui: viser.GuiApi, form: Chart, height: int) -> Any:
     turns = {"incrs": (30.0, 45.0, 90.0, 180.0)} if form.across == (-180.0, 180.0) else {}
     return gui.add_uplot(
         nothing(len(form.curves)),
-        (uplot.Series(label=form.axis), *map(_series, form.curves)),
+        _all_series(form, UNNAMED),
         title=form.title,
         scales=_scales(form),
         axes=(
@@ -36,10 +38,15 @@ def add_chart(gui: viser.GuiApi, form: Chart, height: int) -> Any:
     )
 
 
-def fill(handle: Any, chart: Chart) -> None:
+def fill(handle: Any, chart: Chart, names: RobotNames = UNNAMED) -> None:
     """Show the curves; the widget is built anew where its title or an axis changes."""
-    put(handle, scales=_scales(chart), title=chart.title)
+    put(handle, scales=_scales(chart), title=names.told(chart.title))
     handle.data = chart.columns
+
+
+def name_curves(handle: Any, form: Chart, names: RobotNames) -> None:
+    """Call the curves of two robots by their names."""
+    put(handle, series=_all_series(form, names))
 
 
 def nothing(curves: int) -> tuple[FloatArray, ...]:
@@ -53,6 +60,11 @@ def _scales(chart: Chart) -> dict[str, uplot.Scale]:
         "x": uplot.Scale(time=False) if across is None else uplot.Scale(time=False, range=across),
         "y": uplot.Scale(auto=True) if up is None else uplot.Scale(range=up),
     }
+
+
+def _all_series(chart: Chart, names: RobotNames) -> tuple[uplot.Series, ...]:
+    named = (replace(curve, name=names.told(curve.name)) for curve in chart.curves)
+    return uplot.Series(label=chart.axis), *map(_series, named)
 
 
 def _series(curve: Curve) -> uplot.Series:

@@ -7,6 +7,7 @@ from typing import Any
 
 import viser
 
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.steps import (
     CandidatesDetail,
@@ -21,7 +22,7 @@ from app.model import chart_data as charts
 from app.model import status_text as words
 from app.model.run_state import RunState
 from app.model.step_table import PROOF, RESULT, SHIFT, SWARM, TURN, row_of
-from app.page.panels.chart_widgets import add_chart, fill, nothing
+from app.page.panels.chart_widgets import add_chart, fill, name_curves, nothing
 from app.page.panels.html_widgets import box, put, table
 
 WIDTH = 316
@@ -57,6 +58,7 @@ class ChartsPanel:
         self._turned = turned
         self._panel = gui.add_panel()
         self._chosen = False
+        self.names = UNNAMED
         self._shown: dict[str, object] = {}  # by the name of a chart or text: what it was made from
         with self._panel.add_tab("Stages", icon=viser.Icon.CHART_LINE):
             self._pages = gui.add_button_group("", (TURN, SHIFT, SWARM, PROOF, RESULT))
@@ -105,6 +107,13 @@ class ChartsPanel:
         """Go along with the run from now on."""
         self._chosen = False
 
+    def name(self, names: RobotNames) -> None:
+        """These are the robots whose run is drawn."""
+        if names != self.names:
+            self.names = names
+            for name, (_, form, _) in CHARTS.items():
+                name_curves(self._charts[name], form, names)
+
     def _show_page(self) -> None:
         put(self._pages, value=self.page)
         empty = True
@@ -114,7 +123,7 @@ class ChartsPanel:
             empty = empty and not shown
         put(self._hint, visible=empty)
         if empty:
-            put(self._hint, content=box(HINTS[self.page], "plain"))
+            put(self._hint, content=box(self.names.told(HINTS[self.page]), "plain"))
 
     def tell(self, answer: str, turn: bool = False) -> None:
         """Put the answer, as HTML, on its page; ``turn``: and show that page."""
@@ -164,7 +173,9 @@ class ChartsPanel:
             self._candidates.content = table(rows, ("rank", "Δθ", "Δx (m)", "Δy (m)", "look", "swarm"))
         if proof is not None:
             if self._draw("proof", proof, lambda: charts.proof(proof.state, run.ceiling, measure)):
-                self._proof_says.content = box(words.proof_says(proof.state, measure), "plain")
+                self._proof_says.content = box(
+                    self.names.told(words.proof_says(proof.state, measure)), "plain"
+                )
                 head = ("on the raster", "Δθ", measure.unit or measure.name, "of the best")
                 rows = charts.proof_rows(proof.state, measure)
                 self._rivals.content = table(rows, head) if rows else ""
@@ -190,7 +201,7 @@ class ChartsPanel:
         """Draw a chart, unless it was made from the same; whether it was drawn."""
         new = self._new(name, source)
         if new:
-            fill(self._charts[name], chart())
+            fill(self._charts[name], chart(), self.names)
         return new
 
     def _new(self, name: str, source: object) -> bool:

@@ -16,7 +16,7 @@ from app.drawing.palette import LIGHT, QUIET
 from app.page.cancellable_task import CancellableTask, DownloadTask
 from app.page.panels.html_widgets import box, on_press
 from app.report.result_files import ACTED_UPON, ALONE, ARCHIVE, ResultFiles, zip_bytes
-from app.report.ros_transform import publish_command
+from app.report.ros_transform import frames_of, publish_command
 from app.system.cancellation import Check
 
 _NOTHING = box("After a merge it can be taken away from here: map, transform, report.", "plain")
@@ -100,7 +100,7 @@ def line_html(harvest: ResultFiles, faded: bool = False) -> str:
     """HTML of the line that publishes the transform, with a button that copies it: see measure_tool.js."""
     if not harvest.result.verdict.accepted:
         return box("Refused: there is no transform to publish.", "refused", faded=faded)
-    command = escape(publish_command(harvest.result))
+    command = escape(publish_command(harvest.result.T_ref_mov, *frames_of(harvest.inputs.names)))
     dim, off = (' style="opacity:.4"', " disabled") if faded else ("", "")
     return (
         f'<div class="mm-publish"{dim}><p>Publish the transform in ROS 2:</p><code>{command}</code>'

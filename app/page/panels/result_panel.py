@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from html import escape
 from typing import Any
 
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.contradictions import Contradictions
 from algorithms.verdict.decision import Verdict
@@ -30,35 +32,37 @@ def result_html(
     found  : where the maps contradict each other
     suggestions : HTML of what a refused merge suggests; never faded, since each can still be taken
     """
-    verdict = result.verdict
-    note = "Out of date: something was changed." if faded else words.remedy(result)
+    verdict, names = result.verdict, inputs.names
+    note = "Out of date: something was changed." if faded else names.told(words.remedy(result))
     return (
-        box(verdict.reason, words.mood(verdict), note, faded)
+        box(names.told(verdict.reason), words.mood(verdict), note, faded)
         + suggestions
-        + why_html(verdict, faded)
-        + (places_html(found, faded) if found is not None else "")
+        + why_html(verdict, faded, names)
+        + (places_html(found, faded, names) if found is not None else "")
         + table(numbers(result, inputs, config), faded=faded)
         + table(times(result), ("time per stage", "ms"), faded)
     )
 
 
-def why_html(verdict: Verdict, faded: bool = False) -> str:
+def why_html(verdict: Verdict, faded: bool = False, names: RobotNames = UNNAMED) -> str:
     """HTML of the verdict to be opened: a bar per quantity that it rests on."""
     dim = ";opacity:.4" if faded else ""
     return (
         f'<details style="margin:0 10px 8px;font-size:12.5px{dim}"><summary style="cursor:pointer">'
-        f"Why {words.likelihood(verdict.probability)}?</summary>{bars(verdict, LIGHT)}</details>"
+        f"Why {words.likelihood(verdict.probability)}?</summary>{bars(verdict, LIGHT, names)}</details>"
     )
 
 
-def places_html(found: Contradictions, faded: bool = False) -> str:
+def places_html(found: Contradictions, faded: bool = False, names: RobotNames = UNNAMED) -> str:
     """HTML of the list, most wall first; faded and without effect where it is out of date."""
     dim, off = (' style="opacity:.4"', " disabled") if faded else ("", "")
+    side = {whose(place): escape(names.told(whose(place)), quote=False) for place in found.places}
     rows = [
         f'<button type="button" data-mm-place="{n}" aria-pressed="false"{off} '
         f'title="Go there; press again for everything.">'
-        f"<i>{n}</i><span>{place.wall:.1f} m</span><small>{whose(place)}</small>"
+        f"<i>{n}</i><span>{place.wall:.1f} m</span><small>{side[whose(place)]}</small>"
         f"<small>x {signed(place.x)}, y {signed(place.y)}</small></button>"
         for n, place in enumerate(found.places[:MOST_PLACES], 1)
     ]
-    return f'<div class="mm-places"{dim}><p>{summary(found)}</p>{"".join(rows)}</div>'
+    said = escape(names.told(summary(found)), quote=False)
+    return f'<div class="mm-places"{dim}><p>{said}</p>{"".join(rows)}</div>'

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import viser
 
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.decision import Verdict, VerdictConfig, judge
 from algorithms.verdict.probability_model import (
@@ -25,7 +26,7 @@ from algorithms.verdict.ranking import WINDOW_EDGE, Weighed
 from app.drawing.palette import LIGHT, QUIET
 from app.drawing.svg.verdict_bars import bars
 from app.model import verdict_text as words
-from app.page.panels.html_widgets import box
+from app.page.panels.html_widgets import box, put
 
 HOW = (
     "What the verdict would be, were these numbers others. How the search ended is left aside: only the "
@@ -113,6 +114,7 @@ class WhatIfPanel:
     def __init__(self, gui: viser.GuiApi, rules: Callable[[], VerdictConfig]) -> None:
         self._rules = rules
         self._result: MergeResult | None = None
+        self._names = UNNAMED
         self._shown: dict[str, float] = {}  # of the result, as the sliders show it
         self._turn = RLock()  # sliders call back from many threads
         self._writer = 0  # a value that is written calls back at once
@@ -128,11 +130,14 @@ class WhatIfPanel:
             for handle in self._handles.values():
                 handle.on_update(lambda _: self._read())
             self._says = gui.add_html("")
-            gui.add_button("Reset what if", color=QUIET).on_click(lambda _: self.offer(self._result))
+            gui.add_button("Reset what if", color=QUIET).on_click(
+                lambda _: self.offer(self._result, self._names)
+            )
 
-    def offer(self, result: MergeResult | None) -> None:
+    def offer(self, result: MergeResult | None, names: RobotNames = UNNAMED) -> None:
         """Begin with the numbers of this merge; None where there is none."""
         with self._turn:
+            self._names = names
             self._result = result if result is not None and result.weighed else None
             self._folder.visible = self._result is not None
             if self._result is None:
@@ -151,6 +156,7 @@ class WhatIfPanel:
             while most < value and name not in (DEVIATION, OTHER):
                 most *= 2
             handle.max = most
+            put(handle, hint=self._names.told(dial.hint))
             self._shown[name] = handle.value = round(min(value, most) / dial.step) * dial.step
 
     def _read(self) -> None:
@@ -168,6 +174,6 @@ class WhatIfPanel:
         }
         verdict = supposed(result, self._rules(), changed)
         self._says.content = (
-            box(verdict.reason, words.mood(verdict))
-            + f'<div style="margin:0 10px 8px">{bars(verdict, LIGHT)}</div>'
+            box(self._names.told(verdict.reason), words.mood(verdict))
+            + f'<div style="margin:0 10px 8px">{bars(verdict, LIGHT, self._names)}</div>'
         )

@@ -194,11 +194,12 @@ class ComparisonController:
         return replace(
             card,
             state="done",
-            outcome=outcome_of(other.trial),
+            outcome=outcome_of(other.trial, self._pair.names),
             picture=self._picture(other),
             shown=other is self._state.other,
             old="" if current else "out of date",
             note="" if default else "your settings",
+            names=self._pair.names,
         )
 
     def _picture(self, other: OtherResult) -> str:

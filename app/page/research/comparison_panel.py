@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import viser
 
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.methods.registry import Family
 from app.drawing.palette import LIGHT, QUIET, STOP
 from app.evaluation.compared_methods import COMPARED
@@ -40,6 +41,7 @@ class Card:
     shown   : it is what lies over map 1 now
     old     : what has changed since, in two words; "" where nothing has
     note    : added to the numbers
+    names   : of the robots
     """
 
     chosen: bool
@@ -49,6 +51,7 @@ class Card:
     shown: bool = False
     old: str = ""
     note: str = ""
+    names: RobotNames = UNNAMED
 
 
 class ComparePanel:
@@ -120,7 +123,8 @@ def _body(name: str, card: Card) -> str:
     old, verdict = " data-old" if card.old else "", escape(summary.verdict)
     if not card.picture:
         return f'<div class="mm-card"{old} title="{verdict}"><i class="mm-thumb">–</i>{words}</div>'
-    back = "Press again to go back to your own." if card.shown else "Press to lay it over map 1."
+    over = card.names.told("Press to lay it over map 1.")
+    back = escape("Press again to go back to your own." if card.shown else over)
     pressed = str(card.shown).lower()
     return (
         f'<button type="button" class="mm-card" data-mm-show="{name}" aria-pressed="{pressed}"{old} '

@@ -7,6 +7,7 @@ from math import degrees
 from typing import Any, Literal
 
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import fuse
 from algorithms.methods.merge_result import Answer
@@ -35,15 +36,17 @@ class RunSummary:
     mood: Mood
 
 
-def outcome_of(trial: MethodRun) -> RunSummary:
+def outcome_of(trial: MethodRun, names: RobotNames = UNNAMED) -> RunSummary:
+    """In a few words; ``names``: of the robots, for the verdict."""
+    reason = names.told(trial.reason)
     if trial.failed:
-        return RunSummary("Could not be run.", sentence(trial.reason), "", "plain")
+        return RunSummary("Could not be run.", sentence(reason), "", "plain")
     seconds = f"{trial.seconds:.2f} s"
     if trial.T_ref_mov is None:
-        return RunSummary("No transform found.", sentence(trial.reason), seconds, "plain")
+        return RunSummary("No transform found.", sentence(reason), seconds, "plain")
     index = "" if trial.index is None else f"eq. (23) {trial.index:.1%} · "
     judged: dict[bool | None, Mood] = {True: "accepted", False: "refused", None: verdict_mood(trial)}
-    return RunSummary(_judgement(trial), trial.reason, f"{index}{seconds}", judged[trial.right])
+    return RunSummary(_judgement(trial), reason, f"{index}{seconds}", judged[trial.right])
 
 
 def _judgement(trial: MethodRun) -> str:
@@ -105,9 +108,9 @@ class OtherResult:
         says = f" {summary.says.rstrip('.')}." if self.trial.right is not None else ""
         return f"{self.title}:{says} {summary.verdict}"
 
-    def html(self) -> str:
+    def html(self, names: RobotNames = UNNAMED) -> str:
         """HTML of the same for the dock."""
-        summary, T = outcome_of(self.trial), self.pose
+        summary, T = outcome_of(self.trial, names), self.pose
         rows = [
             ("T: Δx", f"{T.x:.3f} m"),
             ("T: Δy", f"{T.y:.3f} m"),

@@ -77,7 +77,7 @@ class OtherResultController:
         with display.together():
             views.run.show(run, other.config, camera=self._panels.run.follow, live=False)
             views.comparison.offer(contradictions, state.palette)
-            self._panels.charts.tell(other.html())
+            self._panels.charts.tell(other.html(state.inputs.names))
             self._panels.export.outdate(NOT_YOURS)
             mood = "refused" if other.trial.right is False else verdict_mood(other.trial)
             display.messages.hud(state=other.sentence(), mood=mood, progress=None, guest=other.title)

@@ -95,7 +95,7 @@ def change(before: PageSnapshot, after: PageSnapshot) -> tuple[str, Hashable]:
     if before.seed != after.seed:
         return f"seed {before.seed} → {after.seed}", "seed"
     if before.hand != after.hand:
-        return ("map 2 by hand" if after.hand is not None else "not by hand"), "hand"
+        return (new.names.told("map 2 by hand") if after.hand is not None else "not by hand"), "hand"
     if before.other is not after.other:
         return (f"look at {after.other.title}" if after.other is not None else "back to one's own"), None
     return "", None

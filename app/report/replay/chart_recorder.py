@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from algorithms.common.pose import FloatArray
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import (
     AnswersDetail,
@@ -36,8 +37,18 @@ FINEST = 360  # points of a curve, at most; of a finer one the highest of each g
 Recorded = dict[str, Any]
 
 
-def curves(run: RunState) -> list[Recorded]:
+def curves(run: RunState, names: RobotNames = UNNAMED) -> list[Recorded]:
     """The charts for what the run has come to, and a line of words below them; [] where there is none."""
+    return [_told(chart, names) for chart in _curves(run)]
+
+
+def _told(chart: Recorded, names: RobotNames) -> Recorded:
+    series = [one | {"t": names.told(one["t"])} for one in chart["series"]]
+    says = {"says": names.told(chart["says"])} if "says" in chart else {}
+    return chart | says | {"title": names.told(chart["title"]), "series": series}
+
+
+def _curves(run: RunState) -> list[Recorded]:
     detail = run.last.detail if run.last else None
     if isinstance(detail, (ObservationDetail, AugmentDetail, MergeResult)):
         return []  # numbers are shown

@@ -31,7 +31,7 @@ from app.model.status_text import typeset
 from app.model.view_modes import MAP
 from app.report.replay.chart_recorder import curves
 from app.report.replay.image_recorder import PictureScene
-from app.report.result_rows import STAGES, numbers, prior_rows, sighting_rows
+from app.report.result_rows import STAGES, named, numbers, prior_rows, sighting_rows
 
 BEFORE = 1.2  # seconds that the maps lie side by side
 AFTER = 4.0  # seconds that the verdict stays
@@ -97,6 +97,7 @@ def record(steps: Iterable[Step], inputs: MergeInputs, config: Any) -> Recording
     """
     scene = PictureScene()
     recording = Recorder(scene)
+    recording.names, told = inputs.names, inputs.names.told
     maps = MapView(SimpleNamespace(scene=scene), recording, Size(PICTURE, PICTURE))  # type: ignore[arg-type]
     maps.load(inputs, lay_out(inputs.ref, inputs.mov, inputs.at, ASPECT), LIGHT)
     view = RunView(maps, recording)
@@ -125,21 +126,21 @@ def record(steps: Iterable[Step], inputs: MergeInputs, config: Any) -> Recording
     rows = _typeset(numbers(result, inputs, config))
     mood = verdict_text.mood(result.verdict)
     recording.hud(mood=mood, state=result.verdict.reason)
-    recording.extra(table={"rows": rows, "says": verdict_text.remedy(result), "mood": mood})
+    recording.extra(table={"rows": rows, "says": told(verdict_text.remedy(result)), "mood": mood})
     recording.flush()
     return {
         "frames": recording.frames,
         "pictures": scene.pictures,
         "marks": marks,
         "length": round(recording.time + AFTER, 3),
-        "verdict": result.verdict.reason,
+        "verdict": told(result.verdict.reason),
     }
 
 
 def sizes(inputs: MergeInputs) -> list[list[str]]:
     """How large the maps are, a row each."""
     return [
-        [f"map {number}", f"{grid.width} × {grid.height} cells of {grid.resolution:g} m"]
+        [inputs.names.told(f"map {number}"), f"{grid.width} × {grid.height} cells of {grid.resolution:g} m"]
         for number, grid in enumerate(inputs.grids, 1)
     ]
 
@@ -152,11 +153,12 @@ def beginning(inputs: MergeInputs) -> dict[str, Any]:
 def observed(inputs: MergeInputs) -> dict[str, Any]:
     """The numbers of the first sighting; without one of what else is known."""
     if not inputs.observations:
-        rows = [row for prior in inputs.priors for row in prior_rows(prior)]
+        rows = [row for prior in inputs.priors for row in named(prior_rows(prior), inputs.names)]
         return {"title": "What is known", "rows": _typeset(rows or [("of how the maps lie", "nothing")])}
     o, at = inputs.observations[0], inputs.encounters[0]
     of = f", the first of {len(inputs.observations)}" if len(inputs.observations) > 1 else ""
-    return {"title": f"What robot 1 saw{of}", "rows": _typeset(sighting_rows(o, at))}
+    title = inputs.names.told(f"What robot 1 saw{of}")
+    return {"title": title, "rows": _typeset(named(sighting_rows(o, at), inputs.names))}
 
 
 def _typeset(rows: Iterable[tuple[str, ...]]) -> list[list[str]]:
@@ -170,7 +172,7 @@ def _draw(run: RunState, recording: Recorder, view: RunView, inputs: MergeInputs
     view.show(run, config, camera=True, live=True)
     recording.hud(state=words.sentence(run), mood="running", legend=legend(LIGHT, MAP, run))
     seen = isinstance(detail, (ObservationDetail, AugmentDetail))
-    recording.extra(curves=curves(run), table=observed(inputs) if seen else None)
+    recording.extra(curves=curves(run, inputs.names), table=observed(inputs) if seen else None)
     recording.flush()
 
 

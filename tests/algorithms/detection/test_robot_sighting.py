@@ -186,6 +186,7 @@ def test_an_observation_holds_what_was_measured_and_where_the_robots_stood():
     at = place(2.5, 0.1)
     seen = sight([box_of(at)], scan(at), CAMERA, BODY).position
     made = observation_of(seen, Pose2(1.0, 2.0, 0.5), np.array([3.0, 4.0]), 0.7)
-    assert (made.range, made.bearing) == (seen.range, seen.bearing)
-    assert (made.sigma_range, made.sigma_bearing) == (seen.sigma_range, seen.sigma_bearing)
+    numbers = made.range, made.bearing, made.sigma_range, made.sigma_bearing
+    measured = seen.range, seen.bearing, seen.sigma_range, seen.sigma_bearing
+    assert numbers == pytest.approx(measured, abs=1e-6)
     assert (made.observer, made.observed_x, made.observed_heading) == (Pose2(1.0, 2.0, 0.5), 3.0, 0.7)

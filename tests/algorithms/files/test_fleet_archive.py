@@ -8,10 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from repository import ROOT
 
-from algorithms.common.errors import InputFileError, MapMergeError
+from algorithms.common.errors import InputFileError, MapMergeError, TooLargeError
 from algorithms.files import fleet_archive
 from algorithms.files.fleet_archive import fleet_from_zip, fleet_to_files
-from algorithms.files.fleet_file import read_fleet
+from algorithms.files.fleet_file import FLEET_FILE, read_fleet
+from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import Fleet
 from app.report.result_files import zip_bytes
 
@@ -28,7 +29,7 @@ def files(fleet: Fleet) -> dict[str, bytes]:
 
 def same(a: Fleet, b: Fleet) -> bool:
     maps = all(np.array_equal(a.maps[name].cells, b.maps[name].cells) for name in a.maps)
-    told = a.sightings == b.sightings and a.known == b.known and a.anchor == b.anchor
+    told = a.sightings == b.sightings and a.priors == b.priors and a.anchor == b.anchor
     return list(a.maps) == list(b.maps) and maps and told
 
 
@@ -56,6 +57,17 @@ def test_what_would_unpack_to_too_much_is_refused_before_it_is_unpacked(files, m
     monkeypatch.setattr(fleet_archive, "MOST_UNPACKED", 10_000)
     with pytest.raises(InputFileError, match="give at most"):
         fleet_from_zip("mine.zip", zip_bytes(files))
+
+
+def test_one_map_for_many_robots_is_refused_before_it_fills_the_memory(monkeypatch):
+    grid = GridMap(np.zeros((50, 50), dtype=np.int8), 0.1)
+    files = fleet_to_files(Fleet({"r1": grid, "r2": grid}))
+    robots = ", ".join(f"r{number}: {{map: ./robot_1.yaml}}" for number in range(50))
+    content = zip_bytes({**files, FLEET_FILE: f"robots: {{{robots}}}".encode()})
+    assert len(fleet_from_zip("mine.zip", content).maps) == 50
+    monkeypatch.setattr(fleet_archive, "MOST_CELLS", 49 * 2500)
+    with pytest.raises(TooLargeError, match=r"mine\.zip: its maps have more than"):
+        fleet_from_zip("mine.zip", content)
 
 
 @settings(max_examples=60, deadline=None)

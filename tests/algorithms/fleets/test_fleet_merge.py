@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from repository import ROOT
 
 from algorithms.common.errors import SettingError
@@ -15,12 +17,13 @@ from algorithms.files.case_folder import Case
 from algorithms.files.fleet_file import read_fleet
 from algorithms.files.fleet_truth_file import read_fleet_truth
 from algorithms.fleets.fleet_merge import FleetResult, PairStep, merge_fleet, poses_so_far, run_fleet
-from algorithms.fleets.pair_hypotheses import find_pair, pair_orders
+from algorithms.fleets.pair_hypotheses import find_pair, known_of, pair_orders
 from algorithms.maps.grid_map import GridMap
 from algorithms.methods.registry import merge
-from algorithms.observations.fleet import Fleet, FleetSighting
+from algorithms.observations.fleet import Fleet, FleetPrior, FleetSighting
 from algorithms.observations.observation import Observation
-from algorithms.observations.priors import InitialPose
+from algorithms.observations.pair_problem import Known
+from algorithms.observations.priors import InitialPose, NearPlace, TurnPrior
 
 MOVED = Pose2(31.0, -7.0, 1.9)
 
@@ -117,10 +120,74 @@ def test_a_robot_that_nobody_saw_is_looked_for_without_a_sighting(three, merged)
 def test_a_robot_whose_pose_is_roughly_known_needs_no_sighting(three, merged):
     T = merged.placed["cid"]
     rough = InitialPose(Pose2(T.x + 0.5, T.y - 0.5, T.theta + 0.1))
-    fleet = replace(three, sightings=three.sightings[:1], known={"cid": rough})
+    fleet = replace(three, sightings=three.sightings[:1], priors=(FleetPrior("ann", "cid", rough),))
     assert [(order.mov, order.sightings) for order in pair_orders(fleet)] == [("bob", (0,)), ("cid", ())]
     result = merge_fleet(fleet)
     assert result.placed["cid"].array() == pytest.approx(T.array(), abs=0.1)
+
+
+def rough_knowledge(small_case: Case) -> dict[str, tuple[Known, ...]]:
+    """What may be known of the two maps, by what it is called."""
+    T, (o,) = small_case.truth.T_ref_mov, small_case.observations
+    turn = TurnPrior(T.theta + 0.05, 0.1)
+    x, y = T.apply(np.array([o.observed_x, o.observed_y])).tolist()
+    place = NearPlace(x + 0.3, y - 0.2, o.observed_x, o.observed_y, 1.0)
+    pose = InitialPose(Pose2(T.x + 0.2, T.y - 0.2, T.theta + 0.05), 0.5, 0.5, 0.2)
+    return {"turn": (turn,), "place": (place,), "pose": (pose,), "all": (o, pose, turn, place)}
+
+
+@pytest.mark.parametrize("what", ["turn", "place", "pose", "all"])
+def test_two_robots_of_which_something_else_is_known_merge_as_a_pair_to_the_last_digit(small_case, what):
+    known = rough_knowledge(small_case)[what]
+    seen = tuple(FleetSighting("a", "b", one) for one in known if isinstance(one, Observation))
+    rough = tuple(FleetPrior("a", "b", one) for one in known if not isinstance(one, Observation))
+    fleet = Fleet({"a": small_case.ref, "b": small_case.mov}, seen, rough)
+    alone = merge(small_case.ref, small_case.mov, known)
+    result = merge_fleet(fleet)
+    assert result.placed["b"] == alone.T_ref_mov
+    assert np.array_equal(result.islands[0].fusion.merged.cells, alone.fusion.merged.cells)
+    assert result.islands[0].probability["b"] == pytest.approx(alone.verdict.probability, abs=1e-3)
+
+
+@given(st.data())
+def test_names_and_order_change_nothing_of_what_each_pair_is_merged_from(small_case, data):
+    (o,) = small_case.observations
+    names, grid = ["ann", "bob", "cid", "dan"], small_case.ref
+    pair = st.permutations(names).map(lambda order: tuple(order[:2]))
+    priors = tuple(
+        FleetPrior(*data.draw(pair), TurnPrior(0.1 * k)) for k in range(data.draw(st.integers(0, 5)))
+    )
+    seen = tuple(FleetSighting(*data.draw(pair), o) for _ in range(data.draw(st.integers(0, 3))))
+    fleet = Fleet(dict.fromkeys(names, grid), seen, priors)
+    called = dict(zip(names, data.draw(st.permutations(["a", "b", "c", "d"])), strict=True))
+    other = Fleet(
+        {called[name]: grid for name in data.draw(st.permutations(names))},
+        tuple(
+            FleetSighting(called[each.observer], called[each.observed], o)
+            for each in data.draw(st.permutations(seen))
+        ),
+        tuple(
+            FleetPrior(called[each.ref], called[each.mov], each.prior)
+            for each in data.draw(st.permutations(priors))
+        ),
+    )
+
+    def told(fleet: Fleet, called: Mapping[str, str]) -> set[tuple[str, str, frozenset[Known]]]:
+        orders = pair_orders(fleet)
+        return {(called[each.ref], called[each.mov], frozenset(known_of(fleet, each))) for each in orders}
+
+    itself = {name: name for name in other.maps}
+    assert told(fleet, called) == told(other, itself)
+    assert len(pair_orders(fleet)) == len(pair_orders(other))
+
+
+def test_the_order_of_what_is_known_moves_nobody(three, merged, small_case):
+    pose, turn, place = rough_knowledge(small_case)["all"][1:]
+    rough = tuple(FleetPrior("ann", "bob", one) for one in (pose, turn, place))
+    one, other = (merge_fleet(replace(three, priors=order)) for order in (rough, rough[::-1]))
+    for name, T in one.placed.items():
+        assert other.placed[name].array() == pytest.approx(T.array(), abs=1e-9)
+        assert near(T, merged.placed[name], np.zeros(2))
 
 
 def test_sightings_that_cannot_be_true_together_are_merged_one_by_one(three):
@@ -153,6 +220,22 @@ def test_each_pair_is_told_as_it_is_done(three):
         (
             lambda fleet: replace(fleet, sightings=(replace(fleet.sightings[0], observed="ann"),)),
             "cannot have seen itself",
+        ),
+        (
+            lambda fleet: replace(fleet, priors=(FleetPrior("ann", "eve", TurnPrior(0.0)),)),
+            "known 1 names 'eve'",
+        ),
+        (
+            lambda fleet: replace(fleet, priors=(FleetPrior("ann", "ann", TurnPrior(0.0)),)),
+            "known 1: ann is named twice",
+        ),
+        (
+            lambda fleet: replace(fleet, priors=(FleetPrior("ann", "bob", TurnPrior(0.0)),) * 201),
+            "at most 200 things",
+        ),
+        (
+            lambda fleet: replace(fleet, maps={**fleet.maps, "a/b": fleet.maps["ann"]}),
+            "'a/b' is no name for a robot",
         ),
     ],
 )

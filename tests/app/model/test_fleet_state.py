@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,15 +12,29 @@ from hypothesis import strategies as st
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import RobotNames
 from algorithms.files.case_folder import Case
-from algorithms.fleets.fleet_merge import merge_fleet
+from algorithms.fleets.fleet_merge import merge_fleet, run_fleet
 from algorithms.fleets.pair_hypotheses import Hypothesis, PairFinding, PairOrder, pair_orders
-from algorithms.observations.fleet import NAME_RULE, Fleet, FleetSighting, is_name
-from algorithms.observations.priors import InitialPose, TurnPrior
+from algorithms.observations.fleet import LONGEST_NAME, NAME_RULE, Fleet, FleetPrior, FleetSighting, is_name
+from algorithms.observations.observation import Observation
+from algorithms.observations.pair_problem import Known
+from algorithms.observations.priors import InitialPose, NearPlace, Prior, TurnPrior
 from app.model.fleet_state import ALONE, LEFT_OUT, PLACED, USED, WAITING, FleetState
 
 SOMEWHERE = Pose2(1.0, 2.0, 0.3)
 ANN_BOB = PairOrder("ann", "bob", (0,))
+PLACE = st.floats(-5.0, 5.0)
+KNOWN = st.one_of(
+    st.builds(Observation, st.builds(Pose2, PLACE, PLACE), PLACE, PLACE, st.just(2.0), st.just(0.0)),
+    st.builds(TurnPrior, st.floats(-3.0, 3.0)),
+    st.builds(NearPlace, PLACE, PLACE, PLACE, PLACE),
+    st.builds(InitialPose, st.builds(Pose2, PLACE, PLACE)),
+)
+
+
+def rough_of(known: Sequence[Known]) -> tuple[Prior, ...]:
+    return tuple(one for one in known if not isinstance(one, Observation))
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +57,7 @@ def names(state: FleetState) -> tuple[tuple[str, ...], list[tuple[str, str]], st
 
 @given(st.sampled_from(["ann", "bob", "cid"]), st.text(min_size=1, max_size=70))
 def test_a_robot_is_called_by_any_name_that_nobody_has_and_by_its_old_one_again(state, old, new):
-    possible = is_name(new) and new == new.strip() and new not in state.robots
+    possible = is_name(new) and new not in state.robots
     if not possible:
         with pytest.raises(SettingError):
             state.renamed(old, new)
@@ -84,32 +99,28 @@ def test_a_robot_of_a_name_that_is_taken_gets_a_number(state):
     assert more.robots == ("ann", "bob", "cid", "cid_2", "cid_3", "dan")
 
 
-def test_another_anchor_knows_the_old_one_where_that_knew_it(state):
-    known = {"bob": InitialPose(Pose2(3.0, 1.0, 0.5), about_x=7.0, about_y=-2.0)}
-    rough = state.with_fleet(replace(state.fleet, known=known))
+@given(st.text(max_size=90))
+def test_a_file_may_be_called_anything_and_its_robot_has_a_name(state, name):
+    grid = state.fleet.maps["cid"]
+    *_, one, other = state.with_robot(name, grid).with_robot(name, grid).robots
+    assert is_name(one)
+    assert is_name(other)
+    assert one == name or not (is_name(name) and len(name) <= LONGEST_NAME - 3) or name in state.robots
+
+
+def test_another_anchor_leaves_what_is_known_as_it_is(state):
+    rough = state.with_fleet(replace(state.fleet, priors=(FleetPrior("ann", "cid", TurnPrior(0.2)),)))
     turned = rough.anchored("bob")
     assert turned.fleet.anchor == "bob"
-    back = turned.anchored("ann").fleet.known["bob"]
-    assert np.allclose(back.pose.array(), known["bob"].pose.array())
-    assert np.allclose(back.about, known["bob"].about)
-
-
-def test_an_anchor_that_would_make_a_known_pose_mean_nothing_is_refused_until_all_is_merged(state):
-    known = {"cid": InitialPose(Pose2(3.0, 1.0, 0.5))}
-    rough = state.with_fleet(replace(state.fleet, known=known))
-    with pytest.raises(SettingError, match="cid: known in the frame of ann; press Merge"):
-        rough.anchored("bob")
-    merged = replace(rough, result=merge_fleet(state.fleet))
-    T = merged.result.placed["bob"]
-    moved = merged.anchored("bob").fleet.known["cid"].pose
-    assert np.allclose((T @ moved).array(), known["cid"].pose.array())
+    assert turned.fleet.priors == rough.fleet.priors
+    assert pair_orders(turned.fleet) == pair_orders(rough.fleet)
 
 
 def test_a_pair_that_is_opened_and_closed_as_it_was_leaves_the_fleet_as_it_was(state):
     opened = state.with_finding(found(ANN_BOB)).open(ANN_BOB)
     pair = opened.pair(ANN_BOB)
     assert (pair.ref, pair.mov) == (state.fleet.maps["ann"], state.fleet.maps["bob"])
-    assert pair.robots == ("ann", "bob")
+    assert pair.names == RobotNames("ann", "bob")
     closed = opened.closed(pair.known, None)
     assert closed.fleet is state.fleet
     assert closed.finding(ANN_BOB) is not None
@@ -118,14 +129,62 @@ def test_a_pair_that_is_opened_and_closed_as_it_was_leaves_the_fleet_as_it_was(s
 def test_what_is_known_of_a_pair_that_is_closed_goes_into_the_fleet(state):
     (seen,) = state.fleet.sightings
     moved = replace(seen.observation, range=seen.observation.range + 0.4)
-    rough = InitialPose(Pose2(1.0, 0.0, 0.2))
-    closed = state.open(ANN_BOB).closed((moved, rough, TurnPrior(0.2)), found(ANN_BOB))
+    rough = InitialPose(Pose2(1.0, 0.0, 0.2)), TurnPrior(0.2), NearPlace(1.0, 2.0, 3.0, 4.0)
+    closed = state.open(ANN_BOB).closed((moved, *rough), found(ANN_BOB))
     assert [each.observation for each in closed.fleet.sightings] == [moved]
-    assert closed.fleet.known == {"bob": rough}
+    assert closed.fleet.priors == tuple(FleetPrior("ann", "bob", each) for each in rough)
     (order,) = pair_orders(closed.fleet)
     assert closed.finding(order).reason == "they agree"
     assert closed.opened is None
+    assert closed.pair(order).known == (moved, *rough)
     assert state.open(ANN_BOB).closed((), None).fleet.sightings == ()
+    assert closed.open(order).closed((moved,), None).fleet.priors == ()
+
+
+@given(st.lists(KNOWN, max_size=4))
+def test_what_is_known_of_two_robots_outlives_the_coming_and_going_of_others(small_case, known):
+    known = (*(one for one in known if isinstance(one, Observation)), *rough_of(known))
+    order = PairOrder("ann", "bob", ())
+    two = FleetState(Fleet({"ann": small_case.ref, "bob": small_case.mov}))
+    told = two.open(order).closed(known, None)
+    left = told.with_robot("cid", small_case.ref).anchored("cid").renamed("ann", "eve").without_robot("cid")
+    assert left.fleet.anchor == "eve"
+    kept = {each for one in pair_orders(left.fleet) for each in left.pair(one).known}
+    assert kept == set(known)
+    assert {(one.ref, one.mov) for one in pair_orders(left.fleet)} <= {("eve", "bob")}
+    assert left.renamed("eve", "ann").fleet.priors == told.fleet.priors
+
+
+def test_what_was_found_of_a_pair_of_which_nothing_is_known_counts_until_something_is(state):
+    order = PairOrder("ann", "cid", ())
+    told = state.open(order).closed((), found(order))
+    assert told.orders == [ANN_BOB, order]
+    assert [each.order for each in told.further] == [order]
+    assert {"ann", "cid"} in [set(group) for group in told.groups()]
+    renamed = told.renamed("cid", "dan")
+    assert [each.order for each in renamed.further] == [PairOrder("ann", "dan", ())]
+    assert told.without_robot("cid").further == ()
+    known = told.open(PairOrder("cid", "ann", ())).closed((TurnPrior(0.0),), None)
+    assert known.further == ()
+    assert known.orders == [ANN_BOB, PairOrder("cid", "ann", ())]
+    assert state.open(order).closed((), replace(found(order), accepted=False)).further == ()
+
+
+def test_two_maps_that_a_person_laid_on_each_other_stay_so_in_a_fleet(state):
+    order = PairOrder("ann", "cid", ())
+    sure = replace(found(order).hypotheses[0], T_ref_mov=Pose2(), weight=9.0)
+    laid = state.open(order).closed((), replace(found(order), hypotheses=(sure,)))
+    *_, result = run_fleet(laid.fleet, further=laid.further)
+    assert result.placed["cid"].array() == pytest.approx([0.0, 0.0, 0.0])
+
+
+def test_a_pair_is_called_after_what_is_known_of_it(state):
+    assert state.pair(ANN_BOB).name == "ann saw bob"
+    turned = state.open(PairOrder("cid", "bob", ())).closed((TurnPrior(0.1),), None)
+    (order,) = (each for each in pair_orders(turned.fleet) if each.ref == "cid")
+    assert turned.pair(order).name == "cid and bob"
+    assert turned.pair(order).choice == "turn"
+    assert turned.without_robot("bob").fleet.priors == ()
 
 
 def test_a_new_sighting_of_a_pair_stands_beside_the_others(state):

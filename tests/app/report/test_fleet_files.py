@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import replace
+import shlex
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import yaml
+from hypothesis import given
+from hypothesis import strategies as st
 
 from algorithms.common.pose import Pose2
 from algorithms.files.atomic_write import write_files
 from algorithms.files.map_file import map_to_bytes, read_map
 from algorithms.files.observation_file import known_to_bytes
+from algorithms.maps.grid_map import GridMap
+from algorithms.observations.fleet import is_name
 from app.cli.main import main
+from app.report.fleet_files import transforms_yaml
+from app.report.ros_transform import publish_command
 
 ALL = {"merged.pgm", "merged.yaml", "transforms.yaml", "graph.g2o", "report.html", "report.json"}
 
@@ -117,8 +124,75 @@ def test_the_fleets_own_folder_is_not_written_to(folder, capsys):
     assert {path.name for path in folder.iterdir()} == before
 
 
-def test_a_pose_is_published_as_it_is(left):
-    from app.report.fleet_files import publish_command
-
-    said = publish_command("ann", "bob", replace(Pose2(1.5, -2.0, 0.25)))
+def test_a_pose_is_published_as_it_is():
+    said = publish_command(Pose2(1.5, -2.0, 0.25), "ann/map", "bob/map")
     assert "--x 1.500000 --y -2.000000 --yaw 0.250000 --frame-id ann/map" in said
+
+
+ODD = [
+    "null",
+    "1e3",
+    "no",
+    "2024-01-01",
+    "r 2",
+    "a: b",
+    "#",
+    "- a",
+    "'",
+    '"',
+    "\\",
+    "$(reboot)",
+    "a; b",
+    "<b>",
+]
+NAMES = st.lists(
+    st.one_of(st.sampled_from(ODD), st.text(max_size=20).filter(is_name)), min_size=2, max_size=3, unique=True
+)
+
+
+@given(NAMES)
+def test_whatever_robots_are_called_their_transforms_read_back_and_a_shell_runs_one_command(names):
+    island = SimpleNamespace(root=names[0], poses={name: Pose2(1.0, 2.0, 0.5) for name in names})
+    told = yaml.safe_load(transforms_yaml(SimpleNamespace(islands=(island,))))
+    assert told["merged"]["root"] == names[0]
+    assert list(told["merged"]["robots"]) == names
+    for name, robot in told["merged"]["robots"].items():
+        words = shlex.split(robot["publish"])
+        assert len(words) == 14
+        assert words[-3::2] == [f"{names[0]}/map", f"{name}/map"]
+
+
+def test_a_warning_names_the_robot_whose_map_is_odd_and_who_is_alone_is_said_to_be(tmp_path, capsys):
+    empty = GridMap(np.full((40, 50), -1, dtype=np.int8), 0.05)
+    files = {file: data for name in "ab" for file, data in map_to_bytes(empty, name).items()}
+    write_files({tmp_path / name: data for name, data in files.items()})
+    (tmp_path / "fleet.yaml").write_text("robots: {Ann: {map: a.yaml}, Bob: {map: b.yaml}}")
+    assert main(["fleet", str(tmp_path), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 1
+    told = capsys.readouterr()
+    assert "warning: Bob's map (b): no cell of it is known" in told.err
+    assert re.search(r"Bob +alone .* –\n", told.out)
+
+
+def test_a_sighting_that_cannot_be_says_why_with_the_robots_names(folder, tmp_path, capsys):
+    plain = yaml.safe_load((folder / "fleet.yaml").read_text())
+    plain["sightings"][0]["observer"]["pose"][0] = -30_000.0
+    for robot in plain["robots"].values():
+        robot["map"] = str(folder / robot["map"])
+    (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(plain, sort_keys=False))
+    main(["fleet", str(tmp_path), "--out", str(tmp_path / "out"), "--jobs", "1"])
+    told = capsys.readouterr().out
+    assert "sighting 1 is left out: the observation puts ann at (-30000, " in told
+    assert "robot 1" not in told
+    assert "robot 2" not in told
+
+
+def test_what_is_known_and_left_out_says_why(folder, tmp_path, capsys):
+    plain = yaml.safe_load((folder / "fleet.yaml").read_text())
+    plain["sightings"] = []
+    plain["known"] = [{"of": "dan", "in": "ann", "near": {"in": [0.0, 0.0], "of": [1e6, 0.0]}}]
+    for robot in plain["robots"].values():
+        robot["map"] = str(folder / robot["map"])
+    (tmp_path / "fleet.yaml").write_text(yaml.safe_dump(plain, sort_keys=False))
+    main(["fleet", str(tmp_path), "--out", str(tmp_path / "out"), "--jobs", "1"])
+    told = capsys.readouterr().out
+    assert "what is known of dan in ann is left out: near: a place lies at (1e+06, 0) m" in told

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import re
 import zipfile
 from dataclasses import replace
@@ -13,6 +14,7 @@ import pytest
 import yaml
 
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import WORDS, RobotNames
 from algorithms.files.map_file import read_map
 from algorithms.files.observation_file import observations_from_bytes
 from algorithms.maps.map_fusion import fuse
@@ -100,7 +102,12 @@ def test_the_verdict_comes_first_then_pictures_then_numbers(page, result):
         "<h2>The numbers",
         "Is there a better place?",
     ]
-    order += ["What was known", "How it was merged", publish_command(result), "Made with mapmeld"]
+    order += [
+        "What was known",
+        "How it was merged",
+        publish_command(result.T_ref_mov, "map1", "map2"),
+        "Made with mapmeld",
+    ]
     assert sorted(order, key=page.index) == order
     assert "REFUSED" not in page
 
@@ -197,3 +204,26 @@ def test_the_archive_reads_back_to_what_was_merged(result, inputs, tmp_path):
 
 def test_a_sentence_that_is_out_of_date_is_greyed():
     assert "opacity:.4" in box("Out of date.", "plain", faded=True)
+
+
+def test_the_files_of_a_fleets_pair_name_its_robots(result, inputs):
+    known = replace(inputs, names=RobotNames("Bob", "<Alice>"))
+    cause = "Mirrored, map 2 agrees on 90% of 20 m of wall: is its lidar mounted upside down?"
+    for each in (result, refused(result).with_hint(cause)):
+        files = {
+            name: data.decode()
+            for name, data in ResultFiles(each, known, DEFAULTS).files.items()
+            if name.endswith((".html", ".json", "transform.yaml", "observation.yaml"))
+        }
+        for name, text in files.items():
+            assert WORDS.search(re.sub(r'base64,[^"]*', "", text)) is None, name
+        assert "<Alice>" not in files["report.html"]
+        assert "what Bob saw of &lt;Alice&gt;" in files["report.html"]
+        assert "# of <Alice>, as Bob saw it" in files["observation.yaml"]
+        assert observations_from_bytes("o.yaml", files["observation.yaml"].encode()) == inputs.observations
+    assert "Mirrored, &lt;Alice&gt;&#x27;s map agrees" in files["report.html"]
+    told = yaml.safe_load(ResultFiles(result, known, DEFAULTS).files["transform.yaml"])
+    assert told["publish"].endswith("--frame-id Bob/map --child-frame-id '<Alice>/map'")
+    report = json.loads(files["report.json"])
+    assert (report["inputs"]["robot1"], report["inputs"]["robot2"]) == ("Bob", "<Alice>")
+    assert "Alice" in report["verdict"]["hint"]

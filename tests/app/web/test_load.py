@@ -267,10 +267,12 @@ def test_what_fails_in_its_turn_gives_the_turn_back():
         assert mine
 
 
-def test_one_tab_may_hold_as_much_as_a_map_may_have_and_a_second_one_what_is_left():
+def test_one_tab_may_hold_all_there_is_and_a_second_one_what_is_left():
     room = []
     quota = CellQuota(100, make_room=lambda: room.append(1))
-    quota.claim("a", 150)  # alone: a single map is bounded elsewhere
+    with pytest.raises(TooLargeError, match="a page holds"):
+        quota.claim("a", 101)  # two maps never have more, but a fleet of many may
+    quota.claim("a", 100)
     with pytest.raises(TooLargeError, match="close one of them, or make the maps coarser"):
         quota.claim("b", 1)
     quota.claim("a", 60)

@@ -41,7 +41,7 @@ class Eye:
     """
 
     def __init__(self, scene: ViewScene, view: Viewpoint, slopes: tuple[float, float], focal: float) -> None:
-        self._scene, self._view, self._slopes, self._focal = scene, view, slopes, focal
+        self._scene, self._view, self._slopes, self.focal = scene, view, slopes, focal
         self._walls, self._solids = scene.interior.walls, scene.solids
         self._ceiling = scene.interior.style.height
         self._first_mirror = len(self._walls) + len(scene.interior.solids)
@@ -76,12 +76,14 @@ class Eye:
     def light(self, a: FloatArray, b: FloatArray, traced: Traced) -> Tones:
         """(n, 3) light that comes along rays."""
         found = np.empty((len(a), 3), dtype=np.float32)
-        for mirror in np.unique(traced.mirror).tolist():
+        for mirror in self._views:
             at = np.flatnonzero(traced.mirror == mirror)
+            if not len(at):
+                continue
             hits = traced.hits
             hits = Hits(hits.depth[at], hits.surface[at], hits.face[at])
             points = seen_points(
-                self._views[mirror], self._walls, self._solids, self._ceiling, a[at], b[at], hits, self._focal
+                self._views[mirror], self._walls, self._solids, self._ceiling, a[at], b[at], hits, self.focal
             )
             light = self.shading.light(points, hits, self.shading.material_of(hits))
             found[at] = light if mirror == DIRECT else light * np.float32(REFLECTED)
@@ -92,7 +94,7 @@ class Eye:
         below = replace(self._view, height=-self._view.height)
         caster = RayCaster(below, self._walls, self._solids, self._ceiling, self._slopes)
         hits = caster.cast(a, -b, self._view.height / b)
-        points = seen_points(below, self._walls, self._solids, self._ceiling, a, -b, hits, self._focal)
+        points = seen_points(below, self._walls, self._solids, self._ceiling, a, -b, hits, self.focal)
         return self.shading.light(points, hits, self.shading.material_of(hits))
 
     def silhouette(self, robot: int, a: FloatArray, b: FloatArray) -> NDArray[np.bool_]:

@@ -22,6 +22,7 @@ FLOOR, CEILING = -1, -2
 NEAR = 0.03  # metres; what is nearer than that is not seen
 FAR = 200.0  # metres; where no wall is
 BINS = 4096  # of slope over the width of an image, for telling which wall a ray meets
+PARTS = 128  # of those slopes, each with its own list of solids
 BEHIND_ALL = 1e9
 
 Index = NDArray[np.int32]
@@ -102,10 +103,15 @@ def _fill_bins(
 def _nearest(
     a: FloatArray, b: FloatArray, behind: FloatArray, h: float, ceiling: float,
     bins: Index, first: float, step: float, at_0: FloatArray, per_slope: FloatArray,
-    rows: FloatArray, shape: Index, number: Index,
+    rows: FloatArray, shape: Index, number: Index, starts: Index, listed: Index,
     depth: FloatArray, surface: Index, face: NDArray[np.int8],
 ) -> None:  # fmt: skip
-    """Fill what ``Hits`` holds. rows : (K, 15) solids in order of their least depth, see ``_candidates``."""
+    """Fill what ``Hits`` holds.
+
+    rows           : (K, 15) solids, see ``_candidates``
+    starts, listed : which of them are seen in each part of the slopes, in order of their least depth
+    """
+    bins_per_part = len(bins) // (len(starts) - 1)
     for i in range(len(a)):
         k = min(len(bins) - 1, max(0, int((a[i] - first) / step)))
         depth[i], surface[i], face[i] = 200.0, -2, 0
@@ -117,7 +123,9 @@ def _nearest(
             depth[i], surface[i] = h / b[i], -1
         elif b[i] < 0 and (h - ceiling) / b[i] < depth[i]:
             depth[i], surface[i] = (h - ceiling) / b[i], -2
-        for n in range(len(rows)):
+        part = k // bins_per_part
+        for m in range(starts[part], starts[part + 1]):
+            n = listed[m]
             if rows[n, 0] > depth[i]:
                 break
             if a[i] < rows[n, 1] or a[i] > rows[n, 2] or b[i] < rows[n, 3] or b[i] > rows[n, 4]:
@@ -164,7 +172,7 @@ class RayCaster:
         self._at_0, self._per_slope, low, high = self._reciprocal(walls.ends)
         self._bins: Index = np.full(BINS, -1, dtype=np.int32)
         _fill_bins(low, high, self._at_0, self._per_slope, self._first, self._step, behind, self._bins)
-        self._rows, self._shape, self._number = self._candidates()
+        self._candidates = self._solids_seen()
 
     def cast(self, a: FloatArray, b: FloatArray, behind: FloatArray | float = NEAR) -> Hits:
         """What rays meet first.
@@ -178,7 +186,7 @@ class RayCaster:
         _nearest(
             np.ascontiguousarray(a), np.ascontiguousarray(b), least, self.view.height, self.ceiling,
             self._bins, self._first, self._step, self._at_0, self._per_slope,
-            self._rows, self._shape, self._number, hits.depth, hits.surface, hits.face,
+            *self._candidates, hits.depth, hits.surface, hits.face,
         )  # fmt: skip
         return hits
 
@@ -197,17 +205,15 @@ class RayCaster:
         low = np.where(seen, np.minimum(slope_0, slope_1), BEHIND_ALL)
         return at_0, per_slope, low, np.where(seen, np.maximum(slope_0, slope_1), -BEHIND_ALL)
 
-    def _candidates(self) -> tuple[FloatArray, Index, Index]:
-        """Solids that may be seen, the nearest first, as ``_nearest`` wants them.
+    def _solids_seen(self) -> tuple[FloatArray, Index, Index, Index, Index]:
+        """Solids that may be seen, as ``_nearest`` wants them: rows, shape, number, starts, listed.
 
         rows : least depth; slopes a from … to, b from … to; camera, forward and right in the solid's frame;
                half depth, half width, bottom, top
         """
         place = self._solids.place
-        if not len(place):
-            return np.zeros((0, 15)), np.zeros(0, dtype=np.int32), np.zeros(0, dtype=np.int32)
         x, y, c, s, half_x, half_y, bottom, top = place.T
-        signs = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]])
+        signs = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
         along, across = signs[:, :1] * half_x, signs[:, 1:] * half_y
         corners = np.stack([x + c * along - s * across, y + s * along + c * across], axis=-1)  # (4, K, 2)
         z, r = self.view.seen_from(corners)
@@ -219,10 +225,6 @@ class RayCaster:
         nearest, h = np.maximum(near, NEAR), self.view.height
         b_low = np.minimum((h - top) / nearest, (h - top) / np.maximum(far, NEAR))
         b_high = np.maximum((h - bottom) / nearest, (h - bottom) / np.maximum(far, NEAR))
-        last = self._first + BINS * self._step
-        seen = (
-            (far > NEAR) & (a_high >= self._first) & (a_low <= last) & self._before_walls(near, a_low, a_high)
-        )
         dx, dy = self.view.x - x, self.view.y - y
         (fx, fy), (rx, ry) = self.view.forward.tolist(), self.view.right.tolist()
         rows = np.stack(
@@ -233,20 +235,37 @@ class RayCaster:
             ],
             axis=1,
         )  # fmt: skip
-        order = np.flatnonzero(seen)[np.argsort(nearest[seen], kind="stable")]
-        number = (order + len(self._walls)).astype(np.int32)
-        return np.ascontiguousarray(rows[order]), self._solids.shape[order], number
+        within = self._parts(z, r)
+        seen = np.flatnonzero(within.any(axis=0))
+        order = seen[np.argsort(nearest[seen], kind="stable")]
+        part, listed = np.nonzero(within[:, order])
+        starts = np.searchsorted(part, np.arange(PARTS + 1))
+        number = order + len(self._walls)
+        shape = self._solids.shape[order]
+        return (
+            np.ascontiguousarray(rows[order]), shape, number.astype(np.int32),
+            starts.astype(np.int32), listed.astype(np.int32),
+        )  # fmt: skip
 
-    def _before_walls(self, near: FloatArray, low: FloatArray, high: FloatArray) -> NDArray[np.bool_]:
-        """Which solids reach nearer than the furthest wall in the slopes between which they are seen."""
+    def _parts(self, z: FloatArray, r: FloatArray) -> NDArray[np.bool_]:
+        """(PARTS, K) in which parts of the slopes solids may be seen, nearer than the furthest wall.
+
+        z, r : (4, K) depth and distance to the right of their corners
+        """
         middles = self._first + (np.arange(BINS) + 0.5) * self._step
         at_0, per_slope = np.append(self._at_0, 1 / FAR), np.append(self._per_slope, 0.0)  # −1: no wall
         inverse = at_0[self._bins] + per_slope[self._bins] * middles
-        parts = 64  # of the slopes
-        furthest = 1 / np.maximum(inverse.reshape(parts, -1).min(axis=1), 1 / FAR)
-        wide = self._step * (BINS // parts)
-        first = np.clip(np.floor((low - self._first) / wide), 0, parts - 1).astype(np.int64)
-        last = np.clip(np.floor((high - self._first) / wide), 0, parts - 1).astype(np.int64)
-        part = np.arange(parts)[:, None]
-        within = (part >= first) & (part <= last)  # (parts, K)
-        return np.asarray(np.where(within, furthest[:, None], 0.0).max(axis=0) > near)
+        furthest = 1 / np.maximum(inverse.reshape(PARTS, -1).min(axis=1), 1 / FAR)
+        edges = self._first + np.arange(PARTS + 1) * (self._step * (BINS // PARTS))
+        within = np.zeros((PARTS, z.shape[1]), dtype=bool)
+        ahead = np.flatnonzero(
+            (z.max(axis=0) > NEAR)
+            & ((r - edges[0] * z).max(axis=0) >= 0)
+            & ((r - edges[-1] * z).min(axis=0) <= 0)
+        )
+        z, r = z[:, ahead], r[:, ahead]
+        off = r - edges[:, None, None] * z  # (PARTS + 1, 4, K) to the right of the edges of the parts
+        left_of, right_of = off.max(axis=1) < 0, off.min(axis=1) > 0
+        nearer = z.min(axis=0) < furthest[:, None]
+        within[:, ahead] = ~left_of[:-1] & ~right_of[1:] & nearer
+        return within

@@ -16,6 +16,7 @@ from hypothesis.extra import numpy as arrays
 from PIL import Image
 
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import WORDS, RobotNames
 from algorithms.files.case_folder import Case
 from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
 from algorithms.methods.registry import METHODS, run
@@ -54,6 +55,18 @@ def told(page: str):
 
 def captions(recording) -> list[str]:
     return [frame["hud"]["state"] for frame in recording["frames"] if "state" in frame.get("hud", {})]
+
+
+def test_a_recorded_run_of_a_fleets_pair_names_the_robots(small_case):
+    config = METHODS["spectra-proven"].defaults
+    steps = list(run("spectra-proven", small_case.ref, small_case.mov, small_case.observations, config))
+    inputs = replace(MergeInputs.of(small_case), names=RobotNames("Bob", "Alice"))
+    kept = {key: value for key, value in record(steps, inputs, config).items() if key != "pictures"}
+    said = json.dumps(kept)
+    assert WORDS.search(said) is None
+    assert "Bob saw Alice" in said
+    plain = json.dumps(record(steps, MergeInputs.of(small_case), config)["frames"])
+    assert "Robot 1 saw robot 2" in plain
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,36 @@
+"""What the two robots of a pair are called, in sentences on robot 1 and robot 2, map 1 and map 2."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+# Not in quotes, in brackets or as a part of a file's name: what a stranger wrote stays as it is.
+WORDS = re.compile(r"(?<![\w'\"“(/.-])([Rr]obot|[Mm]ap) ([12])('s)?(?![\w-]|\.\w)")
+
+
+@dataclass(frozen=True)
+class RobotNames:
+    """ref, mov : of the robot whose map is map 1, and of the other"""
+
+    ref: str = "robot 1"
+    mov: str = "robot 2"
+
+    def told(self, text: str) -> str:
+        """A sentence of ours with the names in it: "robot 2 lies in map 1" becomes "Alice lies in Bob's map".
+
+        It must hold no name yet: a robot may be called robot 2, and be the first. Without names it stays.
+        """
+        if self == UNNAMED:
+            return text
+
+        def named(found: re.Match[str]) -> str:
+            name = (self.ref, self.mov)[int(found[2]) - 1]
+            if found[1].lower() == "robot":
+                return f"{name}{found[3] or ''}"
+            return f"{name}'s{'' if found[3] else ' map'}"
+
+        return WORDS.sub(named, text)
+
+
+UNNAMED = RobotNames()
