@@ -75,7 +75,8 @@ class SensorsController:
             for number, known in ((1, self.place.observer), (2, self.place.observed))
             if known is None
         ]
-        return f"Say where {' and where '.join(missing)}: under “Where the robots stood”." if missing else ""
+        said = f"Say where {' and where '.join(missing)}: under “Where the robots stood”."
+        return self._state.inputs.names.told(said) if missing else ""
 
     def typed(self, name: str, value: float) -> None:
         """A number of a robot's place was typed; metres, radians."""
@@ -157,7 +158,7 @@ class SensorsController:
 
     def _stand(self, at: ObservationDraft, source: str) -> None:
         self.place, self._source = at, source
-        self._panel.show_places(at, source)
+        self._panel.show_places(at, source, self._state.inputs.names)
 
     def _follow_row(self) -> None:
         row, encounters = self.files.encounter, self.files.encounters
@@ -190,12 +191,13 @@ class SensorsController:
 
     def _tell(self, trouble: str = "") -> None:
         """Show what is there and what is missing; ``trouble``: what was wrong with the last file."""
-        files, settings, panel = self.files, self._panel.settings, self._panel
-        panel.visible(len(self._state.inputs.grids) == 2)
+        files, settings, panel, inputs = self.files, self._panel.settings, self._panel, self._state.inputs
+        panel.visible(len(inputs.grids) == 2)
+        panel.name(inputs.names)
         rows = len(files.encounters.holds) if files.encounters else 0
         panel.offer(self._sample_folder() is not None, rows, files.row)
         bad = trouble or files.fault()
-        said = bad or (files.missing(settings) if files.any else "")
+        said = bad or (inputs.names.told(files.missing(settings)) if files.any else "")
         panel.show_files(files.told(settings), said, bool(bad), files.any, files.camera is not None)
         self.changed()
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import viser
 
+from algorithms.common.robot_names import RobotNames
 from algorithms.detection.footprint import SIZES, Footprint
 from algorithms.detection.svm_detector import LEAST_PROBABILITY
 from algorithms.detection.tag_detector import FAMILIES, TAG_SIZES
@@ -26,6 +27,7 @@ FINDERS: dict[str, Finder] = {
     "Tags (AprilTag, ArUco)": "tags",
 }
 BOXY, ROUND = "boxy", "round"
+SHAPE, USE_MAP = "robot 2 is", "use map 1"
 KINDS = ".jpg,.jpeg,.png,.bmp,.webp,.ppm,.pgm,.yaml,.yml,.csv,.npz"
 INTRO = (
     "Robot 1's image, camera and laser scan of one moment: the detector finds robot 2, the laser measures it."
@@ -48,7 +50,7 @@ class SensorsPanel:
         self._gui = gui
         title = "From camera and scan"
         with gui.add_folder(title, order=25.0, expand_by_default=False, visible=False) as self._folder:
-            gui.add_html(f'<p style="{SMALL}">{INTRO}</p>')
+            self._intro = gui.add_html("")
             self._table = gui.add_html("")
             hint = "One or several; each is known by what it holds."
             icon = viser.Icon.UPLOAD
@@ -94,16 +96,14 @@ class SensorsPanel:
         side: Any = {"min": 0.0, "max": TAG_SIZES[1], "step": 0.001, "hint": hint}
         self._tag_size = gui.add_number("tag size (m)", 0.0, visible=False, **side)
         usual, (low, high) = Footprint(), SIZES
-        self._shape = gui.add_dropdown(
-            "robot 2 is", (BOXY, ROUND), hint="Its outline, as the laser meets it."
-        )
+        self._shape = gui.add_dropdown(SHAPE, (BOXY, ROUND), hint="Its outline, as the laser meets it.")
         size: Any = {"min": low, "max": high, "step": 0.01}
         self._length = gui.add_number("length (m)", usual.length, **size)
         self._width = gui.add_number("width (m)", usual.width, **size)
         size = {"min": low / 2, "max": high / 2, "step": 0.005, "visible": False}
         self._radius = gui.add_number("radius (m)", 0.2, **size)
         hint = "What map 1 shows as wall is no robot, and nothing behind a wall is."
-        self._use_map = gui.add_checkbox("use map 1", True, hint=hint)
+        self._use_map = gui.add_checkbox(USE_MAP, True, hint=hint)
 
     def connect(
         self, take: Callable[[Upload], None], sample: Action, row: Callable[[int], None], forget: Action
@@ -200,13 +200,21 @@ class SensorsPanel:
             put(handle, visible=not round_)
         put(self._radius, visible=round_)
 
-    def show_places(self, at: ObservationDraft, source: str) -> None:
+    def name(self, names: RobotNames) -> None:
+        """What the robots are called."""
+        put(self._intro, content=f'<p style="{SMALL}">{escape(names.told(INTRO))}</p>')
+        for name, (label, hint) in PLACES.items():
+            put(self._places[name], label=names.told(label), hint=names.told(hint))
+        put(self._shape, label=names.told(SHAPE))
+        put(self._use_map, label=names.told(USE_MAP))
+
+    def show_places(self, at: ObservationDraft, source: str, names: RobotNames) -> None:
         """Where the robots stood; ``source``: who says so."""
         numbers = places_of(at)
         for name, value in numbers.items():
             shown = round(degrees(value) if name == "turn1" else value, 3)
             put(self._places[name], value=shown)
-        put(self._where, content=where_html(at, source))
+        put(self._where, content=where_html(at, source, names))
 
     def possible(self, look: bool, busy: bool, seen: bool) -> None:
         """Whether there is all that a look needs, whether one is under way, if one can be shown again."""
@@ -225,7 +233,7 @@ def places_of(at: ObservationDraft) -> dict[str, float]:
     return numbers
 
 
-def where_html(at: ObservationDraft, source: str) -> str:
+def where_html(at: ObservationDraft, source: str, names: RobotNames) -> str:
     """HTML of where the robots stood, in a line each."""
     unknown = "not known yet: say it below"
     first = second = unknown
@@ -235,7 +243,7 @@ def where_html(at: ObservationDraft, source: str) -> str:
     if at.observed is not None:
         second = "{:.2f}, {:.2f} m".format(*at.observed)
     rows = "".join(
-        f"<tr><td>robot {k} in map {k}</td><td>{text.replace('-', '−')}</td></tr>"
+        f"<tr><td>{escape(names.told(f'robot {k} in map {k}'))}</td><td>{text.replace('-', '−')}</td></tr>"
         for k, text in enumerate((first, second), 1)
     )
     said = f"<caption>{escape(source)}</caption>" if source else ""

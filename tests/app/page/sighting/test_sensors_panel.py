@@ -9,6 +9,7 @@ import viser
 from controls import Controls
 
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.detection.footprint import Footprint
 from app.model.observation_draft import ObservationDraft
 from app.model.sighting.look_settings import LookSettings
@@ -67,13 +68,22 @@ def test_only_what_does_something_is_shown(panel, controls):
 
 
 def test_places_are_shown_in_metres_and_degrees(panel, controls):
-    panel.show_places(STOOD, "as in <b>")
+    panel.show_places(STOOD, "as in <b>", UNNAMED)
     assert controls.find("robot 1, heading (°)").value == pytest.approx(30)
     assert controls.find("robot 2, y (m)").value == -39.2
-    html = where_html(STOOD, "as in <b>")
+    html = where_html(STOOD, "as in <b>", UNNAMED)
     assert "−28.07, −53.80 m, 30.0°" in html
     assert "as in &lt;b&gt;" in html
-    assert where_html(ObservationDraft(), "").count("not known yet") == 2
+    assert where_html(ObservationDraft(), "", UNNAMED).count("not known yet") == 2
+
+
+def test_robots_are_called_by_their_names(panel, controls):
+    names = RobotNames("Bob", "Al <i>")
+    panel.name(names)
+    assert "Bob&#x27;s image, camera and laser scan" in controls.text()
+    assert "finds Al &lt;i&gt;, the laser" in controls.text()
+    assert controls.find("robot 1, x (m)").label == "Bob, x (m)"
+    assert "Al &lt;i&gt; in Al &lt;i&gt;&#x27;s map" in where_html(STOOD, "", names)
 
 
 def test_files_are_listed_with_their_names_escaped_and_what_is_missing_is_said():
