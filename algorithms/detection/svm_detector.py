@@ -17,6 +17,7 @@ from algorithms.sensors.camera import Camera, check_image_size
 WIDEST = 640  # pixels; larger images are made smaller first: time, and a robot at 5 m is as large in the view
 STEP = 1.2  # from one size of the pyramid to the next
 LEAST_PROBABILITY = 0.5
+AROUND = 2  # cells added on every side: a robot that fills the image, or stands at its edge
 MOST_FOUND = 64  # windows of one class and size that are looked at further
 
 
@@ -74,7 +75,7 @@ class SvmDetector:
         found: list[Detection] = []
         while True:
             size = max(1, round(width * scale)), max(1, round(height * scale))
-            if size[0] < shape.cols * shape.cell or size[1] < shape.rows * shape.cell:
+            if size[0] < (shape.cols - AROUND) * shape.cell or size[1] < (shape.rows - AROUND) * shape.cell:
                 return found
             smaller = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
             found += self._of_size(
@@ -85,10 +86,12 @@ class SvmDetector:
     def _of_size(self, image: Features, stretch: FloatArray) -> list[Detection]:
         """Windows of one size; stretch: (4,) pixels of the picture per pixel of this image."""
         model, shape = self.model, self.model.shape
-        values = scores(hog_grid(image, shape.cell), shape, model.weights) + model.biases
+        pad = AROUND * shape.cell
+        wider = np.asarray(cv2.copyMakeBorder(image, pad, pad, pad, pad, cv2.BORDER_REPLICATE), np.float32)
+        values = scores(hog_grid(wider, shape.cell), shape, model.weights) + model.biases
         chances = 1 / (1 + np.exp(-(values * model.calibration[:, 0] + model.calibration[:, 1])))
         high, wide = shape.body
-        edge = shape.border * shape.cell
+        edge = shape.border * shape.cell - pad
         found = []
         for k, label in enumerate(model.labels):
             of_class = chances[..., k]

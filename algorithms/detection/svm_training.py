@@ -16,14 +16,14 @@ from algorithms.detection.svm_detector import DetectorModel, SvmDetector
 
 CELL = 6  # pixels; with seven cells a robot is found from 36 pixels on, 0.45 m at 6 m of a usual camera
 LONG_SIDE = 7  # cells of the longer side of a window
-SHIFT, GROWTH = 0.04, 0.06  # of a robot's box: windows lie on a grid, and sizes of the pyramid are steps
+SHIFT, GROWTH = 0.07, 0.08  # of a robot's box: windows lie on a grid, and sizes of the pyramid are steps
 TIMES = 3  # windows made of one robot: as it is, and shifted and grown at random
 FIRST_WINDOWS = 12  # of every background, before any is mined
 ROUNDS = 2  # of mining
 PER_IMAGE = 25  # windows mined of one background in one round, at most
 MINED_FROM = 0.2  # probability, from which a window of the background is a hard one
 APART = 0.25  # a window that shares more with a robot is neither robot nor background
-FOLDS = 5  # of the cross-validation
+FOLDS = 3  # of the cross-validation
 LEAST = 10  # robots and backgrounds; with fewer nothing can be said of what is learned
 PENALTY = 0.01  # of the SVM: soft, since rendered robots are not all robots
 

@@ -17,21 +17,32 @@ from algorithms.detection.detection import Picture
 from algorithms.detection.model_file import SHIPPED, model_to_bytes
 from algorithms.detection.svm_training import Background, RobotExample, Training, train
 from algorithms.files.atomic_write import write_file
+from algorithms.simulator.views.camera_image import viewpoint
+from algorithms.simulator.views.projection import box_of
 from algorithms.simulator.views.robot_views import RobotView
 from app.cli.progress_bar import bar
 from app.evaluation.table_files import aligned
 
 FIRST = 1_200_000  # seed of the first view; those of tests, samples and RESULTS.md are lower
-ROBOTS, EMPTY = 540, 324  # views
-WHOLE = 0.9  # share of a robot that is seen, from which it is an example
-EDGE = 2.0  # pixels; a box nearer to the image's edge is cut off
+ROBOTS, EMPTY = 540, 540  # views
+WHOLE = 0.8  # share of a robot that is seen, from which it is an example
 
 Boxes = list[tuple[tuple[float, float, float, float], str, float]]
 
 
 def boxes_of(asked: ViewAsked, view: RobotView) -> tuple[Picture, Boxes]:
-    """The picture, and box, class and visible share of every robot in it."""
-    return view.image, [(one.box, one.face, one.share) for one in view.robots]
+    """The picture, and box, class and visible share of every robot in it; also of what the image cuts off."""
+    eye = viewpoint(view.observer, view.camera, view.camera_height)
+    boxes: Boxes = []
+    for one in view.robots:
+        box = box_of(eye, view.camera, one.body, one.pose) or one.box
+        inside = _area(one.box) / _area(box)
+        boxes.append((box, one.face, one.share * inside))
+    return view.image, boxes
+
+
+def _area(box: tuple[float, float, float, float]) -> float:
+    return (box[2] - box[0]) * (box[3] - box[1])
 
 
 def main() -> None:
@@ -67,11 +78,9 @@ def main() -> None:
 
 
 def _examples(picture: Picture, boxes: Boxes) -> Iterator[RobotExample]:
-    """The robots that are whole in a picture."""
-    height, width = picture.shape[:2]
+    """The robots that are nearly whole in a picture."""
     for box, face, share in boxes:
-        inside = min(box[0], box[1], width - 1 - box[2], height - 1 - box[3]) >= EDGE
-        if inside and share >= WHOLE:
+        if share >= WHOLE:
             yield RobotExample(picture, np.array(box), face)
 
 
