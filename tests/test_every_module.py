@@ -212,6 +212,9 @@ EXERCISED_BY = {
     "app/model/test_contradiction_text.py": {
         "app.drawing.scene.map_comparison",
     },
+    "app/model/sighting/test_sensor_files.py": {
+        "app.model.sighting.look_settings",
+    },
     "app/model/test_settings.py": {
         "algorithms.common.setting_bounds",
     },

@@ -62,6 +62,11 @@ class SightedRobots:
     def position(self) -> RobotPosition | None:
         return None if self.chosen is None else self.sighted[self.chosen].position
 
+    def choosing(self, number: int) -> SightedRobots:
+        """The same boxes with the one of this index as the one that counts, unless it is refused."""
+        one = self.sighted[number]
+        return SightedRobots(self.sighted, number if one.position is not None else None, one.why_not)
+
 
 @dataclass(frozen=True, eq=False)
 class LaserView:
@@ -101,8 +106,7 @@ def sight(
     view = LaserView.of(scan, camera, walls)
     sighted = tuple(_sighted(one, view, camera, body, walls) for one in found)
     if pick is not None:
-        chosen = sighted[pick]
-        return SightedRobots(sighted, pick if chosen.position else None, chosen.why_not)
+        return SightedRobots(sighted, None).choosing(pick)
     good = [k for k, one in enumerate(sighted) if one.position is not None]
     if not good:
         return SightedRobots(sighted, None, _nothing(sighted))
@@ -126,7 +130,7 @@ def sight_by_tags(
         sighted.append(Sighted(one, None, position, why_not))
     good = [k for k, one in enumerate(sighted) if one.position is not None]
     if pick is not None:
-        return SightedRobots(tuple(sighted), pick if pick in good else None, sighted[pick].why_not)
+        return SightedRobots(tuple(sighted), None).choosing(pick)
     if not good:
         return SightedRobots(tuple(sighted), None, _nothing(sighted))
     first = sighted[good[0]].position

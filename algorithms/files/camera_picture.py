@@ -44,6 +44,11 @@ def read_picture(path: Path | str) -> PictureArray:
     return picture_from_bytes(str(path), data)
 
 
+def is_picture(data: bytes) -> bool:
+    """Whether a file begins as one of the images that are read; it may be damaged behind that."""
+    return data.startswith((JPEG, PNG, BMP)) or is_webp(data) or is_netpbm(data[:HEAD])
+
+
 def picture_from_bytes(name: str, data: bytes) -> PictureArray:
     """The pixels of a JPEG, PNG, BMP, WebP, PPM or PGM image, upright as its EXIF says.
 

@@ -7,12 +7,15 @@
 
   // --- what is pressed --------------------------------------------------------------------------
   // Python writes a card anew after each press; whoever uses the keyboard stays where they were.
-  function stay(selector, frames = 60) {
+  let staying = 0; // who has pressed something else is not brought back
+  function stay(selector, frames = 60, mine = ++staying) {
+    if (mine !== staying) return;
     const at = document.activeElement;
-    if (at && at !== document.body && document.contains(at)) { if (at.matches(selector)) requestAnimationFrame(() => frames && stay(selector, frames - 1)); return; }
+    if (at && at !== document.body && document.contains(at)) { if (at.matches(selector)) requestAnimationFrame(() => frames && stay(selector, frames - 1, mine)); return; }
     document.querySelector(selector)?.focus({ preventScroll: true });
-    if (frames) requestAnimationFrame(() => stay(selector, frames - 1));
+    if (frames) requestAnimationFrame(() => stay(selector, frames - 1, mine));
   }
+  S.kit.stay = stay;
   document.addEventListener("change", (e) => {
     const method = e.target.dataset?.mmPick;
     if (!method) return;

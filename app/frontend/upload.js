@@ -20,7 +20,7 @@
     at.search = at.hash = "";
     return at.href;
   }
-  function send(file, button) {
+  function send(file, button, rest = []) { // rest: what its button takes after it, one by one
     for (const other of F.going) if (other.button === button) drop(other); // the newest choice counts
     if (!F.going.size) { there = { size: 0, began: performance.now() }; lately = []; }
     const one = { file, button, socket: new WebSocket(address()), sent: 0, arrived: 0, least: 0, most: 0, ahead: 0, pumping: false };
@@ -34,6 +34,7 @@
       if (over === "arrived") there.size += file.size;
       if (over === "lost") lost(one);
       if (over) drop(one); else pump(one);
+      if ((over === "arrived" || over === "refused") && rest.length) send(rest[0], button, rest.slice(1));
       if (news.arrived) lately.push([performance.now(), far()]);
     };
     one.socket.onclose = () => { if (F.going.has(one)) { lost(one); drop(one); } };
@@ -62,15 +63,16 @@
   }
   const lost = (one) => say(`${one.file.name} did not arrive: the connection broke off. Choose it again.`);
   function say(words) { note = words; noted = performance.now(); }
+  F.several = ([file, ...rest], button) => { if (file) send(file, button, rest); };
   F.reset = () => { for (const one of F.going) { lost(one); drop(one); } }; // another connection, another page
   // viser's button has its own way of sending: it is not told of the choice
   window.addEventListener("change", (e) => {
     const input = e.target;
     if (!(input instanceof HTMLInputElement) || input.type !== "file" || !input.id.startsWith("file_upload_")) return;
     e.stopImmediatePropagation();
-    const [file] = input.files;
+    const chosen = [...input.files];
     input.value = ""; // the same file may be chosen again
-    if (file) send(file, input.id.slice("file_upload_".length));
+    F.several(chosen, input.id.slice("file_upload_".length));
   }, true);
 
   // --- words --------------------------------------------------------------------------------------

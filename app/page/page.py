@@ -28,6 +28,7 @@ from app.page.research.comparison_controller import ComparisonController
 from app.page.research.other_result_controller import OtherResultController
 from app.page.research.sweep_controller import SweepController
 from app.page.run_controller import RunController
+from app.page.sighting.sighting_controller import SightingController
 from app.page.tab import Tab
 from app.page.undo.undo_controller import UndoController
 from app.page.undo.undo_history import SavedTab, UndoHistory
@@ -77,6 +78,7 @@ class Page:
         SuggestionController(tab, drag)
         robots = PlacementController(tab, undo, runs, inputs)
         KnowledgeController(tab, undo, runs, inputs, robots.begin)
+        seeing = SightingController(tab, runs, inputs)
         teaching = LessonController(tab, undo, runs, lesson or lesson_folder())
         others = OtherResultController(tab, undo, runs)
         deliver = DownloadTask(client, panels.task)
@@ -85,11 +87,12 @@ class Page:
         panels.run.connect_learn(teaching.toggle, museum.toggle)
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
         self._sweep = SweepController(state, panels.sweep, messages, events, runs, deliver)
-        self._parts = inputs, events, teaching, drag, self._comparison, self._sweep, zoom, fleet, runs.thread
+        research = self._comparison, self._sweep
+        self._parts = inputs, events, teaching, drag, *research, seeing, zoom, fleet, runs.thread
         uploads.connect(client.client_id, Recipient(partial(panels.run.stoppable, "sending"), notices.report))
         events.on("unsend", stop_upload)
-        # the dock of the charts gets its width when that of the lesson, beside which it came, is gone
-        events.on("left", lambda: None if teaching.open else panels.charts.visible(True))
+        # the dock of the charts gets its width when another, beside which it came, is gone
+        events.on("left", lambda: teaching.open or seeing.active or panels.charts.visible(True))
         events.on("hello", self._greet, key=str, again=bool)
         messages.flush()  # the page says hello when it has read where to
 

@@ -24,6 +24,8 @@ from app.page.panels.settings_panel import SettingsPanel
 from app.page.panels.what_if_panel import WhatIfPanel
 from app.page.research.comparison_panel import ComparePanel
 from app.page.research.sweep_panel import SweepPanel
+from app.page.sighting.sensors_panel import SensorsPanel
+from app.page.sighting.sighting_dock import SightingDock
 from app.page.undo.history_panel import HistoryPanel
 from app.web.download import DOWNLOADS
 
@@ -48,6 +50,7 @@ class Panels:
         self.files = FilesPanel(gui, sample, self.send, state.locks.action, self.task)
         self.fleet = FleetPanel(gui)
         self.knowledge = KnowledgePanel(gui)
+        self.sensors = SensorsPanel(gui)
         self.settings = SettingsPanel(gui, state.locks.action)
         self.export = ExportPanel(client, self.task)
         self.what_if = WhatIfPanel(gui, lambda: state.config.verdict)
@@ -60,6 +63,7 @@ class Panels:
             self.sweep = SweepPanel(gui)
         self.lesson = LessonPanel(gui)
         self.museum = MuseumPanel(gui)
+        self.sighting = SightingDock(client)
 
     def show_method(self, method: str, config: Any, seed: int) -> None:
         """Show these settings, and load nothing."""

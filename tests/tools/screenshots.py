@@ -32,6 +32,7 @@ ALIKE = 8139  # a simulated corridor that looks alike when turned
 SHOWN = (
     "swarm", "merged", "proof", "rival", "why", "curtain", "by_hand", "place", "plain_image", "lesson_hough",
     "lesson_swarm", "lesson_knowledge", "lesson_chain", "fleet", "museum", "compared", "swept",
+    "camera_sighting",
 )  # fmt: skip
 
 Keep = Callable[[str], None]
@@ -212,6 +213,18 @@ def a_placement(tab: Tab, keep: Keep) -> None:
     keep("place")
 
 
+def a_camera(tab: Tab, keep: Keep) -> None:
+    """The sample's sighting from camera and scan."""
+    tab.unfold("From camera and scan")
+    tab.press("From the sample")
+    tab.page.wait_for_timeout(600)
+    tab.press("Look")
+    settle(lambda: tab.page.locator(".mm-seen img").count(), "what was seen")
+    tab.page.get_by_text("From camera and scan", exact=True).evaluate("(head) => head.scrollIntoView()")
+    tab.page.wait_for_timeout(1200)
+    keep("camera_sighting")
+
+
 def a_lesson(tab: Tab, keep: Keep) -> None:
     """Every step of the lesson."""
     tab.press("Lesson")
@@ -295,6 +308,7 @@ SCENES: dict[Callable[[Tab, Keep], None], tuple[str, ...]] = {
     a_wrong_sighting: ("refused", "refused_download"),
     an_empty_page: ("empty", "plain_image"),
     a_placement: ("place",),
+    a_camera: ("camera_sighting",),
     a_lesson: ("lesson_hough", "lesson_swarm", "lesson_knowledge", "lesson_chain"),
     a_museum: ("museum",),
     a_fleet: ("fleet",),

@@ -41,7 +41,7 @@ from app.cli.sensor_arguments import (
     scan_of,
 )
 from app.drawing.sighting_picture import sighting_picture
-from app.model.sighting_text import as_data, box_text, outcome_text
+from app.model.sighting.sighting_text import as_data, box_text, outcome_text
 
 USAGE = (
     "[TABLE | --image IMAGE --scan SCAN --observer-pose X,Y,YAW --observed-pose X,Y[,YAW]] "

@@ -14,6 +14,7 @@ from app.drawing.palette import Palette
 from app.drawing.svg.svg_canvas import INK, WIDE, SvgCanvas, SvgPlot
 
 HIGH, TOP, LEFT = 300.0, 8.0, 46.0  # of the plot; pixels
+LEGEND = 16.0  # where it begins; all of it just fits beside one another
 REACH = 1.35  # times the range of the robot: how far to the front the plot reaches
 LEAST, MOST = 2.0, 12.0  # metres of it
 BEHIND = 0.12  # of that reach, which is shown behind the observer
@@ -125,18 +126,18 @@ def _draw_centre(plot: SvgPlot, one: Sighted, palette: Palette) -> None:
 
 def _draw_legend(sheet: SvgCanvas, one: Sighted | None, palette: Palette) -> None:
     y = TOP + HIGH + 44
-    x = sheet.chip(LEFT, y, palette.text, "laser", "dot")
+    x = sheet.chip(LEGEND, y, palette.text, "laser", "dot")
     if one is None:
         return
     x = sheet.chip(x, y, palette.particle, "the box's direction")
     x = sheet.chip(x, y, palette.maps[1], "on the robot", "dot")
     sheet.chip(x, y, palette.maps[0], "their mean", "dot")
     if one.position is None:
-        sheet.text(LEFT, y + 15, "no centre: " + one.why_not, 10.5, colour=INK)
+        sheet.text(LEGEND, y + 15, "no centre: the box is refused", 10.5, colour=INK)
         return
     seen = one.position
     words = (
         f"centre: {seen.range:.3f} ± {seen.sigma_range:.3f} m, "
         f"{degrees(seen.bearing):.2f} ± {degrees(seen.sigma_bearing):.2f}°"
     )
-    sheet.chip(LEFT, y + 15, palette.best, words.replace("-", "−"))
+    sheet.chip(LEGEND, y + 15, palette.best, words.replace("-", "−"))

@@ -48,6 +48,16 @@ def box(text: str, mood: str, note: str = "", faded: bool = False) -> str:
     )
 
 
+def says_html(words: str, share: float | None = None) -> str:
+    """HTML of a line with a bar below it; both keep their place while there is nothing to say."""
+    done = "" if share is None else f' style="width:{100 * share:.0f}%"'
+    hidden = ' style="visibility:hidden"' if share is None else ""
+    return (
+        f'<div class="mm-says" role="status"><span>{escape(typeset(words))}</span>'
+        f"<div{hidden}><i{done}></i></div></div>"
+    )
+
+
 def on_press(*buttons: tuple[Any, Action]) -> None:
     """Have each button do its action."""
     for button, action in buttons:

@@ -14,7 +14,7 @@ from algorithms.methods.registry import Family
 from app.drawing.palette import LIGHT, QUIET, STOP
 from app.evaluation.compared_methods import COMPARED
 from app.model.status_text import typeset
-from app.page.panels.html_widgets import Action, on_press, put
+from app.page.panels.html_widgets import Action, on_press, put, says_html
 from app.page.research.other_result import RunSummary
 
 OURS, PAPER, RIVALS, ALL, NONE = "Ours", "Paper's", "Rivals", "All", "None"
@@ -93,16 +93,6 @@ class ComparePanel:
         """Show these cards; those that stay as they are cost nothing."""
         for name, card in cards.items():
             put(self._cards[name], content=card_html(name, card))
-
-
-def says_html(words: str, share: float | None = None) -> str:
-    """HTML of a line with a bar below it; both keep their place while there is nothing to say."""
-    done = "" if share is None else f' style="width:{100 * share:.0f}%"'
-    hidden = ' style="visibility:hidden"' if share is None else ""
-    return (
-        f'<div class="mm-says" role="status"><span>{escape(typeset(words))}</span>'
-        f"<div{hidden}><i{done}></i></div></div>"
-    )
 
 
 def card_html(name: str, card: Card) -> str:

@@ -14,8 +14,8 @@ from app.drawing.palette import LIGHT, QUIET, STOP, css
 from app.model.settings import Setting
 from app.model.status_text import typeset
 from app.page.panels.chart_widgets import nothing
-from app.page.panels.html_widgets import Action, on_choice, on_press, put
-from app.page.research.comparison_panel import SMALL, says_html
+from app.page.panels.html_widgets import Action, on_choice, on_press, put, says_html
+from app.page.research.comparison_panel import SMALL
 from app.page.research.sweep_curves import AGREEMENT, Numbers, measures
 from app.page.research.sweep_request import Wanted
 

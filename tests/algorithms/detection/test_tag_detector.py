@@ -4,47 +4,18 @@ from __future__ import annotations
 
 from math import atan2, hypot, pi
 
-import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tagged_pictures import CAMERA, SIZE, picture_of
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
 from algorithms.detection.footprint import Footprint
 from algorithms.detection.robot_sighting import sight_by_tags
-from algorithms.detection.tag_detector import FAMILIES, TagDetector, position_by_tag
+from algorithms.detection.tag_detector import TagDetector, position_by_tag
 from algorithms.sensors.camera import Camera
-
-CAMERA = Camera(640, 480, (520.0, 520.0), (319.5, 239.5))
-SIZE = 0.2  # metres
-
-
-def picture_of(tags, camera=CAMERA, family="36h11"):
-    """Tags, each (number, x ahead, y to the left, turn), at the height of the camera."""
-    picture = np.full((camera.height, camera.width, 3), 150, np.uint8)
-    dictionary = cv2.aruco.getPredefinedDictionary(FAMILIES[family])
-    for number, x, y, turn in tags:
-        marker = cv2.aruco.generateImageMarker(dictionary, number, 200)
-        board = np.full((280, 280), 255, np.uint8)
-        board[40:240, 40:240] = marker
-        half = SIZE * 0.7
-        corners = np.array([[-half, half], [half, half], [half, -half], [-half, -half]])
-        c, s = np.cos(turn), np.sin(turn)
-        # to the right in the image is y less
-        space = [(x + s * u, y - c * u, v) for u, v in corners]
-        pixels = [
-            (camera.centre[0] - camera.focal[0] * b / a, camera.centre[1] - camera.focal[1] * h / a)
-            for a, b, h in space
-        ]
-        source = np.array([[0, 0], [279, 0], [279, 279], [0, 279]], np.float32)
-        warp = cv2.getPerspectiveTransform(source, np.array(pixels, np.float32))
-        size = (camera.width, camera.height)
-        drawn = cv2.warpPerspective(board, warp, size, flags=cv2.INTER_AREA)
-        mask = cv2.warpPerspective(np.full_like(board, 255), warp, size)
-        picture[mask > 127] = drawn[mask > 127][:, None]
-    return cv2.GaussianBlur(picture, (0, 0), 0.6)
 
 
 @settings(max_examples=15, deadline=None)

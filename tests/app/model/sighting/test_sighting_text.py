@@ -7,7 +7,7 @@ import json
 from looked_at import looked_at
 
 from algorithms.common.pose import Pose2
-from app.model.sighting_text import as_data, box_text, class_name, outcome_text
+from app.model.sighting.sighting_text import as_data, box_text, class_name, outcome_text
 
 
 def test_left_and_right_are_told_apart():
