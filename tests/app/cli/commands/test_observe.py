@@ -28,9 +28,10 @@ TAG = ("--tags", "36h11", "--tag-size", "0.26")
 
 @cache
 def view(hardship=None, robot=True):
-    """A robot at 2.7 m in the open, or what a hardship makes of it."""
-    return draw_view(4 if hardship is None else 50, "home" if hardship is None else "office",
-                     robot=robot, hardship=hardship)  # fmt: skip
+    """A robot in the open, or what a hardship makes of it."""
+    if hardship is None:
+        return draw_view(4, "home", robot=robot, distance=(2.0, 3.5))
+    return draw_view(50, "office", robot=robot, hardship=hardship)
 
 
 @pytest.fixture
@@ -125,7 +126,7 @@ def test_without_calibration_pixels_are_counted(seen):
 
 def test_a_map_whose_wall_is_before_the_robot_denies_it(seen, capsys):
     cells = np.full((200, 200), FREE, np.int8)
-    cells[:, 100:130] = OCCUPIED
+    cells[:, 100:104] = OCCUPIED  # one metre ahead
     grid = GridMap(cells, 0.05, Pose2(-5.0, -5.0, 0.0), "wall")
     for name, data in map_to_bytes(grid, "wall").items():
         (seen / name).write_bytes(data)
