@@ -24,7 +24,7 @@ DROP = """(names) => {
 
 
 def unfolded(tab: Tab) -> None:
-    """The folder is open, and looks for tags."""
+    """The folder is open, and tags are looked for."""
     tab.unfold("From camera and scan")
     tab.unfold("Detector and robot")
     tab.choose("detector", "Tags (AprilTag, ArUco)")
@@ -68,7 +68,7 @@ def usable(tab: Tab) -> bool:
 
 def test_a_sighting_of_the_sample_is_used_and_undone(tab: Tab):
     before = tab.number("range r")
-    unfolded(tab)
+    tab.unfold("From camera and scan")
     tab.press("From the sample")
     settle(lambda: "as in encounters.csv" in tab.text, "where the robots stood")
     assert "seen_1.jpg, 640 × 480" in tab.text
@@ -77,8 +77,9 @@ def test_a_sighting_of_the_sample_is_used_and_undone(tab: Tab):
     assert not tab.page.get_by_text("Stages", exact=True).is_visible()  # the charts have given way
     assert tab.page.locator(SPOT).count() == tab.page.locator(LINE).count() == 1
     assert tab.page.locator(".mm-above svg").is_visible()
-    shown = tab.page.locator(".mm-seen img").evaluate("(image) => image.naturalWidth")
-    assert shown == 960
+    widths = "(images) => images.map((image) => image.naturalWidth)"
+    assert tab.page.locator(".mm-seen img").evaluate_all(widths) == [960]
+    assert min(tab.page.locator(".mm-hog img").evaluate_all(widths)) > 100
     tab.press("Use this sighting")
     settle(lambda: tab.number("range r") != before, "the observation")
     assert metres(tab.number("range r")) == pytest.approx(5.313, abs=0.005)

@@ -14,8 +14,9 @@ from algorithms.common.errors import MapMergeError
 from algorithms.detection.robot_sighting import observation_of
 from algorithms.observations.observation import Observation
 from app.drawing.svg.scan_plot import scan_svg
-from app.jobs.background_job import BackgroundJob, beside_the_page
+from app.jobs.background_job import BackgroundJob
 from app.jobs.executor import Executor, LostTask, Task
+from app.jobs.process_executor import ProcessExecutor
 from app.model.knowledge import Choice
 from app.model.sighting.sighting_text import outcome_text
 from app.page.inputs_controller import InputsController
@@ -42,7 +43,7 @@ class SightingController:
         tab: Tab,
         runs: RunController,
         inputs: InputsController,
-        executor: Callable[[int], Executor] = beside_the_page,
+        executor: Callable[[int], Executor] = ProcessExecutor,  # no gentle one: a person waits for it
         samples: Callable[[], Mapping[str, Path]] = paths.samples,
     ) -> None:
         self._state, self._panels, self._locks = tab.state, tab.panels, tab.state.locks
