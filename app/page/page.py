@@ -85,7 +85,8 @@ class Page:
         panels.run.connect_learn(teaching.toggle, museum.toggle)
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
         self._sweep = SweepController(state, panels.sweep, messages, events, runs, deliver)
-        self._parts = inputs, events, teaching, drag, self._comparison, self._sweep, zoom, fleet, runs.thread
+        parts = inputs, events, teaching, museum, drag, self._comparison, self._sweep, zoom, fleet
+        self._parts = *parts, runs.thread
         uploads.connect(client.client_id, Recipient(partial(panels.run.stoppable, "sending"), notices.report))
         events.on("unsend", stop_upload)
         # the dock of the charts gets its width when that of the lesson, beside which it came, is gone
