@@ -230,11 +230,20 @@ EXERCISED_BY = {
         "app.page.lesson.figures.verdict_figure",
         "app.drawing.svg.svg_canvas",
     },
+    "app/page/lesson/figures/test_sighting_figure.py": {
+        "app.page.lesson.figures.camera_figure",
+        "app.page.lesson.figures.laser_figure",
+        "app.page.lesson.figures.poster_figure",
+    },
+    "app/page/lesson/test_sighting_look.py": {
+        "app.page.lesson.sighting_numbers",
+    },
     "app/page/lesson/figures/test_chain_figure.py": {
         "app.page.lesson.chain_runs",
     },
     "app/page/lesson/test_museum_controller.py": {
         "app.page.lesson.exhibit_samples",
+        "app.page.lesson.exhibit_texts",
     },
     "app/page/panels/test_panels.py": {
         "app.page.editing.observation_panel",

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import atan2, hypot, log, pi, sqrt
 
 import numpy as np
 
-from algorithms.common.pose import FloatArray, wrap_angles
+from algorithms.common.pose import FloatArray, wrap_angle, wrap_angles
 from algorithms.detection.footprint import Footprint
 from algorithms.detection.footprint_fit import ON_ROBOT, PAST_ROBOT, UNLIKELY, BeamsAround
 from algorithms.detection.scan_clusters import Cluster
@@ -28,6 +28,8 @@ class RobotPosition:
     range, bearing             : from the robot's own frame; metres and radians, counter-clockwise
     sigma_range, sigma_bearing : one standard deviation
     unexplained                : share of the beams around that a robot there does not explain, 0 … 1
+    turn                       : of the outline that explains them best, from the robot's own heading; a half
+                                 turn more is as good, and a disc has none; radians
     """
 
     range: float
@@ -35,6 +37,7 @@ class RobotPosition:
     sigma_range: float
     sigma_bearing: float
     unexplained: float
+    turn: float = 0.0
 
     def point(self) -> FloatArray:
         """(2,) metres, the robot's frame."""
@@ -74,7 +77,8 @@ def position_of(cluster: Cluster, scan: LaserScan, body: Footprint) -> RobotPosi
     weights = np.exp(values - values.max())
     weights /= weights.sum()
     likeliest = poses[int(np.argmax(values))]
-    return _summary(scan, poses[:, :2], weights, spacing, beams.unexplained(likeliest, body))
+    seen = _summary(scan, poses[:, :2], weights, spacing, beams.unexplained(likeliest, body))
+    return replace(seen, turn=wrap_angle(float(likeliest[2]) + scan.mounting.theta))
 
 
 def _beams_around(cluster: Cluster, scan: LaserScan, body: Footprint) -> BeamsAround:

@@ -173,7 +173,7 @@ def _sighted(
     refused: list[Sighted] = []
     taken: list[Sighted] = []
     for cluster in candidates:
-        why_not = _shape_fault(cluster, view.scan, body)
+        why_not = shape_fault(cluster, view.scan, body)
         if not why_not and _fit(Sighted(one, cluster, None), view, camera) < LEAST_FIT:
             why_not = "what the laser sees there is not as wide as the box, or lies beside it"
         position = None if why_not else position_of(cluster, view.scan, body)
@@ -234,7 +234,7 @@ def _columns(cluster: Cluster, view: LaserView, camera: Camera) -> tuple[float, 
     return float(columns.min()) - half_beam, float(columns.max()) + half_beam
 
 
-def _shape_fault(cluster: Cluster, scan: LaserScan, body: Footprint) -> str:
+def shape_fault(cluster: Cluster, scan: LaserScan, body: Footprint) -> str:
     """Why a cluster cannot be a robot of this size; empty where it can be."""
     points = cluster.points
     if len(points) < LEAST_POINTS:

@@ -15,8 +15,9 @@ from algorithms.files.truth_file import TRUTH_FILE, Truth, truth_to_bytes
 from algorithms.simulator.fleets.fleet_scenario import simulate_fleet
 from algorithms.simulator.fleets.sample_fleets import fleet_files, sample_fleets
 from algorithms.simulator.odometry_drift import OdometryDrift
+from algorithms.simulator.poster_sample import POSTER_SAMPLE, poster_encounter, poster_files
 from algorithms.simulator.robot import Conditions
-from algorithms.simulator.scenario import SimulatedCase, simulate
+from algorithms.simulator.scenario import Scenario, SimulatedCase, simulate
 from algorithms.simulator.views.pictured_encounters import encounter_files
 from algorithms.simulator.wrong_pairs import mismatch
 
@@ -47,8 +48,8 @@ class Sample:
     def names(self) -> tuple[str, ...]:
         return tuple(f"{self.title or self.kind}_{pair}" for pair in self.pairs)
 
-    def cases(self) -> tuple[SimulatedCase, ...]:
-        """Let the three robots drive; the cases that ship."""
+    def drives(self) -> Scenario:
+        """Let the three robots drive."""
         first, second, third = self.resolutions
         conditions = (
             Conditions(OdometryDrift(bend=self.bend), resolution=first),
@@ -56,9 +57,13 @@ class Sample:
             Conditions(resolution=third),
         )
         both_ways, reach = self.both_ways, self.reach
-        made = simulate(
+        return simulate(
             self.kind, self.seed, self.overlaps, both_ways=both_ways, reach=reach, conditions=conditions
         )
+
+    def cases(self, made: Scenario | None = None) -> tuple[SimulatedCase, ...]:
+        """The cases that ship; ``made``: of which drives, where they are made already."""
+        made = made or self.drives()
         cases = made.cases
         if self.pictured:
             cases = (made.pictured_case(0, self.seed), *cases[1:])
@@ -106,14 +111,16 @@ def write_case(folder: Path, case: SimulatedCase) -> None:
 
 
 def regenerate(folder: Path) -> list[SimulatedCase]:
-    """Make all shipped samples and fleets again, one folder each; the same bytes every time.
+    """Make all shipped samples, fleets and the poster again, one folder each; the same bytes every time.
 
     JPEG files are as equal as the library is that writes them.
     """
-    cases = [case for sample in SAMPLES for case in sample.cases()]
+    made = [sample.drives() for sample in SAMPLES]
+    cases = [case for sample, drives in zip(SAMPLES, made, strict=True) for case in sample.cases(drives)]
     for case in cases:
         write_case(Path(folder) / case.name, case)
-    for name, files in sample_fleets(cases[:2]).items():
+    deceived = {POSTER_SAMPLE: poster_files(poster_encounter(made[0], SAMPLES[0].seed))}
+    for name, files in {**sample_fleets(cases[:2]), **deceived}.items():
         write_files({Path(folder) / name / file: data for file, data in files.items()})
     return cases
 

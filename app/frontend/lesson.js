@@ -36,7 +36,7 @@
     if (!view) return;
     view.scrollTop = 0;
     for (const button of view.querySelectorAll("button")) { // viser's rows of buttons have no such switch
-      if (button.textContent === "◀ Back") button.disabled = now === "1";
+      if (button.textContent === "◀ Back") button.disabled = now === step.dataset.first;
       if (button.textContent === "Next ▶") button.disabled = now === step.dataset.last;
     }
   }, 100);

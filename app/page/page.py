@@ -88,7 +88,7 @@ class Page:
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
         self._sweep = SweepController(state, panels.sweep, messages, events, runs, deliver)
         research = self._comparison, self._sweep
-        self._parts = inputs, events, teaching, drag, *research, seeing, zoom, fleet, runs.thread
+        self._parts = inputs, events, teaching, museum, drag, *research, seeing, zoom, fleet, runs.thread
         uploads.connect(client.client_id, Recipient(partial(panels.run.stoppable, "sending"), notices.report))
         events.on("unsend", stop_upload)
         # the dock of the charts gets its width when another, beside which it came, is gone

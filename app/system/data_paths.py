@@ -36,6 +36,15 @@ def samples() -> dict[str, Path]:
     return {path.parent.name: path.parent for path in sorted(sample_maps().glob(f"*/{FIRST_MAP_FILE}"))}
 
 
+def pictures() -> dict[str, Path]:
+    """Pictures that deceive, each with the sighting that was made of it, by the names of their folders."""
+    from algorithms.files.case_folder import FIRST_MAP_FILE  # these load what reads maps
+    from algorithms.files.encounter_table import ENCOUNTER_TABLE
+
+    found = (path.parent for path in sorted(sample_maps().glob(f"*/{ENCOUNTER_TABLE}")))
+    return {folder.name: folder for folder in found if not (folder / FIRST_MAP_FILE).exists()}
+
+
 def fleets() -> dict[str, Path]:
     """The sample fleets by the name a person reads in the menu."""
     from algorithms.files.fleet_file import FLEET_FILE  # it loads what reads maps

@@ -12,11 +12,13 @@ from rooms import write_case
 from algorithms.files.case_folder import Case
 from app.page.application import make_server
 from app.page.lesson.figures.figure_registry import PICTURES
-from app.page.lesson.lesson_texts import files, lesson_folder
+from app.page.lesson.lesson_texts import files, first_number, lesson_folder
 
 pytestmark = pytest.mark.browser
 
 STEPS = files(lesson_folder())
+FIRST = first_number(STEPS)
+LAST = FIRST + len(STEPS) - 1
 
 
 def at_step(tab: Tab, number: int) -> None:
@@ -26,9 +28,13 @@ def at_step(tab: Tab, number: int) -> None:
     settle(lambda: tab.page.locator("svg.mm-picture").count(), f"the picture of step {number}")
 
 
-def enter(tab: Tab) -> None:
+def enter(tab: Tab, at: int = FIRST) -> None:
+    """Open the lesson, and go on to a step."""
     tab.press("Lesson")
-    at_step(tab, 1)
+    at_step(tab, FIRST)
+    for number in range(FIRST + 1, at + 1):
+        tab.press("Next ▶")
+        at_step(tab, number)
 
 
 def picture(tab: Tab) -> str:
@@ -64,14 +70,14 @@ def test_every_step_is_shown_on_a_sample_and_leaving_puts_everything_back(tab):
     settle(lambda: tab.layer("readout"), "what is known of a place")
     enter(tab)
     assert tab.layer("readout") == []
-    for number in range(1, len(STEPS) + 1):
+    for number in range(FIRST, LAST + 1):
         at_step(tab, number)
         shows_what_it_should(tab)
-        if number < len(STEPS):
+        if number < LAST:
             tab.press("Next ▶")
     settle(lambda: "…" not in tab.page.locator(".mm-lesson").inner_text(), "all numbers")
     tab.press("◀ Back")
-    at_step(tab, len(STEPS) - 1)
+    at_step(tab, LAST - 1)
     tab.press("Leave")
     settle(lambda: tab.state == before, "the verdict of before")
     assert tab.mood == "accepted"
@@ -88,9 +94,7 @@ def test_a_thing_to_try_moves_the_real_slider_and_is_put_back(tab):
         thumb = tab.page.locator(f'[id="{label.get_attribute("for")}"]').get_by_role("slider")
         return thumb.get_attribute("aria-valuenow")
 
-    enter(tab)
-    tab.press("Next ▶")
-    at_step(tab, 2)
+    enter(tab, 2)
     first = picture(tab)
     tab.press("Set I_aug to 1")
     settle(lambda: intensity() == "1", "the slider to move")
@@ -100,6 +104,48 @@ def test_a_thing_to_try_moves_the_real_slider_and_is_put_back(tab):
     settle(lambda: intensity() == "100", "the slider to move back")
     settle(lambda: tab.page.locator("svg.mm-picture").count() and picture(tab) == first, "the same levels")
     assert tab.page.locator(".mm-answer").count() == 0
+
+
+def test_the_first_step_goes_through_what_camera_and_laser_tell_in_four_parts(tab):
+    def photo() -> int:
+        return tab.page.locator("svg.mm-picture image").count()
+
+    def equations() -> list[str]:
+        return [each.get_attribute("data-equation") for each in tab.page.locator(".mm-eq").all()]
+
+    enter(tab)
+    settle(lambda: photo() == 1, "the picture with its box")
+    assert "The camera knows which way" in tab.text
+    assert "…" not in tab.page.locator(".mm-lesson").inner_text()
+    assert equations() == ["pixel-bearing", "counted-bearing"]
+    settle(lambda: tab.layer("lesson"), "the directions of the box on the map")
+    settle(lambda: tab.mood == "idle", "the look to be over")
+    tab.move("part", 1)
+    settle(lambda: photo() == 2, "the window and its edges")
+    assert "What is it?" in tab.text
+    tab.move("part", 1)
+    settle(lambda: "The laser knows how far" in tab.text, "the words about the laser")
+    assert equations()[0] == "depth-step"
+    tab.move("part", 1)
+    settle(lambda: "Why both?" in tab.text, "the reason for both")
+    tab.press("Take the mean")
+    settle(lambda: "too near by" in tab.page.locator("svg.mm-picture").first.text_content(), "the mean")
+    settle(lambda: "The laser knows how far" in tab.text, "the part that shows it")
+    tab.press("Put it back")
+    settle(lambda: "too near by" not in tab.page.locator("svg.mm-picture").first.text_content(), "the centre")
+    tab.press("Count pixels")
+    settle(lambda: "The lens and the true centre" in tab.text, "what counting leaves out")
+    assert "The camera knows which way" in tab.text
+
+
+def test_maps_without_a_picture_are_shown_that_of_another_sample(tab):
+    tab.choose("Sample", "warehouse_r2_r1")
+    settle(lambda: "warehouse_r2_r1" in tab.page.locator(".mm-title").inner_text(), "maps without a picture")
+    enter(tab)
+    settle(lambda: "The loaded maps come without a camera's picture" in tab.text, "that it says so")
+    settle(lambda: tab.page.locator("svg.mm-picture image").count(), "the other sample's picture")
+    assert "office_r2_r1" in tab.page.locator("svg.mm-picture").first.text_content()
+    assert not [item for item in tab.layer("lesson") if item.get("s") == "cross"]
 
 
 def test_a_dial_moves_the_picture_and_the_map(tab):
@@ -121,19 +167,17 @@ def test_each_press_counts_however_quickly_they_follow(tab):
     settle(tab.page.get_by_role("button", name="◀ Back").is_disabled, "the first step")
     for _ in range(5):
         tab.press("Next ▶")
-    at_step(tab, 6)
+    at_step(tab, FIRST + 5)
     for _ in range(3):
         tab.press("◀ Back")
-    at_step(tab, 3)
-    tab.choose("Step", f"{len(STEPS)}. Three robots, and the way round")
+    at_step(tab, FIRST + 2)
+    tab.choose("Step", f"{LAST}. Three robots, and the way round")
     settle(tab.page.get_by_role("button", name="Next ▶").is_disabled, "the last step")
     assert tab.page.get_by_role("button", name="◀ Back").is_enabled()
 
 
 def test_a_slider_of_the_panel_feeds_the_lesson_and_is_put_back(tab):
-    enter(tab)
-    tab.press("Next ▶")
-    at_step(tab, 2)
+    enter(tab, 2)
     first = picture(tab)
     tab.move("spread", 5)
     settle(lambda: tab.page.locator("svg.mm-picture").count() and picture(tab) != first, "wider rings")
@@ -151,16 +195,16 @@ def test_the_lesson_goes_on_with_uploaded_maps_light_and_dark(tab, tmp_path, sma
     settle(lambda: tab.state == "Ready. Press Merge.", "all five files")
     tab.page.get_by_label("Dark", exact=True).click()
     enter(tab)
-    for number in range(1, len(STEPS) + 1):
+    for number in range(FIRST, LAST + 1):
         at_step(tab, number)
         shows_what_it_should(tab)
         ink = tab.page.evaluate("() => getComputedStyle(document.querySelector('.mm-equation')).color")
         assert min(int(part) for part in ink.strip("rgb()").split(",")) > 150, ink  # light on dark
-        if number < len(STEPS):
+        if number < LAST:
             tab.press("Next ▶")
     tab.choose("Sample", "warehouse_r2_r1")
     settle(lambda: "warehouse_r2_r1" in tab.page.locator(".mm-title").inner_text(), "other maps")
-    at_step(tab, len(STEPS))
+    at_step(tab, LAST)
 
 
 def test_what_the_sighting_buys_is_worked_out_while_one_looks_on_and_can_be_left(tab):
@@ -168,7 +212,7 @@ def test_what_the_sighting_buys_is_worked_out_while_one_looks_on_and_can_be_left
         words = tab.page.locator("svg.mm-picture").first.locator("text").all_text_contents()
         return sum(word.endswith((", merged", ", refused")) for word in words)
 
-    number = len(STEPS) - 1
+    number = LAST - 1
     enter(tab)
     tab.choose("Step", f"{number}. What the sighting buys")
     settle(lambda: " of 120 turns" in tab.text, "the first of the merges")
@@ -204,13 +248,13 @@ def test_rewritten_texts_show_at_once_and_a_broken_one_is_named(open_tab, sample
     try:
         tab = open_tab(at=own)
         enter(tab)
-        assert "step 1 of 3" in tab.state
+        assert f"step {FIRST} of {FIRST + 2}" in tab.state
         second = folder / STEPS[1].name
         second.write_text(
             "---\ntitle: Ein Schritt\npicture: dual\nequations: [line]\n---\nNur {walls1} Zellen."
         )
         tab.press("Next ▶")
-        at_step(tab, 2)
+        at_step(tab, FIRST + 1)
         settle(lambda: "Ein Schritt" in tab.text, "the new title")
         assert "Zellen." in tab.text
         third = folder / STEPS[2].name
@@ -220,7 +264,7 @@ def test_rewritten_texts_show_at_once_and_a_broken_one_is_named(open_tab, sample
         assert third.name in tab.text
         assert all(name in tab.text for name in PICTURES)
         tab.press("◀ Back")
-        at_step(tab, 2)
+        at_step(tab, FIRST + 1)
     finally:
         own.stop()
 
@@ -286,3 +330,22 @@ def test_the_exhibit_of_the_sighting_that_lies_is_cured_by_the_other_robots(tab)
     tab.press("Leave the museum")
     settle(lambda: "office_r2_r1" in tab.page.locator(".mm-title").inner_text(), "the maps of before")
     assert not tab.page.get_by_text("Back to the fleet").is_visible()
+
+
+def test_the_poster_is_believed_by_the_detector_refused_by_the_laser_and_by_the_verdict(tab):
+    tab.press("Instant")
+    tab.press("Museum")
+    tab.choose("Exhibit", "9. A poster of a robot")
+    settle(lambda: "the detector:" in tab.text, "what the detector says")
+    assert tab.page.locator("svg.mm-picture image").count()
+    assert "no step in depth" not in tab.text
+    tab.press("Merge")
+    settle(lambda: "from the truth. The verdict saw it." in tab.text, "the failure")
+    assert tab.mood == "refused"
+    assert "no step in depth" in tab.text
+    tab.press("Cure: Let the laser have a say")
+    settle(lambda: "Cured: " in tab.text, "the cure")
+    assert tab.mood == "accepted"
+    assert tab.number("known") == "a sighting → nothing"
+    tab.press("Leave the museum")
+    settle(lambda: not tab.page.get_by_text("Leave the museum").is_visible(), "the end of the visit")

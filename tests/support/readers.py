@@ -39,8 +39,9 @@ from algorithms.observations.fleet import Fleet
 from algorithms.observations.pair_problem import Known
 from algorithms.sensors.camera import Camera
 from algorithms.sensors.laser_scan import LaserScan
+from app.page.lesson.exhibit_texts import read_exhibit
 from app.page.lesson.figures.figure_registry import PICTURES
-from app.page.lesson.lesson_texts import read_exhibit, read_step
+from app.page.lesson.lesson_texts import read_step
 from app.page.lesson.placeholders import NUMBERS
 
 MOST_MEMORY = 2_000  # MB that a process may take to read any file of at most 1 MB

@@ -30,9 +30,9 @@ SAMPLE = "office_r2_r1"
 BENT = "bent_r2_r1"
 ALIKE = 8139  # a simulated corridor that looks alike when turned
 SHOWN = (
-    "swarm", "merged", "proof", "rival", "why", "curtain", "by_hand", "place", "plain_image", "lesson_hough",
-    "lesson_swarm", "lesson_knowledge", "lesson_chain", "fleet", "museum", "compared", "swept",
-    "camera_sighting",
+    "swarm", "merged", "proof", "rival", "why", "curtain", "by_hand", "place", "plain_image", "lesson_camera",
+    "lesson_laser", "lesson_hough", "lesson_swarm", "lesson_knowledge", "lesson_chain", "fleet", "museum",
+    "museum_poster", "compared", "swept", "camera_sighting",
 )  # fmt: skip
 
 Keep = Callable[[str], None]
@@ -229,18 +229,46 @@ def a_lesson(tab: Tab, keep: Keep) -> None:
     """Every step of the lesson."""
     tab.press("Lesson")
     steps = {4: "lesson_hough", 12: "lesson_swarm", 17: "lesson_knowledge", 18: "lesson_chain"}
-    number = 1
+    number = 0
     while True:
         settle(lambda at=number: f"step {at} of" in tab.state, f"step {number}")
         tab.page.wait_for_timeout(1800)
         settle(lambda: tab.mood == "idle", "what is worked out")
         if steps.get(number) == "lesson_chain":  # its picture lies below its words
             tab.page.get_by_text("its answer is then right to").scroll_into_view_if_needed()
+        if number == 0:
+            _parts_of_a_sighting(tab, keep)
         keep(steps.get(number, f"lesson_{number:02d}"))
         if f"step {number} of {number}:" in tab.state:
             return
         tab.press("Next ▶")
         number += 1
+
+
+def _parts_of_a_sighting(tab: Tab, keep: Keep) -> None:
+    """The four parts of step 0, from the camera to why there are two sensors."""
+    settle(lambda: tab.page.locator("svg.mm-picture image").count(), "the picture")
+    tab.page.mouse.move(640, 700)
+    tab.page.wait_for_timeout(800)
+    for part in ("camera", "detector", "laser", "both"):
+        if part != "camera":
+            tab.move("part", 1)
+            tab.page.wait_for_timeout(800)
+        if part == "laser":  # its picture lies below its words
+            tab.page.get_by_text("it lies behind the mean by").scroll_into_view_if_needed()
+        keep(f"lesson_{part}")
+
+
+def a_poster(tab: Tab, keep: Keep) -> None:
+    """The exhibit of a picture that deceives."""
+    tab.press("Museum")
+    tab.choose("Exhibit", "9. A poster of a robot")
+    settle(lambda: "the detector:" in tab.text, "the picture")
+    tab.page.mouse.move(640, 500)
+    merged(tab, "refused")
+    tab.page.get_by_text("robot 1's map:").scroll_into_view_if_needed()
+    tab.page.wait_for_timeout(400)
+    keep("museum_poster")
 
 
 def a_museum(tab: Tab, keep: Keep) -> None:
@@ -309,8 +337,12 @@ SCENES: dict[Callable[[Tab, Keep], None], tuple[str, ...]] = {
     an_empty_page: ("empty", "plain_image"),
     a_placement: ("place",),
     a_camera: ("camera_sighting",),
-    a_lesson: ("lesson_hough", "lesson_swarm", "lesson_knowledge", "lesson_chain"),
+    a_lesson: (
+        "lesson_camera", "lesson_detector", "lesson_laser", "lesson_both", "lesson_hough", "lesson_swarm",
+        "lesson_knowledge", "lesson_chain",
+    ),
     a_museum: ("museum",),
+    a_poster: ("museum_poster",),
     a_fleet: ("fleet",),
     a_contest: ("compared",),
     a_sweep: ("swept",),

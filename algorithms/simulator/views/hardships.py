@@ -182,9 +182,15 @@ def _turned_to(observer: Pose2, at: FloatArray, off: int) -> Pose2:
 def poster(stage: Stage, rng: np.random.Generator, robot: bool) -> Staged | None:
     """A photograph of a robot on a wall, and no robot."""
     observer = stage.observer(rng)
-    picture, width, height = robot_picture(whole(rng, 0, VARIANTS - 1))
-    found = wall_near(rng, stage.building, stage.seed, observer.xy, 4.5, width) if observer else None
-    if observer is None or found is None:
+    variant = whole(rng, 0, VARIANTS - 1)
+    return poster_before(stage, rng, observer, variant) if observer else None
+
+
+def poster_before(stage: Stage, rng: np.random.Generator, observer: Pose2, variant: int) -> Staged | None:
+    """A photograph of a robot on a wall near an observer, who turns to it on the spot."""
+    picture, width, height = robot_picture(variant)
+    found = wall_near(rng, stage.building, stage.seed, observer.xy, 4.5, width)
+    if found is None:
         return None
     left, right = found
     hung = Poster(

@@ -72,13 +72,13 @@ def pictured(
         scene = ViewScene(building, robots, light=draw_light(rng), seed=seed)
         here = Pose2(x1, y1, radians(heading))
         view = view_of(scene, here, camera, height, observer.body.lidar, mounting, rng)
-        believed = _believed(observer.believed, at.observer, turn)
-        found.append(PicturedEncounter(view, believed, _believed(observed.believed, at.observed, 0)))
+        believed = believed_pose(observer.believed, at.observer, turn)
+        found.append(PicturedEncounter(view, believed, believed_pose(observed.believed, at.observed)))
     return tuple(found)
 
 
-def _believed(track: Track, scan: int, turn: int) -> Pose2:
-    """Where a robot believed to be, turned by so many ticks."""
+def believed_pose(track: Track, scan: int, turn: int = 0) -> Pose2:
+    """Where a robot believed to be, turned by so many ticks; as files hold it."""
     x, y = track.xy[scan].tolist()
     return Pose2(round(x, 6), round(y, 6), round(radians(int(track.heading[scan]) + turn), 6))
 

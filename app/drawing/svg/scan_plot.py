@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import degrees
 
 import numpy as np
@@ -31,10 +32,24 @@ def scan_svg(view: LaserView, one: Sighted | None, camera: Camera, palette: Pale
     wide = WIDE - LEFT - 8
     side = wide / HIGH * reach * (1 + BEHIND) / 2
     plot = SvgPlot(sheet, LEFT, TOP, wide, HIGH, (-side, side), (-BEHIND * reach, reach))
-    shown = np.isfinite(points[:, 0]) & (np.abs(points[:, 1]) < side) & (points[:, 0] < reach)
-    shown &= points[:, 0] > -BEHIND * reach
+    draw_scan(plot, view, one, camera, palette)
+    plot.axes("to the right (m)", "ahead (m)")
+    _draw_legend(sheet, one, palette)
+    return sheet.svg("The laser scan around the observer, seen from above")
+
+
+def draw_scan(
+    plot: SvgPlot, view: LaserView, one: Sighted | None, camera: Camera, palette: Palette, dots: float = 1.0
+) -> None:
+    """What of a scan lies in a plot of the observer's frame, straight ahead up; what belongs to one box.
+
+    dots : times the usual size of a point
+    """
+    points = ahead_up(view.scan.points())
+    (x0, x1), (y0, y1) = plot.across, plot.up
+    shown = (points > (x0, y0)).all(axis=1) & (points < (x1, y1)).all(axis=1)  # false where nothing was hit
     if one is not None:
-        _draw_sector(plot, one, camera, palette, reach)
+        _draw_sector(plot, one, camera, palette)
     mine = np.zeros(len(points), dtype=bool)
     if one is not None and one.cluster is not None:
         mine[one.cluster.beams] = True
@@ -43,16 +58,14 @@ def scan_svg(view: LaserView, one: Sighted | None, camera: Camera, palette: Pale
         (shown & ~mine & ~view.explained, palette.text, 1.6),
         (shown & mine, palette.maps[1], 2.6),
     ):
-        for x, y in plot.at(_ahead_up(points[chosen])).tolist():
-            sheet.dot(x, y, size, colour)
-    _draw_observer(plot, palette)
+        for x, y in plot.at(points[chosen]).tolist():
+            plot.sheet.dot(x, y, dots * size, colour)
+    if plot.holds(np.zeros(2)):
+        _draw_observer(plot, palette)
     if one is not None and one.cluster is not None:
-        mean = view.scan.mounting.apply(mean_of_points(one.cluster))
-        sheet.dot(*plot.one(-mean[1], mean[0]), 4.5, None, palette.maps[0], width=2)
+        mean = ahead_up(view.scan.mounting.apply(mean_of_points(one.cluster))[None])[0]
+        plot.sheet.dot(*plot.one(*mean.tolist()), 4.5, None, palette.maps[0], width=2)
         _draw_centre(plot, one, palette)
-    plot.axes("to the right (m)", "ahead (m)")
-    _draw_legend(sheet, one, palette)
-    return sheet.svg("The laser scan around the observer, seen from above")
 
 
 def _reach(points: FloatArray, one: Sighted | None) -> float:
@@ -64,19 +77,24 @@ def _reach(points: FloatArray, one: Sighted | None) -> float:
     return min(max(LEAST, float(np.max(ahead, initial=LEAST))), MOST)
 
 
-def _ahead_up(points: FloatArray) -> FloatArray:
+def ahead_up(points: FloatArray) -> FloatArray:
     """(N, 2) points of the robot's frame, turned so that straight ahead is up."""
     return np.column_stack([-points[:, 1], points[:, 0]])
 
 
-def _draw_sector(plot: SvgPlot, one: Sighted, camera: Camera, palette: Palette, reach: float) -> None:
-    """The directions of a box: what the pixels say of the bearing."""
+def sector(one: Sighted, camera: Camera, reach: float) -> FloatArray:
+    """(3, 2) corners of the directions of a box, from the camera on: what the pixels say of the bearing;
+    metres, the observer's frame.
+    """
     edges = np.clip([one.detection.left, one.detection.right], 0, camera.width - 1)
-    left, right = (camera.bearings(edges, one.detection.middle[1]) + camera.mounting.theta).tolist()
-    start = camera.mounting.xy
-    ends = [start + 2 * reach * np.array([np.cos(angle), np.sin(angle)]) for angle in (left, right)]
-    corners = plot.at(_ahead_up(np.array([start, *ends])))
-    inside = _clipped(corners, plot)
+    angles = camera.bearings(edges, one.detection.middle[1]) + camera.mounting.theta
+    ends = camera.mounting.xy + reach * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    return np.array([camera.mounting.xy, *ends])
+
+
+def _draw_sector(plot: SvgPlot, one: Sighted, camera: Camera, palette: Palette) -> None:
+    reach = 4 * float(np.abs([plot.across, plot.up]).max())  # beyond the plot
+    inside = _clipped(plot.at(ahead_up(sector(one, camera, reach))), plot)
     plot.sheet.path(inside, palette.particle, 1, palette.particle, close=True, fill_alpha=0.22)
 
 
@@ -102,6 +120,15 @@ def _clipped(corners: FloatArray, plot: SvgPlot) -> FloatArray:
     return np.array(polygon).reshape(-1, 2)
 
 
+def _line_inside(start: Sequence[float], end: Sequence[float], plot: SvgPlot) -> FloatArray:
+    """A line from a place in a plot to another one, cut off at the plot's edge."""
+    first, way = np.asarray(start), np.subtract(end, start)
+    low, high = np.array([plot.x, plot.y]), np.array([plot.x + plot.wide, plot.y + plot.high])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.where(way > 0, (high - first) / way, np.where(way < 0, (low - first) / way, np.inf))
+    return np.array([first, first + min(1.0, float(shares.min())) * way])
+
+
 def _draw_observer(plot: SvgPlot, palette: Palette) -> None:
     x, y = plot.one(0, 0)
     plot.sheet.dot(x, y, 6, palette.maps[0], "#fff")
@@ -118,10 +145,10 @@ def _draw_centre(plot: SvgPlot, one: Sighted, palette: Palette) -> None:
     turn = np.linspace(0, 2 * np.pi, 41)[:, None]
     ring = 2 * seen.sigma_range * np.cos(turn) * along
     ring = ring + 2 * seen.sigma_bearing * seen.range * np.sin(turn) * aside
-    plot.sheet.path(plot.at(_ahead_up(seen.point() + ring)), palette.best, 1.5, close=True)
+    plot.sheet.path(plot.at(ahead_up(seen.point() + ring)), palette.best, 1.5, close=True)
     x, y = plot.one(-float(seen.point()[1]), float(seen.point()[0]))
     plot.sheet.cross(x, y, 5, palette.best)
-    plot.sheet.path([plot.one(0, 0), (x, y)], palette.best, 1.2, dash="4 4")
+    plot.sheet.path(_line_inside((x, y), plot.one(0, 0), plot), palette.best, 1.2, dash="4 4")
 
 
 def _draw_legend(sheet: SvgCanvas, one: Sighted | None, palette: Palette) -> None:

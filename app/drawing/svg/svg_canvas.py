@@ -5,6 +5,7 @@ Coordinates are pixels of a sheet that is ``WIDE`` across, y down. Every text is
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from html import escape
@@ -150,6 +151,13 @@ class SvgCanvas:
             f'preserveAspectRatio="none"{style} href="data:image/png;base64,{png_base64(pixels)}"/>'
         )
 
+    def photo(self, jpeg: bytes, x: float, y: float, wide: float, high: float) -> None:
+        """A JPEG as wide as a rectangle; what is too high is cut off above and below alike."""
+        self.parts.append(
+            f'<image x="{x:.1f}" y="{y:.1f}" width="{wide:.1f}" height="{high:.1f}" '
+            f'preserveAspectRatio="xMidYMid slice" href="data:image/jpeg;base64,{b64encode(jpeg).decode()}"/>'
+        )
+
     def chip(self, x: float, y: float, colour: Colour, words: str, shape: str = "square") -> float:
         """An entry of a legend; returns where the next one may begin."""
         if shape == "line":
@@ -197,6 +205,11 @@ class SvgPlot:
     def one(self, x: float, y: float) -> tuple[float, float]:
         px, py = self.at([(x, y)])[0].tolist()
         return px, py
+
+    def holds(self, point: FloatArray) -> bool:
+        """Whether a (2,) point lies in the plot."""
+        (x0, x1), (y0, y1) = self.across, self.up
+        return bool(x0 <= point[0] <= x1 and y0 <= point[1] <= y1)
 
     def axes(
         self, across: str = "", up: str = "", xticks: Sequence[float] | None = None,

@@ -9,12 +9,14 @@ from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import read_case
 from algorithms.files.fleet_file import read_fleet
 from algorithms.files.fleet_truth_file import read_fleet_truth
+from algorithms.files.observation_file import OBSERVATION_FILE, read_known
 from algorithms.files.truth_file import TRUTH_FILE, Truth
 from algorithms.fleets.pair_hypotheses import PairOrder
 from algorithms.observations.fleet import Fleet
 from app.model.fleet_state import FleetState
 from app.model.merge_inputs import MergeInputs
-from app.page.lesson.lesson_texts import Exhibit
+from app.page.lesson.exhibit_texts import Exhibit
+from app.page.lesson.sighting_look import SightingTask
 from app.system import data_paths as paths
 
 
@@ -27,9 +29,18 @@ def exhibit_inputs(exhibit: Exhibit) -> tuple[MergeInputs, MergeInputs]:
         pair = _pair_of_fleet(exhibit)
         return pair, pair
     inputs = MergeInputs.of(read_case(paths.samples()[exhibit.case], exhibit.rough))
+    if exhibit.picture:
+        inputs = inputs.knowing(read_known(paths.pictures()[exhibit.picture] / OBSERVATION_FILE))
     wrong = inputs.knowing(inputs.pool, exhibit.known)
     same = exhibit.cure_known == exhibit.known
     return wrong, wrong if same else inputs.knowing(inputs.pool, exhibit.cure_known)
+
+
+def exhibit_picture(exhibit: Exhibit) -> SightingTask | None:
+    """The look at the picture that an exhibit is of; None where it is of none."""
+    if not exhibit.picture:
+        return None
+    return SightingTask(paths.pictures()[exhibit.picture], paths.samples()[exhibit.case])
 
 
 def exhibit_fleet(exhibit: Exhibit) -> Fleet | None:

@@ -18,7 +18,7 @@ from app.model.view_modes import LESSON
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_display import LessonDisplay, OnMap
 from app.page.lesson.lesson_run import LessonRun, keep
-from app.page.lesson.lesson_texts import StepText, files, read_step, with_settings
+from app.page.lesson.lesson_texts import StepText, files, first_number, read_step, with_settings
 from app.page.lesson.placeholders import NUMBERS
 from app.page.modes import Mode
 from app.page.run_controller import RunController
@@ -80,7 +80,7 @@ class LessonController:
             proof = getattr(self._state.config, "proof", None)
             if proof is None or not proof.whole_circle:  # the lesson ends with a proof
                 self._runs.set_method(DEFAULT_METHOD, METHODS[DEFAULT_METHOD].defaults)
-            self._panel.contents([self._title(path) for path in self._files])
+            self._panel.contents([self._title(path) for path in self._files], first_number(self._files))
             self._dock(True)
             self._begin()
             self.go(min(self._index, len(self._files) - 1))
@@ -122,7 +122,7 @@ class LessonController:
             self._text = None
             if self._done:  # what may be at work is compared by the step that is left
                 self._thread.stop()
-            self._index, self._display.places, self._answered = index, (), set()
+            self._index, self._display.places, self._display.way, self._answered = index, (), "", set()
             try:
                 self._text = read_step(self._files[index], PICTURES, NUMBERS)
             except MapMergeError as error:
@@ -159,7 +159,9 @@ class LessonController:
                 self._answered.discard(number)
             else:
                 self._answered.add(number)
-                if trial.button:
+                if trial.show:
+                    self._display.draw_as(text.picture, trial.show)
+                elif trial.button:
                     config = self._state.config
                     self._tried = number, config
                     self._runs.set_method(self._state.method, with_settings(config, trial.settings))
@@ -167,6 +169,7 @@ class LessonController:
             self._show(fresh=False)
 
     def _put_back(self) -> None:
+        self._display.way = ""
         if self._tried is not None:
             _, config = self._tried
             self._tried = None
@@ -186,25 +189,28 @@ class LessonController:
         if self._lesson.possible and job is not None:
             self._thread.request(job)
 
-    def _compare(self) -> None:
-        """Begin the next of the merges that the step at hand compares, once the lesson's own is over."""
+    def _compare(self) -> bool:
+        """Begin the next of the merges that the step at hand compares, once the lesson's own is over, or at
+        once where they come early; whether one is begun.
+        """
         text, lesson = self._text, self._lesson
         picture = PICTURES.get(text.picture) if text is not None and self.open else None
-        if text is None or picture is None or picture.compares is None or not self._done:
-            return
-        if not lesson.reached(*picture.needs):
-            return
+        if text is None or picture is None or picture.compares is None or not (self._done or picture.early):
+            return False
+        if not lesson.possible or not lesson.reached(*picture.needs):
+            return False
         runs = lesson.sides.get(text.picture) or picture.compares(lesson)
         lesson.sides[text.picture] = runs
         if runs.next is not None:
             self._thread.request(runs.next.job)
+        return runs.next is not None
 
     def _compared(self, job: MergeJob, run: RunState, failed: str = "") -> bool:
         """Take in one of these merges, as far as it has come; whether it is one."""
         one = self._lesson.compared(job)
         if one is not None:
             one.run, one.failed = run, failed
-            self._show(fresh=True, moved=True)
+            self._show(fresh=True, moved=not one.over)  # its numbers may stand in the text
         return one is not None
 
     def _record(self, run: Iterator[Step]) -> Iterator[Step]:
@@ -235,12 +241,20 @@ class LessonController:
         """Other tabs' runs are at work; the picture says that it is being worked out."""
 
     def ended(self, job: MergeJob, run: RunState) -> None:
-        if not self._compared(job, run):
+        if self._compared(job, run):
+            self._go_on()
+        else:
             had = self._lesson
             self._lesson = LessonRun(had.inputs, job.config, job.seed, tuple(self._steps), had.sides)
             self._done = True
             self._show(fresh=not had.steps)
-        self._compare()
+            self._compare()
+
+    def _go_on(self) -> None:
+        """One that is compared is over: the next comes; after those that come early the lesson's own run."""
+        job = self._state.job()
+        if not self._compare() and not self._done and job is not None:
+            self._thread.request(job)
 
     def stopped(self, job: MergeJob, run: RunState) -> None:
         """The run is no longer wanted; one that is compared begins anew when its step is opened again."""
@@ -249,7 +263,7 @@ class LessonController:
 
     def failed(self, job: MergeJob, run: RunState, error: Exception) -> None:
         if self._compared(job, run, str(error)):
-            self._compare()
+            self._go_on()
             return
         self._done = True
         self._panel.picture(f"These maps cannot be merged: {error}")
@@ -274,7 +288,9 @@ class LessonController:
                 return
             if not moved:
                 self._display.words(self._index, text, lesson, self._answered)
-            says = f"Lesson, step {self._index + 1} of {len(self._files)}: {text.title}"
+            first = first_number(self._files)
+            where = f"step {first + self._index} of {first + len(self._files) - 1}"
+            says = f"Lesson, {where}: {text.title}"
             self._show_on_map(self._display.picture(text, lesson, self._done), says, fresh)
 
     def _show_on_map(self, step: OnMap, says: str, look: bool) -> None:

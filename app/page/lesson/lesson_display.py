@@ -46,6 +46,7 @@ class LessonDisplay:
     def __init__(self, state: PageState, display: PageDisplay, panel: LessonPanel) -> None:
         self._state, self._display, self._panel = state, display, panel
         self.places: tuple[int, ...] = ()
+        self.way = ""  # in which a thing to try has the picture drawn
 
     def dock(self, open_: bool, turned: bool) -> None:
         """Open the dock or close it; ``turned``: the map is in view from now on, and was not before."""
@@ -58,14 +59,19 @@ class LessonDisplay:
         self._display.show_buttons()
 
     def words(self, index: int, text: StepText, lesson: LessonRun, answered: Collection[int]) -> None:
-        """Show what a step says; ``answered``: numbers of the things to try whose answers are shown."""
+        """Show a step's title and what to try; ``answered``: numbers of those whose answers are shown."""
         numbers = numbers_of(lesson) if lesson.possible else {}
-        self._panel.text(index, text.title, filled(text.body, numbers), text.equations, OWN)
+        self._panel.text(index, text.title, OWN)
         answers = enumerate(filled(trial.answer, numbers) for trial in text.trials)
         self._panel.trials(text.trials, [answer if k in answered else "" for k, answer in answers])
 
+    def draw_as(self, picture: str, way: str) -> None:
+        """Draw a picture in another way from now on, its dials where that is seen."""
+        self.way, self.places = way, PICTURES[picture].ways[way].places
+
     def picture(self, text: StepText, lesson: LessonRun, done: bool) -> OnMap:
-        """Draw a step's picture, or say why there is none yet; what belongs to it on the map.
+        """Draw a step's picture, or say why there is none yet, and what stands beside it; what belongs to it
+        on the map.
 
         done : the run has come to its end
         """
@@ -73,18 +79,26 @@ class LessonDisplay:
         if picture is None or not lesson.possible or not lesson.reached(*picture.needs):
             waiting = "" if picture is None else NO_MAPS if not lesson.inputs.sighted else WAIT
             over = done or not lesson.possible
+            self._beside(text, lesson, ())
             self._panel.picture(NOT_HERE if waiting == WAIT and over else waiting)
             self._panel.dials((), ())
             return OnMap(RunState(lesson.config), busy=waiting == WAIT and not over)
         dials = picture.dials(lesson)
         places = self._placed(dials)
         self._panel.dials(dials, places)
-        self._panel.picture(picture.draw(lesson, places, palette))
+        self._beside(text, lesson, places)
+        self._panel.picture(picture.ways.get(self.way, picture).draw(lesson, places, palette))
         ink = picture.ink(lesson, places, self._display.views.map.layout, palette)
         turn = picture.turn(lesson, places) if picture.turn else None
         runs = lesson.sides.get(text.picture)
         share = None if runs is None else runs.done
         return OnMap(picture.run(lesson, places), ink, turn, busy=share is not None, done=share)
+
+    def _beside(self, text: StepText, lesson: LessonRun, places: tuple[int, ...]) -> None:
+        """Show words and equations; where the picture has parts, those of the part that its dial shows."""
+        part = places[0] if places else 0
+        numbers = numbers_of(lesson) if lesson.possible else {}
+        self._panel.beside(filled(text.words(part), numbers), text.formulas(part))
 
     def on_map(self, step: OnMap, says: str, look: bool) -> None:
         """Draw the state's run on the map, and what the lesson draws over it.

@@ -25,6 +25,7 @@ class LessonPanel:
 
     def __init__(self, gui: viser.GuiApi) -> None:
         self._titles: tuple[str, ...] = ("…",)
+        self._first = 1  # number of the first step
         self._dials: tuple[FigureSlider, ...] = ()
         self._panel = gui.add_panel(visible=False)
         with self._panel.add_tab("Lesson", icon=viser.Icon.SCHOOL):
@@ -78,27 +79,35 @@ class LessonPanel:
         if yes:
             self._panel.set_width(WIDTH)
 
-    def contents(self, titles: Sequence[str]) -> None:
-        self._titles = tuple(f"{k}. {title}" for k, title in enumerate(titles, 1))
+    def contents(self, titles: Sequence[str], first: int) -> None:
+        """Name the steps; ``first``: the number of the first of them."""
+        self._first = first
+        self._titles = tuple(f"{k}. {title}" for k, title in enumerate(titles, first))
         put(self._step, options=self._titles)
 
-    def text(self, index: int, title: str, body: str, equations: Sequence[str], foot: str = "") -> None:
-        """Show the words of a step."""
+    def text(self, index: int, title: str, foot: str = "") -> None:
+        """Show the title of a step."""
         put(self._step, value=self._titles[index])
         dots = "".join(f"<i{' data-on' if k <= index else ''}></i>" for k in range(len(self._titles)))
-        step, last = index + 1, len(self._titles)
+        first = self._first
+        step, last = first + index, first + len(self._titles) - 1
         where = f"step {step} of {last}"
         self._title.content = (
-            f'<div class="mm-lesson" data-step="{step}" data-last="{last}"><h3>{escape(title)}</h3>'
+            f'<div class="mm-lesson" data-step="{step}" data-first="{first}" data-last="{last}">'
+            f"<h3>{escape(title)}</h3>"
             f'<span class="mm-dots" role="img" aria-label="{where}" title="{where}">{dots}</span></div>'
         )
-        self._body.content = body
-        self._equations.content = equations_html(equations) if equations else ""
         self._foot.content = f'<div class="mm-foot">{escape(foot)}</div>' if foot else ""
+
+    def beside(self, words: str, equations: Sequence[str]) -> None:
+        """Show what stands beside a picture: Markdown, and equations by their names."""
+        put(self._body, content=words)
+        put(self._equations, content=equations_html(equations))
 
     def broken(self, index: int, title: str, what: str) -> None:
         """Tell what is wrong with the text of a step."""
-        self.text(index, title, "", ())
+        self.text(index, title)
+        self.beside("", ())
         self.picture("")
         self.dials((), ())
         self.trials((), ())

@@ -23,6 +23,7 @@ from app.model.merge_inputs import MergeInputs
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
 from app.page.lesson.side_runs import SideRun, SideRuns
+from app.page.lesson.sighting_look import SIGHTING, SightingLook
 
 D = TypeVar("D")
 
@@ -67,8 +68,9 @@ class LessonRun:
         return self.all(kind)[-1]
 
     def reached(self, *kinds: type) -> bool:
-        """Whether the run has come to all of these."""
-        return {type(step.detail) for step in self.steps}.issuperset(kinds)
+        """Whether the run has come to all of these; a look at a picture comes beside it."""
+        there = {type(step.detail) for step in self.steps}
+        return (there | ({SightingLook} if self.look else set())).issuperset(kinds)
 
     def run_until(self, kind: type, index: int = -1) -> RunState:
         """The run up to a step of a kind, as the page draws it; empty where it has not come to it."""
@@ -81,6 +83,13 @@ class LessonRun:
     def compared(self, job: MergeJob) -> SideRun | None:
         """Of the merges that a step compares the one that a job belongs to."""
         return next((one for runs in self.sides.values() if (one := runs.of(job)) is not None), None)
+
+    @property
+    def look(self) -> SightingLook | None:
+        """What camera and laser saw; None before a student has asked for it."""
+        runs = self.sides.get(SIGHTING)
+        run = runs.each[0].run if runs is not None else None
+        return None if run is None else run.get(SightingLook)
 
     # --- worked out once --------------------------------------------------------------------------
 

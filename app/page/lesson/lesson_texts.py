@@ -1,4 +1,4 @@
-"""The texts of the lesson and of the museum: one Markdown file each, with a front matter in YAML.
+"""The texts of the lesson: one Markdown file a step, with a front matter in YAML.
 
 A teacher rewrites, reorders, adds or translates them without touching code: the order is that of the file
 names. What is wrong with a file is reported with its name; the files beside it are shown all the same.
@@ -7,16 +7,14 @@ names. What is wrong with a file is reported with its name; the files beside it 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from algorithms.common.errors import InputFileError, MapMergeError, unreadable
-from algorithms.files.yaml_fields import Fields, parse, positive_number, shown
-from algorithms.methods.registry import METHODS
+from algorithms.files.yaml_fields import Fields, parse, shown
 from algorithms.methods.spectra_config import PipelineConfig
-from app.model.knowledge import Choice
 from app.model.settings import Path as SettingPath
 from app.model.settings import Setting, settings_of, what_became_of, with_value
 from app.page.lesson import equations
@@ -24,12 +22,17 @@ from app.system import data_paths as paths
 
 Settings = tuple[tuple[SettingPath, Any], ...]
 
-KNOWN: tuple[Choice, ...] = ("sighting", "nothing")  # in an exhibit
-
-EXHIBIT = "title", "case", "rough", "sighting", "method", "settings", "known", "cure", "why", "cured"
 FENCE = "---"
 PLACEHOLDER = re.compile(r"\{([A-Za-z_][A-Za-z_0-9]*)\}")
+PART = re.compile(r"^\*\*\*\s*$", flags=re.M)  # between the parts of a text
 EXAMPLE = "begin the file with a line ---, then title: …, then a line ---, then the text"
+
+
+class Picture(Protocol):
+    """What a text has to know of a picture: the names of other ways in which it can be drawn."""
+
+    @property
+    def ways(self) -> Collection[str]: ...
 
 
 @dataclass(frozen=True)
@@ -38,63 +41,45 @@ class Exercise:
 
     button   : what the button that does it is called; empty where hands and eyes do
     settings : what the button sets
+    show     : the other way in which it has the picture drawn; empty where it sets something
     """
 
     ask: str
     answer: str
     button: str = ""
     settings: Settings = ()
+    show: str = ""
 
 
 @dataclass(frozen=True)
 class StepText:
-    """One step of the lesson. ``picture`` is a name of ``figure_registry``, or empty."""
+    """One step of the lesson.
 
-    source: str
-    title: str
-    picture: str
-    equations: tuple[str, ...]
-    trials: tuple[Exercise, ...]
-    body: str
-
-
-@dataclass(frozen=True)
-class Exhibit:
-    """One failure of the museum: what to load, how it fails, and what cures it.
-
-    case, rough  : name of a sample, and whether its badly measured sighting is taken
-    sighting     : number from 1, where the sample is a fleet: its pair is merged by that alone, and the cure
-                   merges the fleet; 0 where it is a pair
-    method, settings, known : it fails with; of what is known that is used
-    cure_method, cure_settings, cure_known : it merges with
-    why, cured   : what happened, and why the cure helps; Markdown
+    picture   : a name of ``figure_registry``, or empty
+    equations : those beside each part of the picture; one group where it has no parts
+    body      : Markdown; a line of three asterisks between the words for each part
     """
 
     source: str
     title: str
-    case: str
-    rough: bool
-    sighting: int
-    method: str
-    settings: Settings
-    known: Choice
-    cure: str
-    cure_method: str
-    cure_settings: Settings
-    cure_known: Choice
+    picture: str
+    equations: tuple[tuple[str, ...], ...]
+    trials: tuple[Exercise, ...]
     body: str
-    why: str
-    cured: str
+
+    def words(self, part: int) -> str:
+        """What stands beside a part of the picture, from 0."""
+        words = PART.split(self.body)
+        return words[min(part, len(words) - 1)]
+
+    def formulas(self, part: int) -> tuple[str, ...]:
+        """Names of the equations beside a part of the picture, from 0."""
+        return self.equations[min(part, len(self.equations) - 1)] if self.equations else ()
 
 
 def lesson_folder(language: str = "en") -> Path:
     """Where the lesson that comes along is."""
     return paths.static() / "lesson" / language
-
-
-def museum_folder(language: str = "en") -> Path:
-    """Where the museum that comes along is."""
-    return paths.static() / "museum" / language
 
 
 def files(folder: Path) -> list[Path]:
@@ -109,61 +94,38 @@ def files(folder: Path) -> list[Path]:
     return found
 
 
-def read_step(path: Path, pictures: Collection[str], numbers: Collection[str]) -> StepText:
+def first_number(found: Sequence[Path]) -> int:
+    """What the first of these texts is counted as: 0 where its name begins with 00."""
+    return 0 if found[0].name.startswith("00") else 1
+
+
+def read_step(path: Path, pictures: Mapping[str, Picture], numbers: Collection[str]) -> StepText:
     """Read a step of the lesson; raises InputFileError that names the file, the finding and the remedy.
 
-    pictures, numbers : names of the pictures and of the placeholders that there are
+    pictures, numbers : the pictures by their names, and the names of the placeholders that there are
     """
-    fields, body = _parts(path)
+    fields, body = parts_of(path)
     fields.refuse_unknown("title", "picture", "equations", "try")
     picture = fields.text("picture", "name a picture, or leave it out") if "picture" in fields.values else ""
     if picture and picture not in pictures:
         raise fields.error("picture", f"is {shown(picture)}", f"known are {', '.join(sorted(pictures))}")
-    named, known = _list(fields, "equations", "give a list of names, or leave it out"), equations.names()
-    for name in named:
+    groups, known = _list(fields, "equations", "give a list of names, or leave it out"), equations.names()
+    if not any(isinstance(group, list) for group in groups):
+        groups = [groups] if groups else []
+    for name in (name for group in groups for name in (group if isinstance(group, list) else [group])):
         if name not in known:
             raise fields.error("equations", f"holds {shown(name)}", f"known are {', '.join(known)}")
     title = fields.text("title", "give the step a title")
-    trials = tuple(_trial(fields, k, entry) for k, entry in enumerate(_list(fields, "try", "give a list"), 1))
+    ways = pictures[picture].ways if picture else ()
+    entries = enumerate(_list(fields, "try", "give a list"), 1)
+    trials = tuple(_trial(fields, k, entry, ways) for k, entry in entries)
     for text in (body, *(words for trial in trials for words in (trial.ask, trial.answer))):
         for found in PLACEHOLDER.findall(text):
             if found not in numbers:
                 wrong = f"holds {{{found}}}, which is no number of the lesson"
                 raise InputFileError(path, wrong, f"known are {', '.join(numbers)}")
-    return StepText(str(path), title, picture, tuple(named), trials, body)
-
-
-def read_exhibit(path: Path) -> Exhibit:
-    """Read an exhibit of the museum; raises InputFileError as ``read_step`` does."""
-    fields, body = _parts(path)
-    fields.refuse_unknown(*EXHIBIT)
-    case = fields.text("case", "name a sample")
-    sighting = int(positive_number(fields, "sighting", "the number of a sighting", 0.0))
-    samples = paths.fleets() if sighting else paths.samples()
-    if case not in samples:
-        raise fields.error("case", f"is {shown(case)}", f"known are {', '.join(samples)}")
-    cure = fields.section("cure", "give {button: …, method: …, settings: {…}, known: …}")
-    cure.refuse_unknown("button", "method", "settings", "known")
-    method = _method(fields)
-    cure_method = _method(cure) if "method" in cure.values else method
-    known = _known(fields, "sighting", method)
-    return Exhibit(
-        source=str(path),
-        title=fields.text("title", "give the exhibit a title"),
-        case=case,
-        rough=fields.flag("rough", "give true or false") if "rough" in fields.values else False,
-        sighting=sighting,
-        method=method,
-        settings=_settings(fields, METHODS[method].defaults),
-        known=known,
-        cure=cure.text("button", "say in a few words what the cure does"),
-        cure_method=cure_method,
-        cure_settings=_settings(cure, METHODS[cure_method].defaults),
-        cure_known=_known(cure, known, cure_method),
-        body=body,
-        why=fields.text("why", "say what happened, and why"),
-        cured=fields.text("cured", "say why the cure helps"),
-    )
+    grouped = tuple(tuple(group) if isinstance(group, list) else (group,) for group in groups)
+    return StepText(str(path), title, picture, grouped, trials, body)
 
 
 def with_settings(config: Any, settings: Settings) -> Any:
@@ -180,7 +142,7 @@ def filled(text: str, numbers: Mapping[str, str]) -> str:
     return PLACEHOLDER.sub(lambda found: numbers.get(found[1], "…"), text)
 
 
-def _parts(path: Path) -> tuple[Fields, str]:
+def parts_of(path: Path) -> tuple[Fields, str]:
     """Front matter and text of a file."""
     try:
         lines = Path(path).read_text(encoding="utf-8").splitlines()
@@ -202,39 +164,28 @@ def _list(fields: Fields, key: str, remedy: str) -> list[Any]:
     return value
 
 
-def _trial(fields: Fields, index: int, entry: Any) -> Exercise:
+def _trial(fields: Fields, index: int, entry: Any, ways: Collection[str]) -> Exercise:
     if not isinstance(entry, dict):
         raise fields.error("try", f"holds {shown(entry)}", "give {ask: …, answer: …} per thing to try")
     own = Fields(fields.source, entry, f"try {index}: ")
-    own.refuse_unknown("ask", "answer", "button", "set")
-    settings = _settings(own, PipelineConfig(), "set") if "set" in entry else ()
+    own.refuse_unknown("ask", "answer", "button", "set", "show")
+    settings = settings_in(own, PipelineConfig(), "set") if "set" in entry else ()
     button = own.text("button", "say what the button is called") if "button" in entry else ""
-    if bool(button) != bool(settings):
-        raise own.error("button and set", "are not both there", "give both of them, or neither")
+    show = own.text("show", "name a way to draw the picture") if "show" in entry else ""
+    if show and show not in ways:
+        remedy = f"known are {', '.join(ways)}" if ways else "this picture is drawn in one way only"
+        raise own.error("show", f"is {shown(show)}", remedy)
+    if show and settings:
+        raise own.error("set and show", "are both there", "give one of them")
+    if bool(button) != bool(settings or show):
+        remedy = "give both of them, or neither; with show in place of set"
+        raise own.error("button and set", "are not both there", remedy)
     ask, answer = own.text("ask", "say what to try"), own.text("answer", "say what is to be seen")
-    return Exercise(ask, answer, button, settings)
+    return Exercise(ask, answer, button, settings, show)
 
 
-def _method(fields: Fields) -> str:
-    method = fields.text("method", "name a method")
-    if method not in METHODS:
-        raise fields.error("method", f"is {shown(method)}", f"known are {', '.join(METHODS)}")
-    return method
-
-
-def _known(fields: Fields, usual: Choice, method: str) -> Choice:
-    """What is used of what is known; samples have sightings and nothing else."""
-    remedy = f"known are {', '.join(KNOWN)}"
-    word = fields.text("known", remedy) if "known" in fields.values else usual
-    choice = next((one for one in KNOWN if one == word), None)
-    if choice is None:
-        raise fields.error("known", f"is {shown(word)}", remedy)
-    if choice == "nothing" and METHODS[method].needs_sighting:
-        raise fields.error("known", "is nothing", f"the method {method} needs a sighting")
-    return choice
-
-
-def _settings(fields: Fields, config: Any, key: str = "settings") -> Settings:
+def settings_in(fields: Fields, config: Any, key: str = "settings") -> Settings:
+    """What a text sets, of a method that has this config."""
     if key not in fields.values:
         return ()
     section = fields.section(key, "give a mapping like {augment.intensity: 1}")

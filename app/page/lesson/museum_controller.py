@@ -16,15 +16,11 @@ from app.model.settings import settings_of, text_for, value_at
 from app.model.status_text import apart_by
 from app.model.view_modes import MUSEUM
 from app.page.inputs_controller import InputsController
-from app.page.lesson.exhibit_samples import exhibit_fleet, exhibit_inputs
-from app.page.lesson.lesson_texts import (
-    Exhibit,
-    Settings,
-    files,
-    museum_folder,
-    read_exhibit,
-    with_settings,
-)
+from app.page.lesson.exhibit_samples import exhibit_fleet, exhibit_inputs, exhibit_picture
+from app.page.lesson.exhibit_texts import Exhibit, museum_folder, read_exhibit
+from app.page.lesson.figures.poster_figure import opinions, poster
+from app.page.lesson.lesson_texts import Settings, files, with_settings
+from app.page.lesson.sighting_look import LookThread, SightingLook
 from app.page.run_controller import RunController
 from app.page.tab import Tab
 from app.page.undo.page_snapshot import PageSnapshot
@@ -52,9 +48,16 @@ class MuseumController:
         self._index = 0
         self._exhibit: Exhibit | None = None
         self._pair = self._cured_pair = MergeInputs()
+        self._looks = LookThread(runs.thread.runner, tab.state.locks.drawing, self._seen, self._panel.picture)
+        self._look: SightingLook | None = None  # at the picture of the exhibit at hand
+        self._asked = False  # whether laser and map may say what they say of it
         self._panel.connect(self.pick, self.cure, lambda: self.pick(self._index), self.leave)
         tab.state.subscribe("result", self._result_shown)
         tab.state.subscribe("fleet", self._fleet_shown)
+        tab.state.subscribe("palette", self._show_look)
+
+    def close(self) -> None:
+        self._looks.close()
 
     def toggle(self) -> None:
         (self.leave if self.open else self.enter)()
@@ -81,6 +84,7 @@ class MuseumController:
             if not self.open:
                 return
             before, self._before, self._exhibit = self._before, None, None
+            self._looks.stop()
             self._show(False)
             if before is not None:
                 self._undo.go_to(before, "leave the museum")
@@ -96,6 +100,8 @@ class MuseumController:
             if not self.open or not 0 <= index < len(self._files):
                 return
             self._index, self._exhibit = index, None
+            self._looks.stop()
+            self._look, self._asked = None, False
             try:
                 exhibit = read_exhibit(self._files[index])
                 self._pair, self._cured_pair = exhibit_inputs(exhibit)
@@ -106,6 +112,10 @@ class MuseumController:
             method, config = self._failing(exhibit)
             self._panel.exhibit(index, exhibit.body)
             self._panel.settings(rows(exhibit, config))
+            task = exhibit_picture(exhibit)
+            if task is not None:
+                self._panel.picture("The detector looks at the picture …")
+                self._looks.ask(task, self._pair, config)
             self._runs.thread.stop()
             self._modes.close()
             self._runs.set_method(method, config, seed=0)
@@ -150,9 +160,11 @@ class MuseumController:
         if failing and ran == self._failing(exhibit) and not right:
             noticed = "The verdict saw it." if verdict == "refused" else "The verdict did not see it."
             self._panel.settings(rows(exhibit, self._state.result_config))
+            self._tell_all()
             self._panel.failed(exhibit.why, f"Wrong: {where} from the truth. {noticed}", exhibit.cure)
         elif cured and ran == self._cured(exhibit) and right:
             self._panel.settings(self._changes(exhibit))
+            self._tell_all()
             self._panel.cured(exhibit.cured, f"Cured: {where} from the truth, and {verdict}.")
 
     def _fleet_shown(self) -> None:
@@ -164,6 +176,20 @@ class MuseumController:
         if state.name == exhibit.case and left:
             said = summary(state.result, len(state.robots))
             self._panel.cured(exhibit.cured, f"Cured: {said} {left[0]}.")
+
+    def _seen(self, look: SightingLook) -> None:
+        self._look = look
+        self._show_look()
+
+    def _tell_all(self) -> None:
+        """Let laser and map say what they say of the picture, too; before a merge the detector alone does."""
+        self._asked = True
+        self._show_look()
+
+    def _show_look(self) -> None:
+        if self._exhibit is not None and self._look is not None:
+            said = opinions(self._look)
+            self._panel.picture(poster(self._look, self._state.palette), said if self._asked else said[:1])
 
     def _failing(self, exhibit: Exhibit) -> tuple[str, Any]:
         return exhibit.method, with_settings(METHODS[exhibit.method].defaults, exhibit.settings)
@@ -187,6 +213,8 @@ def rows(exhibit: Exhibit, config: Any) -> list[tuple[str, ...]]:
     sample = exhibit.case + (", badly measured" if exhibit.rough else "")
     sample += f", sighting {exhibit.sighting} alone" if exhibit.sighting else ""
     shown = [("sample", sample), ("method", METHODS[exhibit.method].title)]
+    if exhibit.picture:
+        shown.append(("picture", exhibit.picture))
     if exhibit.known != exhibit.cure_known:
         shown.append(("known", CHOICES[exhibit.known]))
     return shown + _settings(exhibit.settings, config)
@@ -198,6 +226,8 @@ def changes(exhibit: Exhibit, failing: Any, cured: Any) -> list[tuple[str, ...]]
     touched = tuple(dict((*exhibit.settings, *exhibit.cure_settings)).items())
     before, after = dict(_settings(touched, failing)), _settings(touched, cured)
     shown = [("method", _change(*titles))]
+    if exhibit.picture:
+        shown.append(("picture", f"{exhibit.picture} → refused by the laser"))
     if exhibit.known != exhibit.cure_known:
         shown.append(("known", _change(CHOICES[exhibit.known], CHOICES[exhibit.cure_known])))
     shown += [(label, _change(before.get(label, words), words)) for label, words in after]

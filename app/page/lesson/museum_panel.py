@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from html import escape
 
 import viser
 
@@ -19,6 +20,7 @@ class MuseumPanel:
         with self._folder:
             self._exhibit = gui.add_dropdown("Exhibit", self._titles)
             self._body = gui.add_markdown("")
+            self._picture = gui.add_html("")
             self._settings = gui.add_html("")
             self._told = gui.add_html("")
             self._cure = gui.add_button("Cure", color=LIGHT.mov, icon=viser.Icon.BANDAGE, visible=False)
@@ -47,7 +49,20 @@ class MuseumPanel:
         put(self._exhibit, value=self._titles[index])
         self._body.content = body
         self._settings.content = self._told.content = ""
+        put(self._picture, content="")
         self._buttons(cure="", again=False)
+
+    def picture(self, svg: str, said: Sequence[tuple[str, str]] = ()) -> None:
+        """Show the picture of an exhibit, or a line in its place; ``said``: who says what of it."""
+        shown = svg if svg.startswith("<svg") else f'<div class="mm-wait">{escape(svg)}</div>'
+        words = "".join(
+            f'<p style="margin:4px 0"><span style="opacity:.7">{escape(who)}:</span> {escape(what)}</p>'
+            for who, what in said
+        )
+        put(
+            self._picture,
+            content=f'<div style="margin:4px 10px 8px;font-size:12.5px;line-height:1.4">{shown}{words}</div>',
+        )
 
     def settings(self, settings: Sequence[tuple[str, ...]]) -> None:
         """Show what is set for the exhibit, or by its cure."""

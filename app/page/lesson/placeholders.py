@@ -26,6 +26,8 @@ from algorithms.verdict.decision import Verdict
 from app.model.objective_label import measure_of
 from app.model.verdict_text import likelihood
 from app.page.lesson.lesson_run import LessonRun
+from app.page.lesson.sighting_look import SightingLook
+from app.page.lesson.sighting_numbers import SIGHTING_NUMBERS
 
 Number = tuple[tuple[type, ...], Callable[[LessonRun], str]]  # what the run must have come to, and the words
 
@@ -103,6 +105,16 @@ def _verdict(lesson: LessonRun) -> Verdict:
     return lesson.get(MergeResult).verdict
 
 
+def _of_look(words: Callable[[SightingLook], str]) -> Callable[[LessonRun], str]:
+    """The same of a run; an ellipsis where no box was found in the picture."""
+
+    def told(lesson: LessonRun) -> str:
+        look = lesson.look
+        return "…" if look is None or look.calibrated.one is None else words(look)
+
+    return told
+
+
 _RESULT, _HOUGH, _WINDOW = (MergeResult,), (HoughDetail,), (WindowDetail,)
 _FOUND, _MET, _FUSED = (CandidatesDetail, WindowDetail), (ObservationDetail,), (Fusion,)
 _PROVEN = (ProvenDetail,)
@@ -170,6 +182,7 @@ NUMBERS: dict[str, Number] = {
     "bent_from": ((), lambda s: f"{s.config.verdict.bent_from:.0%}"),
     "verdict": (_RESULT, lambda s: _verdict(s).reason),
 }
+NUMBERS |= {name: ((SightingLook,), _of_look(words)) for name, words in SIGHTING_NUMBERS.items()}
 
 
 def numbers_of(lesson: LessonRun) -> dict[str, str]:

@@ -29,6 +29,7 @@ class SideRun:
     covariance : (2, 2) of it; m²
     run        : None before it has begun
     failed     : why there is no answer, as a sentence; empty where there may be one
+    ends       : what it tells at its end
     """
 
     title: str
@@ -37,6 +38,7 @@ class SideRun:
     covariance: FloatArray | None = None
     run: RunState | None = None
     failed: str = ""
+    ends: type = MergeResult
 
     @property
     def result(self) -> MergeResult | None:
@@ -44,7 +46,7 @@ class SideRun:
 
     @property
     def over(self) -> bool:
-        return bool(self.failed) or self.result is not None
+        return bool(self.failed) or (self.run is not None and self.run.reached(self.ends))
 
 
 class SideRuns:

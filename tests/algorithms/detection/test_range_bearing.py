@@ -49,6 +49,15 @@ def test_a_perfect_scan_gives_the_centre_to_less_than_a_beam(body, at):
 
 
 @settings(max_examples=25)
+@given(st.floats(1.0, 2.5), st.floats(-1.5, 1.5), st.floats(-pi, pi), st.floats(-0.3, 0.3))
+def test_the_outline_that_explains_the_beams_best_is_turned_as_the_robot_is(far, direction, turn, mounted):
+    at = Pose2(far * cos(direction), far * sin(direction), turn)
+    seen, _, _ = measured(Footprint(0.6, 0.4), at, mounting=Pose2(0.1, 0.0, mounted))
+    off = wrap_angle(2 * (seen.turn - turn - mounted)) / 2  # a half turn more looks the same
+    assert abs(off) < 0.1
+
+
+@settings(max_examples=25)
 @given(st.sampled_from(BODIES), poses, st.floats(-0.3, 0.3))
 def test_the_mounting_of_the_laser_moves_the_answer_with_it(body, at, turn):
     """Seen from the laser all is as before; the robot's own frame lies elsewhere."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from math import radians
 
 import numpy as np
@@ -23,16 +23,19 @@ from algorithms.methods.steps import (
     WeighedDetail,
 )
 from algorithms.optimisation.optimiser import SearchState
-from app.drawing.draw_items import Item, path
-from app.drawing.palette import Palette
+from app.drawing.draw_items import Item, mark, path
+from app.drawing.palette import Palette, css
 from app.drawing.scene_layout import SceneLayout
+from app.drawing.svg.scan_plot import sector
 from app.model.run_state import RunState
 from app.page.lesson.figures import chain_figure, knowledge_figure, verdict_figure
 from app.page.lesson.figures import map_figures as maps
 from app.page.lesson.figures import search_figures as search
+from app.page.lesson.figures import sighting_figure as sighting
 from app.page.lesson.figures import spectra_figures as spectra
 from app.page.lesson.lesson_run import FEW, LessonRun
 from app.page.lesson.side_runs import SideRuns
+from app.page.lesson.sighting_look import SIGHTING
 
 At = Sequence[int]
 
@@ -55,6 +58,18 @@ class FigureSlider:
 
 
 @dataclass(frozen=True)
+class OtherWay:
+    """Another way to draw a picture, which a thing to try asks for.
+
+    draw   : as that of the picture
+    places : where the dials go, so that it is seen
+    """
+
+    draw: Callable[[LessonRun, At, Palette], str]
+    places: tuple[int, ...]
+
+
+@dataclass(frozen=True)
 class LessonFigure:
     """How one step is drawn.
 
@@ -65,6 +80,8 @@ class LessonFigure:
     ink   : what is drawn over the map besides
     turn  : how far map 2 is turned where it lies beside map 1; None: as the run has it
     compares : makes the merges that it compares, which run while it is looked at; None: it has none
+    early : those come before the lesson's own run, for the picture shows nothing else
+    ways : other ways to draw it, by their names
     """
 
     needs: tuple[type, ...]
@@ -74,6 +91,8 @@ class LessonFigure:
     ink: Callable[[LessonRun, At, SceneLayout, Palette], list[Item]] = lambda *_: []
     turn: Callable[[LessonRun, At], float] | None = None
     compares: Callable[[LessonRun], SideRuns] | None = None
+    early: bool = False
+    ways: Mapping[str, OtherWay] = field(default_factory=dict)
 
 
 def _up_to(kind: type) -> Callable[[LessonRun, At], RunState]:
@@ -153,12 +172,38 @@ def _compared(lesson: LessonRun) -> tuple[FigureSlider, ...]:
     return (FigureSlider("on the map", count, count - 1),) if runs.next is None else ()
 
 
+def _seen_by_laser(lesson: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
+    """The box's directions from where robot 1 stood, and the laser points on the other robot."""
+    look = lesson.look
+    one = None if look is None or not look.own else look.calibrated.one
+    if look is None or one is None:
+        return []
+    camera, seen, place = look.calibrated.camera, one.position, look.observer
+    reach = 1.2 * seen.range if seen else 3.0
+    corners = place.apply(sector(one, camera, reach)) - layout.anchor_ref
+    items = [path(corners, palette.particle, alpha=0.8, w=1.5, close=True, fill=css(palette.particle, 0.18))]
+    if one.cluster is not None:
+        points = place.apply(look.scan.mounting.apply(one.cluster.points)) - layout.anchor_ref
+        items += [mark("dot", point, palette.mov, r=2.5) for point in points]
+    if seen is not None:
+        items.append(mark("cross", place.apply(seen.point()) - layout.anchor_ref, palette.best, r=6))
+    return items
+
+
 _HALF = search.TURN_STEPS // 2
 _LINE = FigureSlider("line", spectra.LINES)
 _OFF = FigureSlider("off the best (°)", search.TURN_STEPS, _HALF, -_HALF * search.TURN_STEP, search.TURN_STEP)
 
 
 PICTURES: dict[str, LessonFigure] = {
+    SIGHTING: LessonFigure(
+        (), sighting.sighting, _up_to(ObservationDetail),
+        lambda _: (FigureSlider("part", sighting.PARTS),), _seen_by_laser,
+        compares=sighting.runs_of, early=True, ways={
+            "counted": OtherWay(sighting.counted, (sighting.WHICH_WAY,)),
+            "mean": OtherWay(sighting.mean_taken, (sighting.HOW_FAR,)),
+        },
+    ),
     "observation": LessonFigure((ObservationDetail,), maps.observation, _up_to(ObservationDetail)),
     "augmentation": LessonFigure((AugmentDetail,), maps.augmentation, _up_to(AugmentDetail)),
     "dual": LessonFigure((ObservationDetail,), maps.dual, _up_to(ObservationDetail)),

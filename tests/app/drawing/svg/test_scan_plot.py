@@ -10,7 +10,8 @@ from looked_at import CAMERA, looked_at
 
 from algorithms.common.pose import Pose2
 from app.drawing.palette import LIGHT, css
-from app.drawing.svg.scan_plot import scan_svg
+from app.drawing.svg.scan_plot import draw_scan, scan_svg
+from app.drawing.svg.svg_canvas import SvgCanvas, SvgPlot
 
 
 def dots(svg, colour):
@@ -42,6 +43,25 @@ def test_the_sector_of_the_box_holds_the_points_on_the_robot():
     for point in dots(svg, LIGHT.maps[1])[:-1]:
         off = ((point - sector) * normals).sum(axis=1)  # pixels from every edge, inside on one side of all
         assert off.min() > -4 or off.max() < 4
+
+
+def test_from_near_by_nothing_is_drawn_outside_of_the_plot():
+    seen, view = looked_at(Pose2(2.5, 0.4, 0.3))
+    sheet = SvgCanvas(400)
+    plot = SvgPlot(sheet, 50, 60, 100, 100, (-0.8, 0.2), (2.0, 3.0))
+    draw_scan(plot, view, seen.sighted[0], CAMERA, LIGHT)
+    drawn = sheet.svg("near by")
+    middles = np.array(re.findall(r'<circle cx="([-\d.]+)" cy="([-\d.]+)"', drawn), dtype=float)
+    ends = [
+        [float(v) for v in point.split()]
+        for way in re.findall(r'd="M([^"Z]+)', drawn)
+        for point in way.split("L")
+    ]
+    for points in (middles, np.array(ends)):
+        assert (points >= (50 - 6, 60 - 6)).all()  # a sign of some pixels may stand on the edge
+        assert (points <= (150 + 6, 160 + 6)).all()
+    assert not plot.holds(np.zeros(2))  # where the observer is
+    assert len(dots(drawn, LIGHT.maps[1])) == len(seen.sighted[0].cluster.beams)
 
 
 def test_numbers_of_the_centre_are_those_of_the_sighting():

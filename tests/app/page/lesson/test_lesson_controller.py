@@ -6,6 +6,7 @@ from dataclasses import replace
 from unittest.mock import Mock
 
 import pytest
+from looks import look_at
 from tabs import noting_tab
 
 from algorithms.common.errors import NoAnswerError
@@ -19,6 +20,7 @@ from app.model.settings import with_value
 from app.page.lesson import lesson_controller
 from app.page.lesson.lesson_controller import LessonController
 from app.page.lesson.lesson_texts import lesson_folder
+from app.page.lesson.sighting_look import STAND_IN
 from app.page.modes import Mode
 from app.page.run_controller import RunController
 from app.page.undo.undo_controller import UndoController
@@ -205,10 +207,77 @@ def test_what_was_compared_stays_while_settings_move_and_not_on_other_maps(compa
     assert asked(comparing).known == ()
 
 
+LOOKS = (
+    "---\ntitle: Zero\npicture: sighting\nequations: [[line], [votes]]\ntry:\n"
+    "  - {ask: Press., answer: So., button: Mean, show: mean}\n---\nBy {box_chance}.\n\n***\n\nMore."
+)
+
+
+@pytest.fixture
+def looking(tab, tmp_path, monkeypatch) -> LessonController:
+    """A lesson that begins with a look at a picture."""
+    for name, text in {"00-zero.md": LOOKS, **TEXTS}.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    return make(tab, tmp_path, monkeypatch)
+
+
+def looked_at(lesson: LessonController) -> None:
+    """The look that was asked for last is over."""
+    job, story = asked(lesson), RunState()
+    lesson.begun(job)
+    story.add(Step("observe", look_at(STAND_IN), 0.0))
+    lesson.ended(job, story)
+
+
+def test_a_look_comes_before_the_lessons_own_run_and_the_run_follows_it(looking, tab, result):
+    looking.enter()
+    assert looking._lesson.compared(asked(looking))
+    assert "step 0 of 3" in tab.display.messages.hud.call_args.kwargs["state"]
+    assert "…" in tab.panels.lesson.beside.call_args.args[0]
+    looked_at(looking)
+    assert looking._lesson.compared(asked(looking)) is None  # the lesson's own
+    assert asked(looking).steps is None
+    assert "…" not in tab.panels.lesson.beside.call_args.args[0]  # its numbers are in the text
+    own_run_ends(looking, result)
+    requests = looking._thread.request.call_count
+    looking.move(1)
+    looking.move(-1)
+    assert looking._thread.request.call_count == requests  # both are over
+
+
+def test_a_look_that_is_left_before_it_is_over_still_lets_the_run_begin(looking):
+    looking.enter()
+    look = asked(looking)
+    looking.begun(look)
+    looking.move(1)
+    looking.failed(look, RunState(), NoAnswerError("no picture"))
+    assert asked(looking).steps is None
+    assert looking._lesson.compared(look).failed == "Refused: no picture."
+
+
+def test_a_thing_to_try_may_draw_the_picture_in_another_way_and_leaves_the_settings(looking, tab):
+    looking.enter()
+    looked_at(looking)
+    before, requests = tab.state.config, looking._thread.request.call_count
+    for put_back in (lambda: looking._try(0), lambda: looking.move(1)):
+        looking.go(0)
+        assert tab.panels.lesson.beside.call_args.args[1] == ("line",)
+        looking._try(0)
+        assert "too near by" in tab.panels.lesson.picture.call_args.args[0]
+        assert tab.panels.lesson.dials.call_args.args[1] == (2,)
+        assert tab.panels.lesson.beside.call_args.args[1] == ("votes",)
+        put_back()
+        assert looking._display.way == ""
+    assert tab.state.config is before
+    assert looking._thread.request.call_count == requests
+
+
 def test_the_lesson_that_ships_opens_with_its_first_step(tab, monkeypatch):
     lesson = make(tab, lesson_folder(), monkeypatch)
     lesson.toggle()
     assert step(tab)[0] == 0
-    assert len(tab.panels.lesson.contents.call_args.args[0]) == 18
+    titles, first = tab.panels.lesson.contents.call_args.args
+    assert (len(titles), first) == (19, 0)
+    assert "step 0 of 18" in tab.display.messages.hud.call_args.kwargs["state"]
     lesson.toggle()
     assert not lesson.open

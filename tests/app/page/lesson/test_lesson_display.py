@@ -94,6 +94,27 @@ def test_a_picture_is_drawn_once_its_stage_is_there_with_its_dials_where_they_be
     assert panel.dials.call_args.args[1] == tuple(dial.count - 1 for dial in dials)
 
 
+def test_what_stands_beside_a_picture_in_parts_is_that_of_the_part_its_dial_shows(
+    display, panel, inputs, until_hough
+):
+    text = StepText("", "Title", "sighting", (("line",), ("votes",)), (), "A {range_m}.\n***\nB.\n***\nC.")
+    lesson = LessonRun(inputs, CONFIG, 0, until_hough)
+    for place, words, formulas in (
+        (0, "A 3", "line"),
+        (1, "B", "votes"),
+        (2, "C", "votes"),
+        (3, "C", "votes"),
+    ):
+        display.places = (place,)
+        drawn(display, panel, text, lesson)
+        said, beside = panel.beside.call_args.args
+        assert said.strip().startswith(words[:1])
+        assert "{" not in said
+        assert beside == (formulas,)
+    drawn(display, panel, text, LessonRun(MergeInputs(), CONFIG))
+    assert panel.beside.call_args.args == ("A ….\n", ("line",))
+
+
 def test_an_answer_is_told_only_where_it_was_asked_for(display, panel, hough, inputs, until_hough):
     trial = Mock(answer="so it is")
     text = replace(hough, trials=(trial, trial))

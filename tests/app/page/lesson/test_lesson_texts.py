@@ -10,7 +10,8 @@ import pytest
 
 from algorithms.common.errors import InputFileError
 from app.page.lesson import equations
-from app.page.lesson.lesson_texts import files, filled, lesson_folder, read_step
+from app.page.lesson.figures.figure_registry import PICTURES
+from app.page.lesson.lesson_texts import files, filled, first_number, lesson_folder, read_step
 from app.page.lesson.placeholders import NUMBERS
 
 GOOD = """\
@@ -31,7 +32,7 @@ The range is {range_m} m.
 def step(folder: Path, text: str = GOOD):
     path = folder / "01-mine.md"
     path.write_text(text, encoding="utf-8")
-    return read_step(path, ["hough"], NUMBERS)
+    return read_step(path, {name: PICTURES[name] for name in ("hough", "sighting")}, NUMBERS)
 
 
 @pytest.mark.parametrize("name", equations.names())
@@ -69,7 +70,7 @@ def test_an_equation_without_a_number_is_told(tmp_path):
 
 def test_a_step_is_read_with_its_trials(tmp_path):
     read = step(tmp_path)
-    assert (read.title, read.picture, read.equations) == ("A step", "hough", ("line",))
+    assert (read.title, read.picture, read.equations) == ("A step", "hough", (("line",),))
     (trial,) = read.trials
     assert trial.settings == ((("augment", "intensity"), 1.0),)
     assert filled(read.body, {"range_m": "2.97"}) == "The range is 2.97 m."
@@ -81,7 +82,7 @@ def test_a_step_is_read_with_its_trials(tmp_path):
     [
         ("{range_m}", "{rnage_m}", r"holds \{rnage_m\}, which is no number"),
         ("Nothing changes.", "It is {nonsense} now.", r"holds \{nonsense\}"),
-        ("picture: hough", "picture: hoof", "picture is 'hoof'; known are hough"),
+        ("picture: hough", "picture: hoof", "picture is 'hoof'; known are hough, sighting"),
         ("[line]", "[lime]", "equations holds 'lime'; known are"),
         ("title: A step\n", "", "title is missing"),
         ("title:", "titel:", "titel is not a known key; did you mean title"),
@@ -90,6 +91,12 @@ def test_a_step_is_read_with_its_trials(tmp_path):
         ("augment.intensity: 1", "augment.intensity: much", "not a finite number"),
         ("    button: Set it\n", "", "button and set are not both there"),
         ("  - ask: Set it to 1.\n    button", "  - button", "try 1: ask is missing"),
+        (
+            "set: {augment.intensity: 1}",
+            "show: counted",
+            "show is 'counted'; this picture is drawn in one way",
+        ),
+        ("    set: {", "    show: mean\n    set: {", "try 1: show is 'mean'"),
         ("title: A step", "title: [", "front matter of a text"),
         ("---\ntitle", "title", "no front matter"),
         ("The range is {range_m} m.", "", "no text below"),
@@ -100,6 +107,54 @@ def test_what_is_wrong_with_a_step_is_told_with_its_file(tmp_path, old, new, sai
     with pytest.raises(InputFileError, match=said) as told:
         step(tmp_path, GOOD.replace(old, new, 1))
     assert "01-mine.md" in str(told.value)
+
+
+IN_PARTS = """\
+---
+title: A step in parts
+picture: sighting
+equations: [[line], [votes, box]]
+try:
+  - {ask: Count., button: Count pixels, show: counted, answer: It is rough.}
+---
+The first.
+
+***
+
+The second, **bold**.
+"""
+
+
+def test_a_text_in_parts_has_words_and_equations_for_each_and_the_last_ones_for_those_that_follow(tmp_path):
+    read = step(tmp_path, IN_PARTS)
+    assert read.trials[0].show == "counted"
+    assert [read.words(part).strip() for part in range(3)] == ["The first.", *["The second, **bold**."] * 2]
+    assert [read.formulas(part) for part in range(3)] == [("line",), ("votes", "box"), ("votes", "box")]
+    plain = step(tmp_path)
+    assert (plain.words(3), plain.formulas(3)) == (plain.body, ("line",))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("show: counted", "show: conted", "show is 'conted'; known are counted, mean"),
+        ("show: counted", "show: counted, set: {augment.intensity: 1}", "set and show are both there"),
+        ("[votes, box]", "[votes, bix]", "equations holds 'bix'"),
+        ("[votes, box]", "[votes, [box]]", "equations holds"),
+        ("button: Count pixels, ", "", "button and set are not both there"),
+    ],
+)
+def test_what_is_wrong_with_a_step_in_parts_is_told(tmp_path, old, new, said):
+    assert old in IN_PARTS
+    with pytest.raises(InputFileError, match=said):
+        step(tmp_path, IN_PARTS.replace(old, new, 1))
+
+
+def test_steps_are_counted_from_0_where_the_first_file_says_so(tmp_path):
+    assert first_number([tmp_path / "00-before.md", tmp_path / "01-first.md"]) == 0
+    assert first_number([tmp_path / "01-first.md"]) == first_number([tmp_path / "first.md"]) == 1
+    shipped = files(lesson_folder())
+    assert [int(path.name[:2]) for path in shipped] == list(range(len(shipped)))
 
 
 def test_a_folder_without_texts_is_told(tmp_path):

@@ -8,28 +8,29 @@ from math import pi, radians
 from pathlib import Path
 from unittest.mock import Mock
 
+import numpy as np
 import pytest
 from tabs import noting_tab
 
 from algorithms.common.errors import InputFileError
 from algorithms.common.pose import pose_error, wrap_angle
+from algorithms.files.observation_file import read_known
 from algorithms.fleets.fleet_merge import merge_fleet
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS, merge
 from app.model.merge_inputs import MergeInputs
 from app.page.inputs_controller import InputsController
-from app.page.lesson.exhibit_samples import exhibit_fleet, exhibit_inputs
-from app.page.lesson.lesson_texts import (
-    Exhibit,
-    files,
-    museum_folder,
-    read_exhibit,
-    with_settings,
-)
+from app.page.lesson import museum_controller
+from app.page.lesson.exhibit_samples import exhibit_fleet, exhibit_inputs, exhibit_picture
+from app.page.lesson.exhibit_texts import Exhibit, museum_folder, read_exhibit
+from app.page.lesson.lesson_texts import files, with_settings
 from app.page.lesson.museum_controller import MuseumController, changes, rows
+from app.page.lesson.sighting_look import LookThread, look
 from app.page.run_controller import RunController
 from app.page.undo.undo_controller import UndoController
+from app.system import data_paths as paths
 
+POSTER = 8  # its place among the exhibits
 GOOD = """\
 ---
 title: Mine
@@ -145,6 +146,7 @@ def exhibit_of(folder: Path, text: str) -> Exhibit:
         ("title: Mine", "titel: Mine", "did you mean title"),
         ("method:", "known: everything\nmethod:", "known is 'everything'; known are sighting, nothing"),
         ("method:", "known: nothing\nmethod:", "known is nothing; the method spectra-swarm needs a sighting"),
+        ("method:", "picture: office_r2_r1\nmethod:", "picture is 'office_r2_r1'; known are office_poster"),
         ("Press Merge.", "", "no text below"),
     ],
 )
@@ -161,7 +163,7 @@ def tab():
 
 
 @pytest.fixture
-def museum(tab) -> MuseumController:
+def museum(tab, monkeypatch) -> MuseumController:
     """A museum whose exhibits are put on the page at once."""
     runs, loads = Mock(RunController, thread=Mock()), Mock(InputsController)
     runs.set_method = lambda method, config, seed: tab.state.update(method=method, config=config, seed=seed)
@@ -171,6 +173,7 @@ def museum(tab) -> MuseumController:
         return True
 
     loads.show = show
+    monkeypatch.setattr(museum_controller, "LookThread", lambda *_: Mock(LookThread))
     return MuseumController(tab, Mock(UndoController, history=tab.history), runs, loads, Mock())
 
 
@@ -211,6 +214,56 @@ def test_a_cure_that_is_to_know_more_merges_the_same_maps_with_it(museum, tab, r
     tab.panels.museum.cured.assert_not_called()
     merged(tab, result, right=True)
     assert tab.panels.museum.cured.called
+
+
+def test_the_poster_is_seen_by_the_detector_alone_until_a_merge_has_failed(museum, tab, result):
+    panel, look_at_it = tab.panels.museum, museum._looks.ask
+    museum.enter()
+    museum.pick(POSTER)
+    task, pair, _ = look_at_it.call_args.args
+    assert pair is tab.state.inputs
+    assert "detector looks" in panel.picture.call_args.args[0]
+    museum._seen(look(task.folder, task.maps))
+    picture, said = panel.picture.call_args.args
+    assert picture.startswith("<svg")
+    assert [who for who, _ in said] == ["the detector"]
+    merged(tab, result, right=False)
+    _, said = panel.picture.call_args.args
+    assert [who for who, _ in said] == ["the detector", "the laser", "robot 1's map"]
+    museum.cure()
+    assert tab.state.inputs.known == ()
+    merged(tab, result, right=True)
+    assert panel.cured.called
+    pictures = panel.picture.call_count
+    museum.pick(0)
+    tab.state.update(palette=tab.state.palette)
+    assert panel.picture.call_count == pictures  # the poster is gone
+    assert museum._looks.stop.called
+
+
+def test_what_the_poster_is_taken_for_is_what_section_iii_a_would_measure():
+    """The mean of the laser points in the box of the shipped detector, whatever stands there."""
+    (folder,) = paths.pictures().values()
+    seen = look(folder, paths.samples()["office_r2_r1"])
+    box, columns = seen.calibrated.one.detection, seen.calibrated.view.columns
+    with np.errstate(invalid="ignore"):
+        inside = (columns > box.left) & (columns < box.right) & seen.scan.valid
+    x, y = seen.scan.points()[inside].mean(axis=0)
+    (shipped,) = read_known(folder / "observation.yaml")
+    assert shipped.observer == seen.observer
+    assert shipped.range == pytest.approx(np.hypot(x, y), abs=0.25)
+    assert shipped.bearing == pytest.approx(np.arctan2(y, x), abs=radians(5))
+
+
+def test_nobody_knows_of_the_poster_but_its_sighting(exhibit):
+    if exhibit.picture:
+        wrong, result = failed(exhibit)
+        assert wrong
+        assert not result.verdict.accepted
+        pair, cure = exhibit_inputs(exhibit)
+        assert len(pair.observations) == 1
+        assert cure.known == ()
+        assert exhibit_picture(exhibit).maps == paths.samples()[exhibit.case]
 
 
 def test_what_is_merged_on_other_maps_is_none_of_the_museums_business(museum, tab, result, inputs):

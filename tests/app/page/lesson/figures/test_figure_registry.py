@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from looks import looked
 
 from algorithms.common.pose import Pose2
 from algorithms.files.case_folder import Case
@@ -39,7 +40,8 @@ def study_of(case: Case) -> LessonRun:
     steps: list[Step] = []
     for step in run("spectra-proven", case.ref, case.mov, case.observations, CONFIG):
         keep(steps, step)
-    return LessonRun(MergeInputs.of(case), CONFIG, 0, tuple(steps))
+    inputs = MergeInputs.of(case)
+    return LessonRun(inputs, CONFIG, 0, tuple(steps), {"sighting": looked(inputs, CONFIG)})
 
 
 @pytest.fixture(scope="module")
@@ -65,8 +67,10 @@ def test_every_picture_is_whole_wherever_its_dials_stand(request, which, name, p
     lesson = request.getfixturevalue(which)
     picture = PICTURES[name]
     layout = lay_out(lesson.inputs.ref, lesson.inputs.mov, lesson.inputs.at)
-    for at in corners(picture.dials(lesson)):
-        drawn = picture.draw(lesson, at, palette)
+    places = corners(picture.dials(lesson))
+    ways = [(picture.draw, at) for at in places] + [(way.draw, way.places) for way in picture.ways.values()]
+    for draw, at in ways:
+        drawn = draw(lesson, at, palette)
         root = ElementTree.fromstring(drawn)
         assert root.attrib["aria-label"]
         words = [e.text for e in root.iter(f"{SVG}text")]
@@ -91,13 +95,26 @@ def test_every_text_that_comes_along_names_pictures_equations_and_numbers_that_a
     for text in (step.body, *(trial.answer for trial in step.trials)):
         assert not PLACEHOLDER.search(filled(text, numbers))
         assert "…" not in filled(text, numbers).replace(text, "")
-    assert set(step.equations) <= set(equations.names())
+    assert {name for group in step.equations for name in group} <= set(equations.names())
+
+
+@pytest.mark.parametrize("path", files(lesson_folder()), ids=lambda path: path.stem)
+def test_a_picture_in_parts_has_words_and_equations_for_each_part_and_every_other_way_is_tried(path, lesson):
+    step = read_step(path, PICTURES, NUMBERS)
+    picture = PICTURES[step.picture]
+    if len(step.equations) > 1:
+        (dial,) = picture.dials(lesson)
+        parts = range(dial.count)
+        assert len(step.equations) == len({step.words(part) for part in parts}) == dial.count
+        assert all(step.formulas(part) and step.words(part).strip() for part in parts)
+    assert {trial.show for trial in step.trials if trial.show} == set(picture.ways)
 
 
 def test_every_picture_and_every_equation_is_in_the_lesson():
     steps = [read_step(path, PICTURES, NUMBERS) for path in files(lesson_folder())]
     assert {step.picture for step in steps} == set(PICTURES)
-    assert {name for step in steps for name in step.equations} == set(equations.names())
+    named = {name for step in steps for group in step.equations for name in group}
+    assert named == set(equations.names())
 
 
 def test_every_number_is_known_at_the_end_of_a_run_and_none_before_its_stage(lesson, small_case):
@@ -106,6 +123,7 @@ def test_every_number_is_known_at_the_end_of_a_run_and_none_before_its_stage(les
     assert not [words for words in numbers.values() if "nan" in words]
     early = numbers_of(LessonRun(MergeInputs.of(small_case), CONFIG))
     assert "range_m" in early
+    assert "camera_bearing" not in early
     assert "verdict" not in early
 
 
