@@ -6,7 +6,7 @@ from collections.abc import Callable
 from math import hypot
 
 from algorithms.detection.range_bearing import RobotPosition
-from app.model.sighting_text import class_name
+from app.model.sighting.sighting_text import class_name
 from app.model.verdict_text import likelihood
 from app.page.lesson.figures.camera_figure import angle_text, box_of, half_width
 from app.page.lesson.figures.laser_figure import mean_of

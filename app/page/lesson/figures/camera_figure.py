@@ -11,7 +11,7 @@ from algorithms.detection.robot_sighting import Sighted
 from app.drawing.hog_picture import MARGIN_CELLS
 from app.drawing.palette import Palette
 from app.drawing.svg.svg_canvas import INK, WIDE, SvgCanvas, SvgPlot
-from app.model.sighting_text import class_name
+from app.model.sighting.sighting_text import class_name
 from app.model.verdict_text import likelihood
 from app.page.lesson.sighting_look import CameraReading, SightingLook
 

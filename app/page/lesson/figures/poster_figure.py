@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.drawing.palette import Palette
 from app.drawing.svg.svg_canvas import SvgCanvas
-from app.model.sighting_text import class_name
+from app.model.sighting.sighting_text import class_name
 from app.model.verdict_text import likelihood
 from app.page.lesson.figures.camera_figure import STRIP, box_of, draw_image, draw_strip
 from app.page.lesson.sighting_look import SightingLook
