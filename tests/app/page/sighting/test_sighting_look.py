@@ -16,7 +16,7 @@ from algorithms.files.camera_picture import picture_from_bytes, picture_to_png
 from algorithms.files.scan_file import scan_from_bytes
 from app.model.merge_inputs import Upload
 from app.model.sighting.look_settings import LookSettings
-from app.page.sighting.sighting_look import MOST_BOXES, WIDEST, LookOrder, look
+from app.page.sighting.sighting_look import WIDEST, LookOrder, look
 
 TAGS = LookSettings("tags")
 SHAPE = WindowShape(7, 7, 6)
@@ -73,10 +73,11 @@ def test_without_a_calibration_the_field_of_view_makes_the_camera():
     assert found.seen.position is not None  # the box only chooses among the laser's points
 
 
-def test_of_many_boxes_the_likeliest_are_shown_with_their_gradients():
+def test_of_many_boxes_the_likeliest_are_shown_with_their_gradients(monkeypatch):
+    monkeypatch.setattr("app.page.sighting.sighting_look.MOST_BOXES", 3)
     settings = LookSettings("own", least_probability=0.3)
     found = look(None, replace(order_of(NEAR, settings=settings), model=everywhere(0.0)))
-    assert len(found.seen.sighted) == MOST_BOXES == len(found.gradients)
+    assert len(found.seen.sighted) == 3 == len(found.gradients)
     assert found.more > 0
     view, edges = (picture_from_bytes("", jpeg) for jpeg in found.gradients[0])
     assert view.shape == edges.shape
