@@ -41,6 +41,7 @@ class Detection:
     probability : that it is a robot, as the detector sees it alone, 0 … 1
     label       : class of what is seen, as front_back, side or a tag's number
     tag         : distance, where a tag's size is known
+    is_part     : whether the box frames a part of the robot alone, as a tag, and not all of it
     """
 
     left: float
@@ -50,6 +51,7 @@ class Detection:
     probability: float
     label: str
     tag: TagDistance | None = None
+    is_part: bool = False
 
     @property
     def width(self) -> float:
@@ -104,5 +106,5 @@ def strongest(found: Sequence[Detection]) -> tuple[Detection, ...]:
         box = (boxes[near] * weights[near, None]).sum(axis=0) / weights[near].sum()
         free &= ~same
         left, top, right, bottom = box.tolist()
-        kept.append(Detection(left, top, right, bottom, one.probability, one.label, one.tag))
+        kept.append(Detection(left, top, right, bottom, one.probability, one.label, one.tag, one.is_part))
     return tuple(kept)

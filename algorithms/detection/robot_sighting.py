@@ -217,11 +217,14 @@ def _in_box(cluster: Cluster, one: Detection, view: LaserView, camera: Camera) -
 
 
 def _fit(seen: Sighted, view: LaserView, camera: Camera) -> float:
-    """How well the columns of a cluster and a box cover one another: shared over joint, 0 … 1."""
+    """How well the columns of a cluster and a box cover one another: shared over joint, of a box that frames
+    a part alone, over its own; 0 … 1.
+    """
     assert seen.cluster is not None
     low, high = _columns(seen.cluster, view, camera)
     left, right = seen.detection.left, seen.detection.right
-    return max(0.0, min(high, right) - max(low, left)) / (max(high, right) - min(low, left))
+    shared = max(0.0, min(high, right) - max(low, left))
+    return shared / (right - left if seen.detection.is_part else max(high, right) - min(low, left))
 
 
 def _columns(cluster: Cluster, view: LaserView, camera: Camera) -> tuple[float, float]:

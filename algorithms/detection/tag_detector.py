@@ -62,7 +62,7 @@ class TagDetector:
             points = np.asarray(quad, dtype=np.float64).reshape(4, 2)
             (left, top), (right, bottom) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
             far = self._distance(points, camera)
-            found.append(Detection(left, top, right, bottom, CERTAIN, f"tag {number}", far))
+            found.append(Detection(left, top, right, bottom, CERTAIN, f"tag {number}", far, is_part=True))
         return tuple(sorted(found, key=lambda one: (-one.width, one.box())))
 
     def _distance(self, corners: FloatArray, camera: Camera | None) -> TagDistance | None:

@@ -200,3 +200,12 @@ def test_a_small_box_before_a_thing_of_a_robot_size_is_not_that_thing():
     refused = sight([small], scan(at), CAMERA, BODY)
     assert refused.position is None
     assert "not as wide as the box" in refused.reason
+
+
+def test_a_tag_is_narrower_than_its_robot():
+    at = place(2.5, 0.1)
+    box = box_of(at)
+    tag = replace(box, left=box.left + 0.1 * box.width, right=box.left + 0.3 * box.width, is_part=True)
+    assert sight([tag], scan(at), CAMERA, BODY).position.range == pytest.approx(2.5, abs=0.05)
+    beside = replace(tag, left=box.right + 0.02 * box.width, right=box.right + 0.25 * box.width)
+    assert sight([beside], scan(at), CAMERA, BODY).position is None
