@@ -64,7 +64,7 @@ class SensorFiles:
         kind = kind_of_file(name, content)
         if kind == "picture":
             height, width = picture_from_bytes(name, content).shape[:2]
-            return replace(self, picture=CameraPicture(upload, width, height))._matched(), kind
+            return _matched(replace(self, picture=CameraPicture(upload, width, height))), kind
         if kind == "camera":
             return replace(self, camera=ReadFile(name, camera_from_bytes(name, content))), kind
         if kind == "scan":
@@ -72,14 +72,7 @@ class SensorFiles:
         if kind == "model":
             return replace(self, model=ReadFile(name, model_from_bytes(name, content))), kind
         rows = encounters_from_bytes(name, content)
-        return replace(self, encounters=ReadFile(name, rows))._matched(), kind
-
-    def _matched(self) -> SensorFiles:
-        """The line of the encounters that names the picture; where there is one line only, that one."""
-        rows = self.encounters.holds if self.encounters else ()
-        name = self.picture.file.name if self.picture else ""
-        named = [k for k, row in enumerate(rows) if PurePath(row.image).name == name]
-        return replace(self, row=named[0] if named else 0 if len(rows) == 1 else None)
+        return _matched(replace(self, encounters=ReadFile(name, rows))), kind
 
     @property
     def encounter(self) -> EncounterRow | None:
@@ -134,3 +127,11 @@ class SensorFiles:
         if settings.finder == "own" and self.model is None:
             return "Load your detector (.npz), or choose another one."
         return ""
+
+
+def _matched(files: SensorFiles) -> SensorFiles:
+    """With the line of the encounters that names the picture; where there is one line only, that one."""
+    rows = files.encounters.holds if files.encounters else ()
+    name = files.picture.file.name if files.picture else ""
+    named = [k for k, row in enumerate(rows) if PurePath(row.image).name == name]
+    return replace(files, row=named[0] if named else 0 if len(rows) == 1 else None)
