@@ -67,7 +67,7 @@
     .mm-stood{margin:4px 12px 14px;width:calc(100% - 24px);font-size:12.5px;line-height:1.45;border-collapse:collapse;font-variant-numeric:tabular-nums}
     .mm-stood caption{caption-side:bottom;text-align:right;font-size:11.5px;opacity:.65;padding:0}
     .mm-stood td{padding:0} .mm-stood td:first-child{opacity:.75} .mm-stood td:last-child{text-align:right}
-    .mm-sighting{height:0}
+    .mm-sighting{height:0} .mm-outdated{opacity:.4}
     .mm-seen{position:relative;margin:4px 12px 6px;border-radius:4px;overflow:hidden;line-height:0}
     .mm-seen img{display:block;width:100%;height:auto}
     .mm-spot{position:absolute;box-sizing:border-box;min-width:18px;min-height:18px;padding:0;border:0;border-radius:2px;background:transparent;cursor:pointer}
@@ -76,7 +76,7 @@
     .mm-spot:focus-visible{outline:3px solid #F0E442;outline-offset:1px}
     .mm-found{display:flex;gap:8px;align-items:flex-start;width:calc(100% - 24px);margin:0 12px 4px;padding:5px 8px;border:1px solid #9CA3AF66;border-left:4px solid #0072B2;border-radius:4px;background:none;color:inherit;font:12.5px/1.4 system-ui,"Segoe UI",sans-serif;text-align:left;cursor:pointer}
     .mm-found[data-state=chosen]{border-left-color:#009E73} .mm-found[data-state=refused]{border-left-color:#D55E00}
-    .mm-found[aria-pressed=true]{background:#6B72801f;border-color:#6B7280} .mm-found[aria-pressed=true][data-state=chosen]{border-left-color:#009E73}
+    .mm-found[aria-pressed=true]{background:#6B72801f;border-top-color:#6B7280;border-right-color:#6B7280;border-bottom-color:#6B7280}
     .mm-found[data-lit]{background:#0072B21a} .mm-found:focus-visible{outline:2px solid #0072B2;outline-offset:1px}
     [data-mantine-color-scheme=dark] .mm-found:focus-visible{outline-color:#56B4E9}
     .mm-found b{min-width:1.1em;font-variant-numeric:tabular-nums} .mm-found span{min-width:0} .mm-found em{font-style:normal;font-weight:600;margin-right:4px}

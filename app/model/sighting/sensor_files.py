@@ -130,8 +130,8 @@ class SensorFiles:
 
 
 def _matched(files: SensorFiles) -> SensorFiles:
-    """With the line of the encounters that names the picture; where there is one line only, that one."""
+    """With the line of the encounters that names the picture: others are of other moments."""
     rows = files.encounters.holds if files.encounters else ()
     name = files.picture.file.name if files.picture else ""
     named = [k for k, row in enumerate(rows) if PurePath(row.image).name == name]
-    return replace(files, row=named[0] if named else 0 if len(rows) == 1 else None)
+    return replace(files, row=named[0] if named else None)

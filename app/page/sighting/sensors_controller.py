@@ -106,7 +106,7 @@ class SensorsController:
                 self._tell(str(error))
                 return
             self.files = files
-            if kind == "encounters" or (kind == "picture" and files.encounters is not None):
+            if kind in ("encounters", "picture") and files.encounters is not None:
                 self._follow_row()
             self._tell()
 
@@ -161,9 +161,13 @@ class SensorsController:
         self._panel.show_places(at, source, self._state.inputs.names)
 
     def _follow_row(self) -> None:
+        """As the table has it; where no line of it is of this moment, not as a line of another one."""
         row, encounters = self.files.encounter, self.files.encounters
         if row is not None and encounters is not None:
             self._stand(_stood(row), f"as in {encounters.name}")
+        elif self._source != TYPED:
+            self._source = ""
+            self._follow_observation()
 
     def _follow_observation(self) -> None:
         """As the observation has it, unless a table or a person says otherwise."""

@@ -244,6 +244,7 @@ class SightingController:
                     "accepted" if there else "refused",
                     there and not cannot,
                     cannot,
+                    cannot == STALE,
                     len(self._state.inputs.observations),
                     picture_html(found, shown, palette),
                     boxes_html(seen, shown, found.more),

@@ -31,6 +31,7 @@ class SightingPage:
     outcome, mood : a sentence, and how it ended: accepted, refused
     usable        : whether it can be used
     cannot        : why not, where the outcome does not say so, as a sentence
+    old           : whether it is out of date
     observations  : how many there are already
     """
 
@@ -38,6 +39,7 @@ class SightingPage:
     mood: str
     usable: bool
     cannot: str
+    old: bool
     observations: int
     picture: str
     boxes: str
@@ -101,11 +103,12 @@ class SightingDock:
 
     def show(self, page: SightingPage) -> None:
         """Show what was seen."""
-        put(self._outcome, content=box(page.outcome, page.mood))
+        put(self._outcome, content=box(page.outcome, page.mood, faded=page.old))
         put(self._cannot, content=box(page.cannot, "plain") if page.cannot else "")
         options = places(page.observations)
         kept = self._as.value if self._as.value in options and self._as.visible else options[0]
         put(self._as, options=options, value=kept, visible=page.observations > 0)
         put(self._use, visible=True, disabled=not page.usable)
         for name, handle in self._parts.items():
-            put(handle, content=getattr(page, name))
+            part = getattr(page, name)
+            put(handle, content=f'<div class="mm-outdated">{part}</div>' if page.old and part else part)

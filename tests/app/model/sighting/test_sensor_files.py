@@ -94,4 +94,3 @@ def test_the_encounter_is_the_line_that_names_the_image():
     files = loaded("seen.png", t_csv=table)
     assert files.encounter is None
     assert "no line names the image" in files.told(LookSettings())["Encounters"]
-    assert loaded("seen.png", t_csv=encounters_to_bytes(ROWS[:1])).encounter == ROWS[0]

@@ -177,6 +177,8 @@ def test_a_table_that_is_sent_tells_where_the_robots_stood(sensors, tab):
     before = sensors.place
     send(tab, seen_png=FILES["seen.png"])
     assert sensors.place.observer == ROWS[0].observer != before.observer
+    send(tab, other_png=FILES["seen.png"])  # of another moment
+    assert sensors.place == before
 
 
 def test_other_maps_take_the_files_of_the_sample_along_and_leave_ones_own(sensors, tab, inputs):

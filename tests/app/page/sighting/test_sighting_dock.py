@@ -11,7 +11,9 @@ from controls import Controls
 
 from app.page.sighting.sighting_dock import NEXT, SightingDock, SightingPage, places
 
-FOUND = SightingPage("The robot is there.", "accepted", True, "", 0, "<p>P</p>", "<p>B</p>", "<p>S</p>", "")
+FOUND = SightingPage(
+    "The robot is there.", "accepted", True, "", False, 0, "<p>P</p>", "<p>B</p>", "<p>S</p>", ""
+)
 
 
 @pytest.fixture(scope="module")
@@ -48,11 +50,13 @@ def test_what_was_found_is_shown_from_the_outcome_to_the_gradients(dock):
 
 
 def test_what_cannot_be_used_says_why(dock):
-    dock.dock.show(replace(FOUND, usable=False, cannot="Look again."))
+    dock.dock.show(replace(FOUND, usable=False, cannot="Look again.", old=True))
+    assert dock.controls.text().count("mm-outdated") == 3
     assert dock.controls.find("Use this sighting").disabled
     assert "Look again." in dock.controls.text()
     dock.dock.show(FOUND)
     assert "Look again." not in dock.controls.text()
+    assert "mm-outdated" not in dock.controls.text()
 
 
 def test_a_failed_look_and_a_cleared_dock_offer_nothing(dock):
