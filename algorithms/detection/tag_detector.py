@@ -72,9 +72,10 @@ class TagDetector:
         rays = camera.rays(corners)
         half = self.size / 2
         square = np.array([[-half, half, 0.0], [half, half, 0.0], [half, -half, 0.0], [-half, -half, 0.0]])
-        good, turn, place = cv2.solvePnP(
-            square, rays.reshape(-1, 1, 2), np.eye(3), None, flags=cv2.SOLVEPNP_IPPE_SQUARE
-        )
+        points = rays.reshape(-1, 1, 2)
+        good, turn, place = cv2.solvePnP(square, points, np.eye(3), None, flags=cv2.SOLVEPNP_IPPE_SQUARE)
+        if not good or not np.isfinite(place).all():  # it has no answer for some tags that are seen squarely
+            good, turn, place = cv2.solvePnP(square, points, np.eye(3), None, flags=cv2.SOLVEPNP_ITERATIVE)
         if not good or not np.isfinite(place).all():
             return None
         x, _, z = (float(value) for value in np.ravel(place))

@@ -9,6 +9,7 @@ from textwrap import indent
 
 from algorithms.common.errors import InputFileError, SettingError
 from algorithms.files import yaml_fields as fields
+from algorithms.files.foreign_files import check_foreign
 from algorithms.files.map_file import read_bytes, read_map
 from algorithms.files.observation_file import (
     PRIORS,
@@ -57,6 +58,9 @@ def fleet_from_bytes(source: str, content: bytes, read: Callable[[str], GridMap]
     read   : reads the map of a name in it
     raises : InputFileError, TooLargeError
     """
+    check_foreign(source, content)
+    if len(content) > fields.MAX_YAML_BYTES and b"robots" not in content:  # before seconds are spent on it
+        raise InputFileError(source, "is long, and names no robots", "give a fleet's YAML file")
     f = fields.parse(source, content, "a fleet's YAML file", MOST_BYTES)
     f.refuse_unknown("anchor", "robots", "sightings", "known")
     robots = f.section("robots", f"name the robots and their maps, as in {EXAMPLE}")

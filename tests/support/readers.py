@@ -61,7 +61,8 @@ TURN = b"turn: {yaw: -1.2, sigma: 0.1}\n"
 NEAR = b"near: {map1: [3, 4.5], map2: [0.5, -1], radius: 2}\n"
 KNOWN = b"- " + INITIAL + b"  " + TURN + b"- " + NEAR
 FLEET = (
-    b"anchor: b\nrobots:\n  a: {map: m.yaml}\n  b: {map: m.yaml, known: {pose: [1, 2, 0.5]}}\n"
+    b"anchor: b\nrobots:\n  a: {map: m.yaml}\n  b: {map: m.yaml}\n"
+    b"known:\n  - {of: b, in: a, initial: {pose: [1, 2, 0.5]}}\n"
     b"sightings:\n  - observer: {robot: a, pose: [1, 2, 3]}\n    observed: {robot: b, pose: [4, 5]}\n"
     b"    measurement: {range: 1, bearing: 0.5}\n"
 )

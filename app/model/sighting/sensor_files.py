@@ -64,7 +64,7 @@ class SensorFiles:
         kind = kind_of_file(name, content)
         if kind == "picture":
             height, width = picture_from_bytes(name, content).shape[:2]
-            return _matched(replace(self, picture=CameraPicture(upload, width, height))), kind
+            return _checked_together(replace(self, picture=CameraPicture(upload, width, height))), kind
         if kind == "camera":
             return replace(self, camera=ReadFile(name, camera_from_bytes(name, content))), kind
         if kind == "scan":
@@ -72,7 +72,7 @@ class SensorFiles:
         if kind == "model":
             return replace(self, model=ReadFile(name, model_from_bytes(name, content))), kind
         rows = encounters_from_bytes(name, content)
-        return _matched(replace(self, encounters=ReadFile(name, rows))), kind
+        return _checked_together(replace(self, encounters=ReadFile(name, rows))), kind
 
     @property
     def encounter(self) -> EncounterRow | None:
@@ -129,7 +129,7 @@ class SensorFiles:
         return ""
 
 
-def _matched(files: SensorFiles) -> SensorFiles:
+def _checked_together(files: SensorFiles) -> SensorFiles:
     """With the line of the encounters that names the picture; where there is one line only, that one."""
     rows = files.encounters.holds if files.encounters else ()
     name = files.picture.file.name if files.picture else ""

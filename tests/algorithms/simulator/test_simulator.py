@@ -22,6 +22,7 @@ from algorithms.simulator.fleets.sample_fleets import sample_fleets
 from algorithms.simulator.lidar import Lidar, first_hit, scan, sees, true_ranges
 from algorithms.simulator.path_planning import STEP, PathPlanner
 from algorithms.simulator.portable_random import COSINES, SINES, TRIG_GRID, TURN, normals, radians, stream
+from algorithms.simulator.poster_sample import POSTER_SAMPLE
 from algorithms.simulator.robot import Conditions, drive, make_body
 from algorithms.simulator.room_tours import TourPlanner
 from algorithms.simulator.samples import SAMPLES, case_files, generate_cases, write_case
@@ -93,7 +94,7 @@ def test_the_shipped_fleets_are_made_again_byte_for_byte(fleets):
 
 
 def test_every_shipped_sample_is_there(fleets):
-    assert {path.name for path in SHIPPED.iterdir() if path.is_dir()} == {*NAMES, *fleets}
+    assert {path.name for path in SHIPPED.iterdir() if path.is_dir()} == {*NAMES, *fleets, POSTER_SAMPLE}
 
 
 def test_same_seed_gives_the_same_files(flat):
