@@ -266,7 +266,8 @@ def a_poster(tab: Tab, keep: Keep) -> None:
     settle(lambda: "the detector:" in tab.text, "the picture")
     tab.page.mouse.move(640, 500)
     merged(tab, "refused")
-    tab.page.get_by_text("robot 1's map:").scroll_into_view_if_needed()
+    settle(lambda: tab.page.get_by_text("robot 1's map:").count(), "what the others say")
+    tab.page.locator("[aria-label^='The picture that robot 1 took']").evaluate("(it) => it.scrollIntoView()")
     tab.page.wait_for_timeout(400)
     keep("museum_poster")
 

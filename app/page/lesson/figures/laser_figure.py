@@ -150,16 +150,14 @@ def both(look: SightingLook, palette: Palette) -> SvgCanvas:
     rings = [mean_of(look, thing) for thing in look.robot_sized]
     places = ahead_up(np.array([np.zeros(2), *rings]))
     target = _target(look, one)
-    near = np.hypot(*places.T) < max(6.0, 1.3 * float(np.hypot(*target)))
     sheet = SvgCanvas(TOP + high + 34 + 5 * ROW)
-    plot = _plot_of(sheet, 0.0, WIDE, high, np.array([*places[near], target]))
+    plot = _plot_of(sheet, 0.0, WIDE, high, np.array([*places, target]))
     sheet.rect(plot.x, plot.y, plot.wide, plot.high, palette.free)
     draw_scan(plot, reading.view, one, reading.camera, palette, 0.9)
     for thing, place in zip(look.robot_sized, places[1:], strict=True):
         chosen = one.cluster is not None and bool(np.isin(thing.beams, one.cluster.beams).any())
         colour = palette.mov if chosen else palette.conflict
-        if plot.holds(place):
-            sheet.dot(*plot.one(*place.tolist()), 11, None, colour, width=2)
+        sheet.dot(*plot.one(*place.tolist()), 11, None, colour, width=2)
     sheet.rect(plot.x, plot.y, plot.wide, plot.high, None, INK, 0.35)
     scale_bar(plot)
     y = TOP + high + 16

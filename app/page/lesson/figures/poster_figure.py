@@ -33,6 +33,6 @@ def opinions(look: SightingLook) -> list[tuple[str, str]]:
             "the detector",
             f"a robot, {class_name(box.label)}: {likelihood(box.probability)}".replace("> ", ">\u00a0"),
         ),
-        ("the laser", laser.sighted[0].why_not or "a robot"),
-        ("robot 1's map", both.sighted[0].why_not or "a robot"),
+        ("the laser", laser.sighted[0].why_not.removeprefix("the laser ") or "a robot"),
+        ("robot 1's map", both.sighted[0].why_not.removeprefix("the map ") or "a robot"),
     ]

@@ -183,7 +183,7 @@ def test_of_all_that_is_as_wide_as_a_robot_one_lies_in_the_directions_of_the_box
         if each.attrib["r"] == "11"
     ]
     assert ringed.count(css(LIGHT.mov)) == 1
-    assert 1 <= len(ringed) <= len(lesson.look.robot_sized)
+    assert len(ringed) == len(lesson.look.robot_sized)
     assert f"{len(lesson.look.robot_sized)} may be one" in words(svg)
     assert "not known" in words(svg)  # how far, by the camera alone
 
