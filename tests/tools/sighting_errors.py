@@ -48,6 +48,7 @@ class Looked:
     range_error, bearing_error : metres, radians; NaN without a sighting
     sigma_range, sigma_bearing : as the sighting states them
     reason       : of a refusal
+    class_right  : whether front or back, and side, are told apart
     """
 
     distance: float
@@ -60,6 +61,7 @@ class Looked:
     sigma_range: float = nan
     sigma_bearing: float = nan
     reason: str = ""
+    class_right: bool = False
 
     @property
     def chi2(self) -> float:
@@ -96,6 +98,7 @@ def judged(view: RobotView, seen: SightedRobots) -> Looked:
         distance, any(on_robot), counts, True, False,
         position.range - true.range, wrap_angle(position.bearing - true.bearing),
         position.sigma_range, position.sigma_bearing,
+        class_right=seen.sighted[seen.chosen].detection.label == true.face,
     )  # fmt: skip
 
 
@@ -130,7 +133,7 @@ def _tables(groups: dict[str, list[Looked]]) -> list[str]:
     seen = groups["a robot"]
     near = [one for one in seen if one.distance <= NEAR]
     rows = [["distance", "views", "in a box", "found", "range error, median", "bearing error, median",
-             "within the 95 % bound"]]  # fmt: skip
+             "within the 95 % bound", "class right"]]  # fmt: skip
     for low, high in ((1, 2), (2, 3), (3, 4), (4, 5), (5, 6)):
         part = [one for one in seen if low <= one.distance < high]
         rows.append([f"{low} – {high} m", *_row(part)])
@@ -156,7 +159,7 @@ def _tables(groups: dict[str, list[Looked]]) -> list[str]:
 def _row(part: Sequence[Looked]) -> list[str]:
     right = [one for one in part if one.found and not one.wrong]
     if not right:
-        return [str(len(part)), *["–"] * 5]
+        return [str(len(part)), *["–"] * 6]
     return [
         str(len(part)),
         _share(sum(one.boxed for one in part), len(part)),
@@ -164,6 +167,7 @@ def _row(part: Sequence[Looked]) -> list[str]:
         f"{1000 * np.median([abs(one.range_error) for one in right]):.0f} mm",
         f"{np.degrees(np.median([abs(one.bearing_error) for one in right])):.2f}°",
         _share(sum(one.chi2 < CHI2_95 for one in right), len(right)),
+        _share(sum(one.class_right for one in right), len(right)),
     ]
 
 
