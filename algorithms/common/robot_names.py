@@ -6,7 +6,9 @@ import re
 from dataclasses import dataclass
 
 # Not in quotes, in brackets or as a part of a file's name: what a stranger wrote stays as it is.
-WORDS = re.compile(r"(?<![\w'\"“(/.-])([Rr]obot|[Mm]ap) ([12])('s)?(?![\w-]|\.\w)")
+BEFORE, WORDS_OF_TWO = r"(?<![\w'\"“(/.-])", r"([Rr]obot|[Mm]ap) ([12])('s)?(?![\w-]|\.\w)"
+WORDS = re.compile(BEFORE + WORDS_OF_TWO)
+IN_HTML = re.compile(rf"(?:{BEFORE}|(?<==\")){WORDS_OF_TWO}")  # also where an attribute begins with it
 
 
 @dataclass(frozen=True)
@@ -16,7 +18,7 @@ class RobotNames:
     ref: str = "robot 1"
     mov: str = "robot 2"
 
-    def told(self, text: str) -> str:
+    def told(self, text: str, words: re.Pattern[str] = WORDS) -> str:
         """A sentence of ours with the names in it: "robot 2 lies in map 1" becomes "Alice lies in Bob's map".
 
         It must hold no name yet: a robot may be called robot 2, and be the first. Without names it stays.
@@ -30,7 +32,16 @@ class RobotNames:
                 return f"{name}{found[3] or ''}"
             return f"{name}'s{'' if found[3] else ' map'}"
 
-        return WORDS.sub(named, text)
+        return words.sub(named, text)
+
+    def told_in_html(self, text: str) -> str:
+        """The same for HTML, SVG and Markdown: no name is taken for a tag or for emphasis."""
+        return RobotNames(_plain(self.ref), _plain(self.mov)).told(text, IN_HTML)
+
+
+def _plain(name: str) -> str:
+    """A name as HTML and Markdown show it, punctuation as numbers of characters."""
+    return "".join(letter if letter.isalnum() or letter == " " else f"&#{ord(letter)};" for letter in name)
 
 
 UNNAMED = RobotNames()

@@ -11,6 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 from algorithms.detection.detection import Picture
 from algorithms.detection.robot_sighting import LaserView, Sighted, SightedRobots
 from app.drawing.palette import DARK, LIGHT, Palette, Rgb
+from app.model.verdict_text import likelihood
 
 CHOSEN, POSSIBLE, REFUSED = LIGHT.maps[1], LIGHT.maps[0], LIGHT.conflict
 STRIP = 0.34  # of the image's width: height of the laser's strip
@@ -85,7 +86,7 @@ class _Drawing:
         """A box with its number and probability on a plate above it, or inside where there is no room."""
         left, top, right, bottom = ((edge + 0.5) * self.factor for edge in one.detection.box())
         self.draw.rectangle((left, top, right, bottom), outline=colour, width=max(3, self.wide // 320))
-        words = f"{number + 1}: {one.detection.probability:.0%}"
+        words = f"{number + 1}: {likelihood(one.detection.probability)}"
         x0, y0, x1, y1 = self.draw.textbbox((left, top), words, font=self.font)
         high, across = y1 - y0 + 8, x1 - x0 + 10
         at_left = max(0.0, min(left, self.wide - across))

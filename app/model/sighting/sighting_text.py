@@ -7,6 +7,7 @@ from typing import Any
 
 from algorithms.detection.range_bearing import RobotPosition
 from algorithms.detection.robot_sighting import Sighted, SightedRobots
+from app.model.verdict_text import likelihood
 
 CLASSES = {"front_back": "front or back", "side": "side", "robot": "robot"}
 
@@ -27,7 +28,7 @@ def position_text(seen: RobotPosition) -> str:
 
 def box_text(number: int, one: Sighted) -> str:
     """One box in a line; numbers begin with 1."""
-    said = f"box {number}: {class_name(one.detection.label)}, {one.detection.probability:.1%}"
+    said = f"box {number}: {class_name(one.detection.label)}, {likelihood(one.detection.probability)}"
     return f"{said}: {position_text(one.position)}" if one.position else f"{said}: refused, {one.why_not}"
 
 

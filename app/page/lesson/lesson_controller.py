@@ -80,7 +80,9 @@ class LessonController:
             proof = getattr(self._state.config, "proof", None)
             if proof is None or not proof.whole_circle:  # the lesson ends with a proof
                 self._runs.set_method(DEFAULT_METHOD, METHODS[DEFAULT_METHOD].defaults)
-            self._panel.contents([self._title(path) for path in self._files], first_number(self._files))
+            told = self._state.inputs.names.told
+            titles = [told(self._title(path)) for path in self._files]
+            self._panel.contents(titles, first_number(self._files))
             self._dock(True)
             self._begin()
             self.go(min(self._index, len(self._files) - 1))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from app.drawing.draw_items import Item
 from app.model.run_state import RunState
@@ -60,10 +60,13 @@ class LessonDisplay:
 
     def words(self, index: int, text: StepText, lesson: LessonRun, answered: Collection[int]) -> None:
         """Show a step's title and what to try; ``answered``: numbers of those whose answers are shown."""
-        numbers = numbers_of(lesson) if lesson.possible else {}
-        self._panel.text(index, text.title, OWN)
-        answers = enumerate(filled(trial.answer, numbers) for trial in text.trials)
-        self._panel.trials(text.trials, [answer if k in answered else "" for k, answer in answers])
+        numbers, told = numbers_of(lesson) if lesson.possible else {}, lesson.inputs.names.told
+        self._panel.text(index, told(text.title), OWN)
+        answers = enumerate(filled(told(trial.answer), numbers) for trial in text.trials)
+        self._panel.trials(
+            [replace(trial, ask=told(trial.ask)) for trial in text.trials],
+            [answer if k in answered else "" for k, answer in answers],
+        )
 
     def draw_as(self, picture: str, way: str) -> None:
         """Draw a picture in another way from now on, its dials where that is seen."""
@@ -87,7 +90,8 @@ class LessonDisplay:
         places = self._placed(dials)
         self._panel.dials(dials, places)
         self._beside(text, lesson, places)
-        self._panel.picture(picture.ways.get(self.way, picture).draw(lesson, places, palette))
+        svg = picture.ways.get(self.way, picture).draw(lesson, places, palette)
+        self._panel.picture(lesson.inputs.names.told_in_html(svg))
         ink = picture.ink(lesson, places, self._display.views.map.layout, palette)
         turn = picture.turn(lesson, places) if picture.turn else None
         runs = lesson.sides.get(text.picture)
@@ -98,7 +102,8 @@ class LessonDisplay:
         """Show words and equations; where the picture has parts, those of the part that its dial shows."""
         part = places[0] if places else 0
         numbers = numbers_of(lesson) if lesson.possible else {}
-        self._panel.beside(filled(text.words(part), numbers), text.formulas(part))
+        words = lesson.inputs.names.told_in_html(text.words(part))
+        self._panel.beside(filled(words, numbers), text.formulas(part))
 
     def on_map(self, step: OnMap, says: str, look: bool) -> None:
         """Draw the state's run on the map, and what the lesson draws over it.

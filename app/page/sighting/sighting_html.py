@@ -11,6 +11,7 @@ from app.drawing.palette import Palette
 from app.drawing.sighting_picture import STRIP, sighting_picture
 from app.model.sighting.sighting_text import box_text, class_name, position_text
 from app.model.status_text import typeset
+from app.model.verdict_text import likelihood
 from app.page.sighting.sighting_look import Look
 
 LETTERS = 32  # pixels of the picture, which is shown at less than half of its size
@@ -66,7 +67,7 @@ def boxes_html(seen: SightedRobots, shown: int | None, more: int) -> str:
             f'<button type="button" class="mm-found" data-mm-box="{number}" data-state="{state}" '
             f'aria-pressed="{str(number == shown).lower()}"><b>{number + 1}</b><span>'
             f"<em>{escape(class_name(one.detection.label))}</em> "
-            f"{one.detection.probability:.1%}<small>{escape(typeset(says))}</small></span></button>"
+            f"{escape(likelihood(one.detection.probability))}<small>{escape(typeset(says))}</small></span></button>"
         )
     if more:
         lines.append(f'<p class="mm-aside">{more} more are less likely still.</p>')

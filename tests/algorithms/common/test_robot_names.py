@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from html import unescape
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -41,6 +43,13 @@ def test_any_name_stands_there_as_it_is(ref, mov):
         assert told == "Robot 1, then robot 2 in map 1."
     else:
         assert told == f"{ref}, then {mov} in {ref}'s map."
+
+
+@given(st.text(st.characters(exclude_categories=["C", "Z"]), max_size=20))
+def test_in_html_a_name_is_a_word_and_no_tag(name):
+    told = RobotNames(name, "Alice").told_in_html("<text>robot 1</text>")
+    assert unescape(told) == f"<text>{name}</text>"
+    assert not set("<>\"'*_`{}[]\\|~").intersection(told.removeprefix("<text>").removesuffix("</text>"))
 
 
 @given(st.text().filter(lambda text: not WORDS.search(text)))

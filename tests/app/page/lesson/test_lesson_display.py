@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from unittest.mock import MagicMock, Mock
 
 import pytest
 
+from algorithms.common.robot_names import RobotNames
 from algorithms.methods.registry import METHODS, run
 from algorithms.methods.steps import HoughDetail, Step
 from app.drawing.browser_messages import BrowserMessages
@@ -16,7 +18,7 @@ from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_display import NO_MAPS, NOT_HERE, WAIT, LessonDisplay
 from app.page.lesson.lesson_panel import LessonPanel
 from app.page.lesson.lesson_run import LessonRun
-from app.page.lesson.lesson_texts import StepText, files, lesson_folder, read_step
+from app.page.lesson.lesson_texts import Exercise, StepText, files, lesson_folder, read_step
 from app.page.lesson.placeholders import NUMBERS
 from app.page.page_display import PageDisplay
 from app.page.page_state import PageState
@@ -116,7 +118,24 @@ def test_what_stands_beside_a_picture_in_parts_is_that_of_the_part_its_dial_show
 
 
 def test_an_answer_is_told_only_where_it_was_asked_for(display, panel, hough, inputs, until_hough):
-    trial = Mock(answer="so it is")
+    trial = Exercise("Why?", "so it is")
     text = replace(hough, trials=(trial, trial))
     display.words(0, text, LessonRun(inputs, CONFIG, 0, until_hough), {1})
     assert panel.trials.call_args.args[1] == ["", "so it is"]
+
+
+def test_robots_that_have_names_are_told_by_them_in_words_pictures_and_things_to_try(
+    display, panel, inputs, until_hough
+):
+    named = replace(inputs, names=RobotNames("Bob <1>", "Alice"))
+    lesson = LessonRun(named, CONFIG, steps=list(until_hough))
+    for path in files(lesson_folder()):
+        text = read_step(path, PICTURES, NUMBERS)
+        display.words(0, text, lesson, range(len(text.trials)))
+        display.picture(text, lesson, done=False)
+        title, trials = panel.text.call_args.args[1], panel.trials.call_args.args
+        shown = [title, *(trial.ask for trial in trials[0]), *trials[1]]
+        shown += [panel.beside.call_args.args[0], panel.picture.call_args.args[0]]
+        of_numbers = re.compile(r"[^<>]{,40}\b(?:[Rr]obot|[Mm]ap) [12]\b(?!,\d)")
+        assert [found for words in shown for found in of_numbers.findall(words)] == []
+    assert "Bob &#60;1&#62;" in panel.picture.call_args_list[2].args[0]
