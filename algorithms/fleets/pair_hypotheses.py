@@ -17,7 +17,7 @@ from algorithms.methods import registry
 from algorithms.methods.manual_merge import ManualMerge
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.suggestions import suggestions_of
-from algorithms.observations.fleet import Fleet
+from algorithms.observations.fleet import Fleet, FleetPrior
 from algorithms.observations.observation import encounter
 from algorithms.observations.pair_problem import Known, PairProblem
 from algorithms.verdict.decision import VerdictConfig
@@ -88,7 +88,7 @@ def pair_orders(fleet: Fleet) -> list[PairOrder]:
     by_pair: dict[tuple[str, str], list[int]] = {}
     for number, seen in enumerate(fleet.sightings):
         by_pair.setdefault((seen.observer, seen.observed), []).append(number)
-    for told in fleet.priors:
+    for told in aligned_priors(fleet):
         by_pair.setdefault((told.ref, told.mov), [])
     orders = []
     for (ref, mov), numbers in sorted(by_pair.items()):
@@ -96,6 +96,19 @@ def pair_orders(fleet: Fleet) -> list[PairOrder]:
         groups = [tuple(numbers)] if agree else [(number,) for number in numbers]
         orders += [PairOrder(ref, mov, group) for group in groups]
     return orders
+
+
+def aligned_priors(fleet: Fleet) -> list[FleetPrior]:
+    """What else is known of two robots, as their sightings tell it: where only ``mov`` saw ``ref``, the
+    other way round, so that one merge uses both.
+    """
+    seen = {(each.observer, each.observed) for each in fleet.sightings}
+    return [
+        FleetPrior(told.mov, told.ref, told.prior.inverse())
+        if (told.mov, told.ref) in seen and (told.ref, told.mov) not in seen
+        else told
+        for told in fleet.priors
+    ]
 
 
 def _agree(fleet: Fleet, a: int, b: int) -> bool:
@@ -110,7 +123,7 @@ def _agree(fleet: Fleet, a: int, b: int) -> bool:
 def known_of(fleet: Fleet, order: PairOrder) -> tuple[Known, ...]:
     """What is known of how the maps of an order lie."""
     seen = tuple(fleet.sightings[number].observation for number in order.sightings)
-    rough = (told.prior for told in fleet.priors if (told.ref, told.mov) == (order.ref, order.mov))
+    rough = (told.prior for told in aligned_priors(fleet) if (told.ref, told.mov) == (order.ref, order.mov))
     return (*seen, *rough)
 
 

@@ -64,6 +64,14 @@ class InitialPose:
         off[:, 2] = wrap_angles(off[:, 2])
         return np.asarray(np.linalg.norm(off / self.sigmas, axis=1), dtype=np.float64)
 
+    def inverse(self) -> InitialPose:
+        """What it says of T_mov_ref, to first order; of two unlike deviations in x and y the larger one."""
+        of_mov = self.pose.apply(self.about)
+        sigma = max(self.sigma_x, self.sigma_y)
+        return InitialPose(
+            self.pose.inverse(), sigma, sigma, self.sigma_yaw, float(of_mov[0]), float(of_mov[1])
+        )
+
     def slack(self, shift: float, turn: float, pivot: FloatArray) -> float:
         """Bound of how far the deviation changes where the pivot moves and turns by up to so much.
 
@@ -92,6 +100,10 @@ class TurnPrior:
     def deviations(self, poses: FloatArray) -> FloatArray:
         """(P,) standard deviations of (P, 3) x, y, theta of T_ref_mov from it."""
         return np.asarray(np.abs(wrap_angles(poses[:, 2] - self.yaw)) / self.sigma, dtype=np.float64)
+
+    def inverse(self) -> TurnPrior:
+        """What it says of T_mov_ref."""
+        return TurnPrior(-self.yaw, self.sigma)
 
     def slack(self, shift: float, turn: float, pivot: FloatArray) -> float:
         """Bound of how far the deviation changes; arguments as in ``InitialPose.slack``."""
@@ -123,6 +135,10 @@ class NearPlace:
         x = c * self.mov_x - s * self.mov_y + poses[:, 0] - self.ref_x
         y = s * self.mov_x + c * self.mov_y + poses[:, 1] - self.ref_y
         return np.asarray(np.hypot(x, y) * (SPREADS_IN_RADIUS / self.radius), dtype=np.float64)
+
+    def inverse(self) -> NearPlace:
+        """What it says of T_mov_ref."""
+        return NearPlace(self.mov_x, self.mov_y, self.ref_x, self.ref_y, self.radius)
 
     def slack(self, shift: float, turn: float, pivot: FloatArray) -> float:
         """Bound of how far the deviation changes; arguments as in ``InitialPose.slack``."""

@@ -10,7 +10,7 @@ from algorithms.common.pose import Pose2
 from algorithms.common.robot_names import RobotNames
 from algorithms.fleets.fleet_merge import FleetResult, poses_so_far
 from algorithms.fleets.island import Island
-from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, known_of, pair_orders
+from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, aligned_priors, known_of, pair_orders
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import LONGEST_NAME, NAME_RULE, Fleet, FleetPrior, FleetSighting, is_name
 from algorithms.observations.observation import Observation
@@ -154,7 +154,7 @@ class FleetState:
             seen = [FleetSighting(*pair, one) for one in known if isinstance(one, Observation)]
             rough = [FleetPrior(*pair, one) for one in known if not isinstance(one, Observation)]
             others = [each for k, each in enumerate(f.sightings) if k not in order.sightings]
-            priors = [told for told in f.priors if (told.ref, told.mov) != pair]
+            priors = [told for told in aligned_priors(f) if (told.ref, told.mov) != pair]
             order = replace(order, sightings=tuple(range(len(others), len(others) + len(seen))))
             fleet = replace(f, sightings=(*others, *seen), priors=(*priors, *rough))
             state = state.with_fleet(fleet)

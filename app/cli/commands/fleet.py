@@ -14,6 +14,7 @@ from algorithms.common.errors import OutputError
 from algorithms.files.atomic_write import check_folder, write_files
 from algorithms.files.fleet_file import FLEET_FILE, read_fleet
 from algorithms.fleets.fleet_merge import FleetResult, PairStep, run_fleet
+from algorithms.fleets.pair_hypotheses import aligned_priors
 from algorithms.observations.fleet import Fleet
 from app.cli.argument_parser import Parser
 from app.cli.executor_flags import add_workers, executor_for
@@ -122,7 +123,7 @@ def _robots(result: FleetResult) -> list[str]:
 def _left_out(fleet: Fleet, result: FleetResult) -> list[str]:
     """Sightings, and what else is known, that nothing rests on."""
     said = [f"sighting {each.number + 1} is left out: {each.reason}" for each in result.left_out]
-    priors = {(told.ref, told.mov) for told in fleet.priors}
+    priors = {(told.ref, told.mov) for told in aligned_priors(fleet)}
     for number, finding in enumerate(result.findings):
         order = finding.order
         if not order.sightings and (order.ref, order.mov) in priors and number not in result.chosen:

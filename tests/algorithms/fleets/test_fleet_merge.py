@@ -126,6 +126,16 @@ def test_a_robot_whose_pose_is_roughly_known_needs_no_sighting(three, merged):
     assert result.placed["cid"].array() == pytest.approx(T.array(), abs=0.1)
 
 
+def test_what_is_known_the_other_way_round_joins_the_sighting_and_is_no_second_merge(small_case):
+    (o, _, turn, _) = rough_knowledge(small_case)["all"]
+    maps = {"a": small_case.ref, "b": small_case.mov}
+    for told in (FleetPrior("a", "b", turn), FleetPrior("b", "a", turn.inverse())):
+        fleet = Fleet(maps, (FleetSighting("a", "b", o),), (told,))
+        (order,) = pair_orders(fleet)
+        assert (order.ref, order.mov) == ("a", "b")
+        assert known_of(fleet, order) == (o, turn)
+
+
 def rough_knowledge(small_case: Case) -> dict[str, tuple[Known, ...]]:
     """What may be known of the two maps, by what it is called."""
     T, (o,) = small_case.truth.T_ref_mov, small_case.observations

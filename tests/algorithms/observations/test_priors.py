@@ -52,6 +52,22 @@ def test_a_pose_that_is_known_at_a_point_of_map_2_lets_it_turn_about_that_point(
     assert PRIORS[4].deviations(poses) == pytest.approx([1, 2**0.5])  # of the turn; of the turn and y
 
 
+@pytest.mark.parametrize("prior", [*PRIORS[1:3], InitialPose(T, 0.5, 0.5, 0.2, *AT)])
+@given(st.tuples(small, small, small).map(lambda off: 0.02 * np.array(off)))
+def test_told_the_other_way_round_it_says_the_same_of_every_transform_near_the_truth(prior, off):
+    pose = Pose2.from_array(T.array() + off)
+    there = float(prior.deviations(pose.array()[None])[0])
+    back = float(prior.inverse().deviations(pose.inverse().array()[None])[0])
+    assert back == pytest.approx(there, rel=0.02, abs=1e-9)
+
+
+@pytest.mark.parametrize("prior", [*PRIORS[:3], PRIORS[4]])
+def test_told_the_other_way_round_twice_the_truth_is_where_it_was_and_known_no_better(prior):
+    twice = prior.inverse().inverse()
+    near = T.array() + 0.1 * np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    assert (twice.deviations(near) <= prior.deviations(near) + 1e-9).all()
+
+
 @pytest.mark.parametrize("prior", PRIORS)
 @given(small, small, small, small, small, small)
 def test_no_deviation_changes_by_more_than_the_slack(prior, x, y, turn, dx, dy, dturn):
