@@ -153,6 +153,7 @@ EXERCISED_BY = {
         "algorithms.verdict.ranking",
     },
     "app/cli/commands/test_merge.py": {
+        "app.cli.output_arguments",
         "app.system.data_paths",
         "app.system.hardware",
     },
@@ -316,7 +317,6 @@ EXERCISED_BY = {
         "app.drawing.svg.map_plot",
         "app.drawing.svg.verdict_bars",
         "app.report.report_figures",
-        "app.report.ros_transform",
     },
     "app/page/lesson/test_lesson_texts.py": {
         "app.page.lesson.equations",

@@ -5,10 +5,27 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from algorithms.common.errors import SettingError
+
+LONGEST_NAME = 64  # letters of a robot's name
+NAME_RULE = f"give 1 to {LONGEST_NAME} letters, without a slash, and no space at either end"
+
 # Not in quotes, in brackets or as a part of a file's name: what a stranger wrote stays as it is.
 BEFORE, WORDS_OF_TWO = r"(?<![\w'\"“(/.-])", r"([Rr]obot|[Mm]ap) ([12])('s)?(?![\w-]|\.\w)"
 WORDS = re.compile(BEFORE + WORDS_OF_TWO)
 IN_HTML = re.compile(rf"(?:{BEFORE}|(?<==\")){WORDS_OF_TWO}")  # also where an attribute begins with it
+
+
+def is_name(text: str) -> bool:
+    """Whether a robot can be called so: it goes into names of frames, and is shown to people."""
+    fits = 1 <= len(text) <= LONGEST_NAME and text == text.strip()
+    return fits and text.isprintable() and "/" not in text
+
+
+def check_name(text: str) -> None:
+    """Raise SettingError where no robot can be called so."""
+    if not is_name(text):
+        raise SettingError(f"{text!r} is no name for a robot; {NAME_RULE}")
 
 
 @dataclass(frozen=True)
@@ -17,6 +34,19 @@ class RobotNames:
 
     ref: str = "robot 1"
     mov: str = "robot 2"
+
+    @staticmethod
+    def of(ref: str, mov: str) -> RobotNames:
+        """Names that a person gives; "" and spaces alone leave a robot without one.
+
+        raises : SettingError where a robot cannot be called so, or both are called alike
+        """
+        names = RobotNames(ref.strip() or UNNAMED.ref, mov.strip() or UNNAMED.mov)
+        for name in (names.ref, names.mov):
+            check_name(name)
+        if names.ref == names.mov:
+            raise SettingError(f"both robots are called {names.ref}; give them two names")
+        return names
 
     def told(self, text: str, words: re.Pattern[str] = WORDS) -> str:
         """A sentence of ours with the names in it: "robot 2 lies in map 1" becomes "Alice lies in Bob's map".

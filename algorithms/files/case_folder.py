@@ -8,6 +8,7 @@ from pathlib import Path
 
 from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError, unreadable
+from algorithms.common.source_file import SourceFile
 from algorithms.files.map_file import read_map
 from algorithms.files.observation_file import OBSERVATION_FILE, ROUGH_OBSERVATION_FILE, read_known
 from algorithms.files.truth_file import TRUTH_FILE, Truth, read_truth
@@ -28,6 +29,7 @@ class Case:
     observation_file : name of the file that ``observations`` came from
     priors           : what else is known
     truth            : None where the folder holds no truth.yaml
+    read_from        : that file itself; None where there is none
     """
 
     name: str
@@ -37,6 +39,7 @@ class Case:
     observation_file: str
     truth: Truth | None
     priors: tuple[Prior, ...] = ()
+    read_from: SourceFile | None = None
 
     @property
     def known(self) -> tuple[Known, ...]:
@@ -62,6 +65,7 @@ def read_case(folder: Path | str, rough: bool = False) -> Case:
         observation_file=observation_file,
         truth=read_truth(truth_path) if truth_path.exists() else None,
         priors=tuple(each for each in known if not isinstance(each, Observation)),
+        read_from=SourceFile.at(folder / observation_file),
     )
 
 

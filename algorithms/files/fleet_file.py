@@ -8,6 +8,7 @@ from pathlib import Path
 from textwrap import indent
 
 from algorithms.common.errors import InputFileError, SettingError
+from algorithms.common.robot_names import NAME_RULE, is_name
 from algorithms.files import yaml_fields as fields
 from algorithms.files.foreign_files import check_foreign
 from algorithms.files.map_file import read_bytes, read_map
@@ -25,11 +26,9 @@ from algorithms.observations.fleet import (
     MOST_PRIORS,
     MOST_ROBOTS,
     MOST_SIGHTINGS,
-    NAME_RULE,
     Fleet,
     FleetPrior,
     FleetSighting,
-    is_name,
 )
 
 FLEET_FILE = "fleet.yaml"

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import io
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePath, PureWindowsPath
 from typing import BinaryIO
 
 from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError, OutputError, SettingError, unreadable
 from algorithms.common.pose import Pose2
+from algorithms.common.source_file import SourceFile
 from algorithms.files import yaml_fields as fields
 from algorithms.files.atomic_write import write_files
 from algorithms.files.foreign_files import check_foreign_folder
@@ -41,6 +42,7 @@ class MapMeta:
     origin     : T_map_grid, pose of the image's lower-left corner in the map's frame
     shading    : how grey becomes occupancy
     remarks    : what a person should know of the file, each a clause
+    file       : the YAML file itself; None where there is none
     """
 
     image: str
@@ -48,6 +50,7 @@ class MapMeta:
     origin: Pose2
     shading: Shading
     remarks: tuple[str, ...] = ()
+    file: SourceFile | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,7 +212,7 @@ def parse_meta(source: str, data: bytes) -> MapMeta:
         found, remedy = str(error).split("; ", 1)
         raise InputFileError(source, found, remedy) from error
     more = ("its YAML file holds several documents; the first was taken",) if f.further else ()
-    return MapMeta(image, resolution, Pose2(x, y, yaw), shading, more)
+    return MapMeta(image, resolution, Pose2(x, y, yaw), shading, more, SourceFile.of(source, data))
 
 
 def read_bytes(
@@ -258,7 +261,8 @@ def _read_image(path: Path, meta: MapMeta, name: str) -> GridMap:
 def _to_map(source: str, stream: BinaryIO, meta: MapMeta, name: str) -> GridMap:
     cells, odd = GreyImage(*read_pixels(source, stream)).read(meta.shading)
     remarks = (*meta.remarks, *odd)
-    return GridMap(cells, meta.resolution, meta.origin, show_hidden(name) or "map", remarks)
+    files = tuple(filter(None, (meta.file, SourceFile.of(source, stream))))
+    return GridMap(cells, meta.resolution, meta.origin, show_hidden(name) or "map", remarks, files)
 
 
 def _opened(data: bytes | BinaryIO) -> BinaryIO:

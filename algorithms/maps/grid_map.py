@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from algorithms.common.errors import SettingError, TooLargeError
 from algorithms.common.pose import FloatArray, Pose2, wrap_angle
+from algorithms.common.source_file import SourceFile
 
 BoolArray = NDArray[np.bool_]
 CellArray = NDArray[np.int8]
@@ -69,6 +70,7 @@ class GridMap:
     origin     : T_map_grid, pose of the lower-left corner of cell (0, 0) in the map's frame
     name       : what to call it before a person
     remarks    : what a person should know of how it was read, each a clause with the cure
+    files      : what it was read from: the YAML file, where there was one, and the image
     """
 
     cells: CellArray
@@ -76,6 +78,7 @@ class GridMap:
     origin: Pose2 = field(default_factory=Pose2)
     name: str = "map"
     remarks: tuple[str, ...] = ()
+    files: tuple[SourceFile, ...] = ()
 
     def __post_init__(self) -> None:
         if self.cells.ndim != 2 or self.cells.dtype != np.int8 or self.cells.size == 0:
@@ -89,9 +92,9 @@ class GridMap:
             )
         self.cells.flags.writeable = False
 
-    def __reduce__(self) -> tuple[type[GridMap], tuple[CellArray, float, Pose2, str, tuple[str, ...]]]:
+    def __reduce__(self) -> tuple[type[GridMap], tuple[object, ...]]:
         """What travels to another process: what the map was made of, and nothing that was made of it."""
-        return GridMap, (self.cells, self.resolution, self.origin, self.name, self.remarks)
+        return GridMap, tuple(getattr(self, each.name) for each in fields(self))
 
     @property
     def height(self) -> int:

@@ -121,9 +121,9 @@ def fuse(
     if cell == ref.resolution:
         layers[0][-low_row : ref.height - low_row, -low_col : ref.width - low_col] = ref.cells
     else:
-        _look_up(ref, T_grid_merged, cell, layers[0])
+        look_up(ref, T_grid_merged, cell, layers[0])
     for grid, T, layer in zip(maps[1:], transforms[1:], layers[1:], strict=True):
-        _look_up(grid, grid.origin.inverse() @ T.inverse() @ ref.origin @ T_grid_merged, cell, layer)
+        look_up(grid, grid.origin.inverse() @ T.inverse() @ ref.origin @ T_grid_merged, cell, layer)
         walls = (T_grid_merged.inverse() @ (to_grid @ T)).apply(grid.points) / cell
         cols, rows = np.floor(walls).astype(np.intp).T
         inside = (rows >= 0) & (rows < shape[0]) & (cols >= 0) & (cols < shape[1])
@@ -173,7 +173,7 @@ def _clear(other: CellArray, own: CellArray, places: FloatArray, size: float, sa
     return cleared
 
 
-def _look_up(source: GridMap, T_source_target: Pose2, cell: float, target: CellArray) -> None:
+def look_up(source: GridMap, T_source_target: Pose2, cell: float, target: CellArray) -> None:
     """Fill ``target`` with the source cell under each of its centres; outside stays as it is."""
     scale = cell / source.resolution
     c, s = cos(T_source_target.theta) * scale, sin(T_source_target.theta) * scale

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from algorithms.common.errors import SettingError
+from algorithms.common.robot_names import check_name
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.observation import Observation
 from algorithms.observations.priors import Prior
@@ -13,14 +14,6 @@ from algorithms.observations.priors import Prior
 MOST_ROBOTS = 50
 MOST_SIGHTINGS = 1000
 MOST_PRIORS = 200
-LONGEST_NAME = 64  # letters of a robot's name
-NAME_RULE = f"give 1 to {LONGEST_NAME} letters, without a slash, and no space at either end"
-
-
-def is_name(text: str) -> bool:
-    """Whether a robot can be called so: it goes into names of frames, and is shown to people."""
-    fits = 1 <= len(text) <= LONGEST_NAME and text == text.strip()
-    return fits and text.isprintable() and "/" not in text
 
 
 @dataclass(frozen=True)
@@ -63,8 +56,7 @@ class Fleet:
         if not 2 <= len(self.maps) <= MOST_ROBOTS:
             raise SettingError(f"a fleet has 2 to {MOST_ROBOTS} robots, not {len(self.maps)}")
         for name in self.maps:
-            if not is_name(name):
-                raise SettingError(f"{name!r} is no name for a robot; {NAME_RULE}")
+            check_name(name)
         if len(self.sightings) > MOST_SIGHTINGS:
             raise SettingError(f"a fleet has at most {MOST_SIGHTINGS} sightings, not {len(self.sightings)}")
         if len(self.priors) > MOST_PRIORS:

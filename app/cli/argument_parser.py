@@ -11,7 +11,7 @@ from contextlib import suppress
 from math import inf
 from typing import Any, NoReturn
 
-NEGATIVE_NUMBER = re.compile(r"-(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$", re.IGNORECASE)
+NEGATIVE_NUMBER = re.compile(r"-(\d+\.?\d*|\.\d+)(e[+-]?\d+)?(,.*)?$", re.IGNORECASE)
 
 
 class Parser(argparse.ArgumentParser):
@@ -19,7 +19,7 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, strict: bool = True, **kwargs: Any) -> None:
         super().__init__(allow_abbrev=False, formatter_class=_Formatter, **kwargs)
-        self._negative_number_matcher = NEGATIVE_NUMBER  # "-1e-3" is a number, too
+        self._negative_number_matcher = NEGATIVE_NUMBER  # "-1e-3" is one, too, and "-1,2,0.5" begins with one
         self.strict = strict  # whether an option that is not known is an error
         self.hint = ""  # said after an error about one
         self.what_became_of: Callable[[str], str] = lambda flag: ""  # says it of an option that is gone

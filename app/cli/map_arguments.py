@@ -12,6 +12,7 @@ from app.cli.argument_parser import Parser, did_you_mean, whole_number
 from app.system.data_paths import samples
 
 if TYPE_CHECKING:
+    from algorithms.common.robot_names import RobotNames
     from algorithms.maps.grid_map import GridMap
     from algorithms.observations.pair_problem import Known
 
@@ -31,6 +32,19 @@ def add_reading(parser: Parser) -> None:
         metavar="G",
         help="a grey, 0 to 255, that stands for unknown in both maps, whatever their thresholds say",
     )
+
+
+def add_names(parser: Parser) -> None:
+    """Add ``--names``: what the two robots are called."""
+    about = "what the robots of MAP1 and MAP2 are called: in verdicts, reports and the frames of their maps"
+    parser.add_argument("--names", nargs=2, metavar=("NAME1", "NAME2"), help=about)
+
+
+def names_from(args: argparse.Namespace) -> RobotNames:
+    """What the robots are called; raises SettingError."""
+    from algorithms.common.robot_names import RobotNames
+
+    return RobotNames.of(*(args.names or ("", "")))
 
 
 def add_known(parser: Parser) -> None:

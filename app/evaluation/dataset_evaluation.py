@@ -22,7 +22,7 @@ from app.evaluation.case_knowledge import known_of
 from app.evaluation.crossed_pairs import Pair, name_of_pair, read_pair
 from app.evaluation.method_run import Judgement, judge_case, merge_or_reason, reason_of
 from app.jobs.executor import Executor, LostTask, SerialExecutor, Task
-from app.report.result_files import plain, report_of
+from app.report.json_report import plain, report_of
 
 OVERALL = "overall"
 
@@ -140,7 +140,9 @@ def run_case(pair: Pair, order: EvaluationTask, read: Loaded | EvaluatedCase | N
     if isinstance(result, NoAnswerError):
         outcome = {"no_answer": str(result), "truth": judge_case(case, None)}
     elif not isinstance(result, str):
-        outcome = {"report": report_of(result, config, reading_s), "truth": judge_case(case, result)}
+        report = report_of(result, config, reading_s)
+        del report["made"]  # the same cases give the same file
+        outcome = {"report": report, "truth": judge_case(case, result)}
     outcome |= {"drawn": () if order.knowledge == "sighting" else known}
     return _evaluated(case.name, order, **outcome, seconds=reading_s + perf_counter() - began)
 

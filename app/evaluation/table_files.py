@@ -10,7 +10,7 @@ from math import degrees
 from typing import Any
 
 from app.evaluation.method_run import MethodRun
-from app.report.result_files import plain
+from app.report.json_report import plain
 
 
 def json_bytes(value: Any) -> bytes:

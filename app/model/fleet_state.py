@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
-from algorithms.common.robot_names import RobotNames
+from algorithms.common.robot_names import LONGEST_NAME, RobotNames, check_name
 from algorithms.fleets.fleet_merge import FleetResult, poses_so_far
 from algorithms.fleets.island import Island
 from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, aligned_priors, known_of, pair_orders
 from algorithms.maps.grid_map import GridMap
-from algorithms.observations.fleet import LONGEST_NAME, NAME_RULE, Fleet, FleetPrior, FleetSighting, is_name
+from algorithms.observations.fleet import Fleet, FleetPrior, FleetSighting
 from algorithms.observations.observation import Observation
 from algorithms.observations.pair_problem import Known
 from app.model.merge_inputs import MergeInputs
@@ -96,8 +96,7 @@ class FleetState:
 
     def renamed(self, old: str, new: str) -> FleetState:
         """The same robot under another name; raises SettingError where another has it, or it is none."""
-        if not is_name(new):
-            raise SettingError(f"{new!r} is no name for a robot; {NAME_RULE}")
+        check_name(new)
         if new in self.fleet.maps:
             raise SettingError(f"there is a robot {new} already")
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from algorithms.common.robot_names import UNNAMED, RobotNames
+from algorithms.common.source_file import SourceFile
 from algorithms.files.case_folder import Case
 from algorithms.files.truth_file import Truth
 from algorithms.maps.grid_map import GridMap, remarks_on
@@ -66,6 +67,7 @@ class MergeInputs:
     choice       : which kind of knowledge is to be used
     aside        : what is known beside, and not used
     names        : what the two robots are called; what these inputs say is on robot 1 and robot 2
+    read         : a file of what is known, and all that stood in it; None: there was none
     """
 
     maps: tuple[MapSlot, ...] = (MapSlot(), MapSlot())
@@ -76,6 +78,7 @@ class MergeInputs:
     choice: Choice = "nothing"
     aside: tuple[Known, ...] = ()
     names: RobotNames = UNNAMED
+    read: tuple[SourceFile, frozenset[Known]] | None = None
 
     @staticmethod
     def pair(
@@ -98,6 +101,26 @@ class MergeInputs:
         priors = tuple(one for one in taken if not isinstance(one, Observation))
         aside = tuple(one for one in known if one not in taken)
         return replace(self, observations=seen, priors=priors, choice=choice, aside=aside)
+
+    def read_from(self, file: SourceFile) -> MergeInputs:
+        """The same, where that file is what all that is known was read from."""
+        return replace(self, read=(file, frozenset(self.pool)))
+
+    @property
+    def files(self) -> dict[str, tuple[SourceFile, ...]]:
+        """What was read, by map1, map2 and observation: that one as long as nothing of it was changed."""
+        files = {f"map{number}": grid.files for number, grid in enumerate((self.ref, self.mov), 1) if grid}
+        if self.read is not None and self.read[1] == frozenset(self.pool):
+            files["observation"] = (self.read[0],)
+        return {what: read for what, read in files.items() if read}
+
+    @property
+    def title(self) -> str:
+        """What to call it before a person: its name, and with robots that have names what they did."""
+        said = f"{self.names.ref} {'saw' if self.observations else 'and'} {self.names.mov}"
+        if self.names == UNNAMED or said == self.name:
+            return self.name
+        return f"{self.name}: {said}" if self.name else said
 
     @property
     def pool(self) -> tuple[Known, ...]:
@@ -209,4 +232,5 @@ class MergeInputs:
     @staticmethod
     def of(case: Case) -> MergeInputs:
         """The inputs of a case folder."""
-        return MergeInputs.pair(case.ref, case.mov, case.observations, case.name, case.truth, case.priors)
+        pair = MergeInputs.pair(case.ref, case.mov, case.observations, case.name, case.truth, case.priors)
+        return pair if case.read_from is None else pair.read_from(case.read_from)

@@ -95,7 +95,7 @@ class PageDisplay:
         doubt = inputs.doubt()
         ready = status_text.READY if inputs.known else status_text.READY_FOR_ALL
         self.messages.hud(
-            case=inputs.name,
+            case=inputs.title,
             state=" ".join(filter(None, (inputs.missing(), doubt))) or ready,
             mood="refused" if doubt else "idle",
             progress=None,

@@ -8,14 +8,18 @@ from typing import Any
 
 import numpy as np
 
+from algorithms.common.pose import Pose2
 from algorithms.files.map_file import map_to_bytes
 from algorithms.files.yaml_fields import number_text, quoted
 from algorithms.fleets.fleet_merge import FleetResult
 from algorithms.fleets.island import Island
 from algorithms.observations.fleet import Fleet
+from app.report.export_frame import ExportedMap, ExportFrame
 from app.report.fleet_report import fleet_page
-from app.report.result_files import MERGED, PAGE_FILE, REPORT_FILE, plain, report_json
-from app.report.ros_transform import publish_command
+from app.report.json_report import plain, report_json
+from app.report.result_files import MERGED, PAGE_FILE, REPORT_FILE
+from app.report.ros_transform import OF_REF, frame_names, publish_command
+from app.system.clock import made_at
 from app.system.version import versions
 
 TRANSFORMS_FILE = "transforms.yaml"
@@ -27,15 +31,29 @@ def island_name(number: int) -> str:
     return MERGED if number == 1 else f"{MERGED}_island{number}"
 
 
-def fleet_files(fleet: Fleet, result: FleetResult, name: str) -> dict[str, bytes]:
+def exported_maps(result: FleetResult, frame: ExportFrame = OF_REF) -> dict[str, ExportedMap]:
+    """The maps of the islands as they are given away, by their names: each in the frame of its island's root.
+
+    raises : SettingError, TooLargeError
+    """
+    return {
+        island_name(number): frame.given(island.fusion.merged, Pose2())
+        for number, island in enumerate(result.islands, 1)
+        if number == 1 or len(island.poses) > 1
+    }
+
+
+def fleet_files(
+    fleet: Fleet, result: FleetResult, name: str, exported: Mapping[str, ExportedMap] | None = None
+) -> dict[str, bytes]:
     """All files by name, in the order they are to be written: the reports are the last.
 
-    name : of the fleet, for people
+    name     : of the fleet, for people
+    exported : its maps; None: as they were merged
     """
     files: dict[str, bytes] = {}
-    for number, island in enumerate(result.islands, 1):
-        if number == 1 or len(island.poses) > 1:
-            files |= map_to_bytes(island.fusion.merged, island_name(number))
+    for stem, each in (exported or exported_maps(result)).items():
+        files |= map_to_bytes(each.cells.grid, stem)
     files[TRANSFORMS_FILE] = transforms_yaml(result)
     files[GRAPH_FILE] = graph_g2o(result)
     files[PAGE_FILE] = fleet_page(fleet, result, name)
@@ -47,15 +65,17 @@ def transforms_yaml(result: FleetResult) -> bytes:
     """Where every robot's frame lies in its island's, and the command that publishes it in ROS 2."""
     lines = [
         "# Takes points of a robot's frame to that of the root of its map; m, m, rad. "
-        "The robots' maps are the frames NAME/map."
+        "The robots' maps are the frames NAME/map, the name in small letters."
     ]
+    robots = [name for island in result.islands for name in island.poses]
+    frames = dict(zip(robots, frame_names(robots), strict=True))
     for number, island in enumerate(result.islands, 1):
         lines += [f"{island_name(number)}:", f"  root: {quoted(island.root)}", "  robots:"]
         for name, T in island.poses.items():
             x, y, theta = (number_text(value) for value in (T.x, T.y, T.theta))
             lines.append(f"    {quoted(name)}:")
             lines.append(f"      T_root_robot: {{x: {x}, y: {y}, theta: {theta}}}")
-            command = publish_command(T, f"{island.root}/map", f"{name}/map")
+            command = publish_command(T, frames[island.root], frames[name])
             lines.append(f"      publish: {quoted(command)}")
     return ("\n".join(lines) + "\n").encode()
 
@@ -101,6 +121,8 @@ def fleet_report(fleet: Fleet, result: FleetResult, name: str) -> dict[str, Any]
             for number, seen in enumerate(fleet.sightings)
         ],
         "pairs": [_pair(number, result) for number in range(len(result.findings))],
+        "files": {robot: plain(grid.files) for robot, grid in fleet.maps.items()},
+        "made": made_at(),
         "versions": versions(),
     }
 

@@ -22,8 +22,9 @@ from app.drawing.svg.map_plot import RasterView, scale_bar, scene
 from app.drawing.svg.svg_canvas import SvgCanvas
 from app.model import verdict_text
 from app.model.status_text import typeset
+from app.system.clock import made_at
 from app.system.data_paths import asset
-from app.system.version import versions
+from app.system.version import version, versions
 
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 ROBOT_COLUMNS = ("robot", "map", "x (m)", "y (m)", "turn", "likely", "")
@@ -48,6 +49,7 @@ def fleet_page(fleet: Fleet, result: FleetResult, name: str) -> bytes:
         _section("Pairs", _table(_pairs(result), ("observer", "observed", "likely", "what the maps say"))),
     ]
     made = ", ".join(f"{package} {number}" for package, number in versions().items())
+    made_by = f"{made_at()}, mapmeld {version()}"
     title = f"{placed} of {total} robots: {name}"
     html = (
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'
@@ -55,6 +57,7 @@ def fleet_page(fleet: Fleet, result: FleetResult, name: str) -> bytes:
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
         f"<title>{escape(title)}</title><style>{asset('report.css')}</style></head><body>"
         f"<header><b>mapmeld</b><span>Report of a fleet</span></header><h1>{escape(name)}</h1>"
+        f'<p class="made">{escape(made_by)}</p>'
         f"{''.join(parts)}<footer>Made with {escape(made)}.</footer></body></html>\n"
     )
     return html.encode()

@@ -25,8 +25,9 @@ from app.model.objective_label import measure_of
 from app.model.settings import Setting, settings_of, text_for, value_at
 from app.model.status_text import typeset
 from app.report import report_figures as outcome
+from app.report.export_frame import ExportedMap
 from app.report.result_rows import STAGES, numbers
-from app.report.ros_transform import frames_of, publish_command
+from app.report.ros_transform import OF_REF, publish_commands
 from app.system.cancellation import Check, never_cancelled
 from app.system.data_paths import asset
 
@@ -46,15 +47,17 @@ def report_page(
     inputs: MergeInputs,
     config: Any,
     report: Mapping[str, Any],
+    exported: ExportedMap | None = None,
     check: Check = never_cancelled,
 ) -> bytes:
     """The content of report.html.
 
-    config : the settings that were used
-    report : what report.json says
-    check  : is called between the pictures
+    config   : the settings that were used
+    report   : what report.json says
+    exported : the merged map as it is given away; None: as it was merged
+    check    : is called between the pictures
     """
-    found, name = find_conflicts(result.fusion), inputs.name or "two maps"
+    found, name = find_conflicts(result.fusion), inputs.title or "two maps"
     title = f"{result.verdict.outcome.value.capitalize()}: {name}"
     names = inputs.names
     parts = [
@@ -65,9 +68,10 @@ def report_page(
         _section("The numbers", _table(numbers(result, inputs, config), "two")),
         _proof(result, config, names),
         _section("What was known", *_known(inputs)),
-        _section("How it was merged", *_settings(result, config, report)),
-        _section("How to use it", *_use(result, names)),
+        _section("How it was merged", *_settings(result, config, report, names)),
+        _section("How to use it", *_use(result, names, exported)),
     ]
+    made_by = f"{report['made']}, mapmeld {report['versions']['mapmeld']}"
     made = ", ".join(f"{package} {number}" for package, number in report["versions"].items())
     html = (
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'
@@ -75,6 +79,7 @@ def report_page(
         f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'
         f"<title>{escape(title)}</title><style>{_STYLE}</style></head><body>"
         f"<header><b>mapmeld</b><span>Report of a merge</span></header><h1>{escape(name)}</h1>"
+        f'<p class="made">{escape(made_by)}</p>'
         f"{''.join(parts)}<footer>Made with {escape(made)}.</footer></body></html>\n"
     )
     return html.encode()
@@ -177,17 +182,35 @@ def _known(inputs: MergeInputs) -> list[str]:
     return [f"<p>{said[0].upper()}{said[1:]}. As it stands in observation.yaml:</p><pre>{text}</pre>"]
 
 
-def _settings(result: MergeResult, config: Any, report: Mapping[str, Any]) -> list[str]:
+def _settings(result: MergeResult, config: Any, report: Mapping[str, Any], names: RobotNames) -> list[str]:
     method = METHODS.get(result.method)
     title = method.title if method else result.method
     rows = [("method", title), ("seed", str(result.seed)), *report["inputs"].items()]
     parts = [_table(rows, "words")]
+    if report["files"]:
+        read = [
+            (names.told(what.replace("map", "map ")), file["name"], file["sha256"])
+            for what, files in report["files"].items()
+            for file in files
+        ]
+        parts.append(_table(read, "words files", ("read", "file", "SHA-256 of its bytes")))
     if config is not None:
+        if method:
+            parts.append(f"<p>{escape(_changed(config, report['changed_settings']))}</p>")
         standard = method.defaults if method and type(method.defaults) is type(config) else config
         rows = [_setting(setting, standard) for setting in settings_of(config)]
         parts.append(_table(rows, "two", ("setting", "value")))
     times = ((STAGES.get(stage, stage), f"{1000 * took:.0f} ms") for stage, took in result.timings_s.items())
     return [*parts, _table(times, "", ("time per stage", ""))]
+
+
+def _changed(config: Any, changed: Mapping[str, Any]) -> str:
+    """Which settings are not the method's defaults, in a sentence."""
+    if not changed:
+        return "All settings are the method's defaults."
+    labels = [each.label for each in settings_of(config) if ".".join(each.path) in changed]
+    differ = "1 setting differs" if len(labels) == 1 else f"{len(labels)} settings differ"
+    return f"{differ} from the method's defaults: {', '.join(labels)}."
 
 
 def _setting(setting: Setting, standard: Any) -> Row:
@@ -196,19 +219,27 @@ def _setting(setting: Setting, standard: Any) -> Row:
     return setting.label, shown if usual == setting.default else f"{shown} (usually {instead})"
 
 
-def _use(result: MergeResult, names: RobotNames) -> list[str]:
+def _use(result: MergeResult, names: RobotNames, exported: ExportedMap | None) -> list[str]:
     if not result.verdict.accepted:
         return ["<p>Refused: there is nothing to publish. See what would help, at the top.</p>"]
+    frame = OF_REF if exported is None else exported.frame
+    lies = {
+        "ref": "map 2's frame lies in map 1's",
+        "mov": "map 1's frame lies in map 2's",
+    }.get(str(frame.frame), f"both maps' frames lie in {frame.said}")
+    serve = f"Serve the merged map, which is in {frame.said}, to Nav2:"
+    if exported is not None and not frame.as_merged:
+        serve = f"{exported.said} Serve it to Nav2:"
     said = (
-        "Tell ROS 2 where map 2's frame lies in map 1's, while both robots run:",
-        "Serve the merged map, which is in map 1's frame, to Nav2:",
+        f"Tell ROS 2 where {lies}, while both robots run:",
+        serve,
         "The transform takes points of map 2 to map 1: p₁ = R(θ) p₂ + (x, y). It is in transform.yaml, "
         "with all its digits; its covariance, the verdict and every setting are in report.json.",
     )
     publish, serve, where = (f"<p>{escape(names.told(each), quote=False)}</p>" for each in said)
-    command = publish_command(result.T_ref_mov, *frames_of(names))
+    commands = "\n".join(publish_commands(result.T_ref_mov, names, frame))
     return [
-        f"{publish}<pre>{escape(command)}</pre>",
+        f"{publish}<pre>{escape(commands)}</pre>",
         f"{serve}<pre>ros2 run nav2_map_server map_server --ros-args -p yaml_filename:=merged.yaml</pre>",
         where,
     ]
@@ -229,7 +260,7 @@ def _table(rows: Iterable[Row], kind: str = "", head: Row = ()) -> str:
     """A table, first column words; kind "two" sets it in two columns, "words" has words beside words."""
 
     def row(cells: Row, tag: str) -> str:
-        shown = cells if kind == "words" else map(typeset, cells)  # words may be names of files
+        shown = cells if kind.startswith("words") else map(typeset, cells)  # words may be names of files
         return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in shown) + "</tr>"
 
     body = "".join(row(cells, "td") for cells in rows)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from math import degrees
 from pathlib import Path
@@ -18,15 +19,16 @@ from algorithms.fleets.pair_hypotheses import aligned_priors
 from algorithms.observations.fleet import Fleet
 from app.cli.argument_parser import Parser
 from app.cli.executor_flags import add_workers, executor_for
+from app.cli.output_arguments import add_output, frame_of
 from app.cli.progress_bar import bar
 from app.evaluation.table_files import aligned
 from app.jobs.fleet_pairs import run_pairs
 from app.model import verdict_text
-from app.report.fleet_files import fleet_files
+from app.report.fleet_files import exported_maps, fleet_files
 from app.report.fleet_report import summary
 from app.report.result_files import REPORT_FILE
 
-USAGE = "FLEET --out DIR [--force] [--json] [--jobs N | --scheduler ADDRESS]"
+USAGE = "FLEET --out DIR [--frame ROBOT] [--no-yaw] [--force] [--json] [--jobs N | --scheduler ADDRESS]"
 DESCRIPTION = f"""\
 Merge the maps of any number of robots, from whatever sightings there are between them.
 
@@ -66,13 +68,17 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the files")
     parser.add_argument("--force", action="store_true", help="place robots however unlikely that is")
     parser.add_argument("--json", action="store_true", help="print report.json and nothing else")
+    about = "the robot whose frame the merged map is in, in place of the file's anchor"
+    add_output(parser).add_argument("--frame", dest="anchor", metavar="ROBOT", help=about)
     add_workers(parser, None)
 
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, write and tell; the exit status."""
     check_folder(args.out)
-    fleet = read_fleet(args.fleet)
+    fleet, frame = read_fleet(args.fleet), frame_of(args)
+    if args.anchor is not None:
+        fleet = replace(fleet, anchor=args.anchor)
     _check_inputs(args)
     for name, grid in fleet.maps.items():
         for remark in grid.remarks:
@@ -80,12 +86,15 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     executor = executor_for(args.jobs, args.scheduler)
     result = _with_bar(run_fleet(fleet, partial(run_pairs, executor), args.force))
     name = args.fleet.resolve().name if args.fleet.is_dir() else args.fleet.stem
-    files = fleet_files(fleet, result, name)
+    exported = exported_maps(result, frame)
+    files = fleet_files(fleet, result, name, exported)
     write_files({args.out / file: data for file, data in files.items()})
     if args.json:
         sys.stdout.write(files[REPORT_FILE].decode())
     else:
         print(summary(result, len(fleet.maps)), *_robots(result), *_left_out(fleet, result), sep="\n")
+        if not frame.as_merged:
+            print(*(f"{stem}.yaml{each.resampled}" for stem, each in exported.items()), sep="\n")
         print(f"written to {args.out}: {', '.join(files)}")
     return 0 if result.whole else 1
 

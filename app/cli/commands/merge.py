@@ -6,37 +6,38 @@ import argparse
 import os
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import degrees
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 from algorithms.common.errors import NoAnswerError, OutputError, SettingError
+from algorithms.common.source_file import SourceFile
 from algorithms.files.atomic_write import check_folder, write_files
 from algorithms.files.map_file import YAML_SUFFIXES, parse_meta, read_bytes
-from algorithms.maps.grid_map import remarks_on
 from algorithms.methods import registry as methods
 from algorithms.methods.manual_merge import ManualMerge, known_answers
 from algorithms.methods.merge_result import CHOSEN, MergeResult
 from algorithms.methods.suggestions import MOST, are_wanted, suggestions_of
 from algorithms.observations.pair_problem import PairProblem
 from app.cli.argument_parser import Parser, whole_number
-from app.cli.map_arguments import add_known, add_reading, known_from, read_maps
+from app.cli.map_arguments import add_known, add_names, add_reading, known_from, names_from, read_maps
+from app.cli.output_arguments import add_frame, frame_of
 from app.cli.progress_bar import result_of
 from app.cli.setting_flags import add_method, configs_from
 from app.evaluation.table_files import aligned
 from app.model import verdict_text
 from app.model.merge_inputs import MergeInputs
 from app.model.objective_label import measure_of
+from app.report.export_frame import ExportFrame
+from app.report.json_report import report_json, report_of, report_of_no_answer
 from app.report.result_files import (
     MERGED_FILES,
     OVERLAY_FILE,
     PAGE_FILE,
     REPORT_FILE,
     TRANSFORM_FILE,
-    report_json,
-    report_of,
-    report_of_no_answer,
     result_files,
 )
 from app.report.suggestion_files import HEAD, SUGGESTION_FILES, suggestion_rows
@@ -44,7 +45,8 @@ from app.report.suggestion_files import HEAD, SUGGESTION_FILES, suggestion_rows
 FILES = (*MERGED_FILES, TRANSFORM_FILE, OVERLAY_FILE, *SUGGESTION_FILES, PAGE_FILE, REPORT_FILE)
 
 USAGE = (
-    "MAP1 MAP2 [--observation FILE | what else is known] --out DIR [--json] [--force] [--strict] [options]"
+    "MAP1 MAP2 [--observation FILE | what else is known] --out DIR [--names NAME1 NAME2] "
+    "[--frame ref|mov|X,Y,YAW] [--no-yaw] [--json] [--force] [--strict] [options]"
 )
 DESCRIPTION = """\
 Merge two maps: from one sighting of robot 2 by robot 1 or several in one file, from a rough initial
@@ -56,15 +58,18 @@ Examples:
   mapmeld merge map1.yaml map2.yaml --initial-yaw 1.57 --out result
   mapmeld merge map1.yaml map2.yaml --out result
   mapmeld merge map1.yaml map2.yaml --out result --take 2
+  mapmeld merge map1.yaml map2.yaml --out result --names Bob Alice --frame mov --no-yaw
   mapmeld merge left.pgm right.pgm --resolution 0.05 --observation o.yaml --out result
   mapmeld merge map1.yaml map2.yaml --observation observation.yaml --out result \\
           --augment.spread 4 --swarm.particles 800 --seed 7 --json | jq .T_ref_mov
 
 Files in the folder of --out:
-  merged.yaml, merged.pgm   the merged map, in map 1's frame
-  transform.yaml            where map 2 lies in map 1, and the line that publishes it in ROS 2
-  report.html               all of it to read and print: verdict, pictures, numbers, settings
-  report.json               transform, covariance, verdict, proof, times, settings
+  merged.yaml, merged.pgm   the merged map, in map 1's frame or that of --frame
+  transform.yaml            where map 2 lies in map 1, and the line that publishes it in ROS 2; with
+                            --frame it has the merged map's frame for its parent
+  report.html               all of it to read and print: verdict, pictures, numbers, settings, date
+  report.json               transform, covariance, verdict, proof, times, settings; the files that
+                            were read with their SHA-256, and the settings that are no defaults
   overlay.png               both maps under the transform: agreement and contradiction
 A merge ends in one of three ways:
   merged         the maps lie on each other
@@ -87,7 +92,9 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("map2", type=Path, metavar="MAP2", help="map of robot 2, the observed")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the files")
     add_known(parser)
+    add_names(parser)
     add_reading(parser)
+    add_frame(parser)
     parser.add_argument("--json", action="store_true", help="print report.json and nothing else")
     about = "take answer N of those that a refused merge suggests: you know that it is right"
     parser.add_argument("--take", type=whole_number(1, MOST), metavar="N", help=about)
@@ -99,15 +106,20 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, write and tell; the exit status."""
     began = perf_counter()
+    names, frame = names_from(args), frame_of(args)
     (ref, mov), known = read_maps(args), known_from(args)
     load_s = perf_counter() - began
     problem = PairProblem.of(ref, mov, known)
+    name = f"{args.map1.stem} and {args.map2.stem}"
+    pair = MergeInputs.pair(ref, mov, problem.observations, name, priors=problem.priors)
+    if args.observation is not None:
+        pair = pair.read_from(SourceFile.at(args.observation))
+    pair = replace(pair, names=names)
     configs = configs_from(args)
     method = methods.default_method(problem, tuple(configs))
     config = configs[method]
-    warnings = remarks_on((ref, mov))
-    for warning in warnings:
-        print(f"warning: {warning}", file=sys.stderr)
+    for warning in pair.readings():
+        print(f"warning: {names.told(warning)}", file=sys.stderr)
     _check_folder(args)
     given = {"map1": args.map1, "map2": args.map2, "observation": args.observation}
     named = {key: str(path) for key, path in given.items() if path is not None}
@@ -115,25 +127,26 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     try:
         result = result_of(methods.run_explained(method, ref, mov, known, config, args.seed))
     except NoAnswerError as refusal:
-        report = report_of_no_answer(refusal, method, args.seed, config, load_s, named, warnings)
+        report = report_of_no_answer(refusal, method, args.seed, config, load_s, named, pair)
         files, lines = {REPORT_FILE: report_json(report)}, [str(refusal)]
         if args.force:
             end = "--force: there is no transform to write a merged map with"
     else:
-        report = report_of(result, config, load_s, named, warnings)
-        name = f"{args.map1.stem} and {args.map2.stem}"
         if args.take is not None:
             result = _taken(result, ManualMerge(problem, config, known_answers(result)), args.take)
-            report = report_of(result, config, load_s, named, warnings)
-        inputs = MergeInputs.pair(ref, mov, problem.observations, name, priors=problem.priors)
         accepted = result.verdict.accepted or result.by_person
-        files = result_files(result, inputs, config, report, with_merged=accepted or args.force)
+        exported = frame.given(result.fusion.merged, result.T_ref_mov) if accepted or args.force else None
+        report = report_of(result, config, load_s, named, pair, exported)
+        files = result_files(result, pair, config, report, exported)
         lines, status = _summary(result, config), 0 if accepted else 1
+        if exported is not None and frame != ExportFrame():
+            lines.append(exported.said)
         if not accepted:
             lines += _suggestions(result) if are_wanted(result) else []
             end = "no merged map was written; --force writes it all the same"
             if args.force:
                 end = "--force: the merged map was written although the merge is refused"
+    lines = list(map(names.told, lines))
     removed = _leave(args.out, files)
     if args.json:
         sys.stdout.write(files[REPORT_FILE].decode())

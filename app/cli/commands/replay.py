@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from algorithms.files.atomic_write import check_file, write_file
@@ -12,14 +13,25 @@ from algorithms.files.case_folder import read_case
 from algorithms.methods import registry as methods
 from algorithms.observations.pair_problem import PairProblem
 from app.cli.argument_parser import Parser
-from app.cli.map_arguments import add_known, add_reading, case_folder, known_from, read_maps
+from app.cli.map_arguments import (
+    add_known,
+    add_names,
+    add_reading,
+    case_folder,
+    known_from,
+    names_from,
+    read_maps,
+)
 from app.cli.progress_bar import with_bar
 from app.cli.setting_flags import add_method, configs_from
 from app.model.merge_inputs import MergeInputs
 from app.report.replay.html_page import ReplayMetadata, replay_html
 from app.report.replay.recorder import record
 
-USAGE = "{CASE | MAP1 MAP2 [--observation FILE | what else is known]} --out FILE.html [options]"
+USAGE = (
+    "{CASE | MAP1 MAP2 [--observation FILE | what else is known]} --out FILE.html "
+    "[--names NAME1 NAME2] [options]"
+)
 DESCRIPTION = """\
 Merge two maps and save the run as one HTML page: maps, candidates, swarm, proof and verdict play
 again in any browser, without a network and without mapmeld. For a talk, a lesson, a report.
@@ -44,6 +56,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("map2", type=Path, metavar="MAP2", nargs="?", help="map of robot 2, the observed")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE.html", help="the page to write")
     add_known(parser)
+    add_names(parser)
     add_reading(parser)
     add_method(parser, words, suits=True)
 
@@ -54,9 +67,9 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         parser.error(f"--out is {args.out}; let its name end in .html, or no browser will open it")
     if args.map2 is None and (args.resolution is not None or args.unknown_grey is not None):
         parser.error("--resolution and --unknown-grey say how MAP1 and MAP2 are read: give both maps")
-    inputs = _inputs(args, parser)
+    inputs = replace(_inputs(args, parser), names=names_from(args))
     for warning in inputs.readings():
-        print(f"warning: {warning}", file=sys.stderr)
+        print(f"warning: {inputs.names.told(warning)}", file=sys.stderr)
     check_file(args.out)
     assert inputs.ref is not None
     assert inputs.mov is not None

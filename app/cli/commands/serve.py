@@ -143,6 +143,7 @@ def _check_lesson(folder: Path) -> None:
 
 def _case(args: argparse.Namespace) -> Case | None:
     """What the page opens with: the maps that were named, else a sample; None if none is installed."""
+    from algorithms.common.source_file import SourceFile
     from algorithms.files.case_folder import Case, read_case
     from algorithms.observations.observation import Observation
     from app.system.data_paths import samples
@@ -152,7 +153,8 @@ def _case(args: argparse.Namespace) -> Case | None:
         seen = tuple(one for one in known if isinstance(one, Observation))
         priors = tuple(one for one in known if not isinstance(one, Observation))
         name = args.observation.name if args.observation is not None else ""
-        return Case(f"{ref.name} + {mov.name}", ref, mov, seen, name, None, priors)
+        read_from = SourceFile.at(args.observation) if args.observation is not None else None
+        return Case(f"{ref.name} + {mov.name}", ref, mov, seen, name, None, priors, read_from)
     known = samples()
     return read_case(known.get(FIRST_SAMPLE) or next(iter(known.values()))) if known else None
 

@@ -22,7 +22,7 @@ from app.evaluation.sweep.checkpoint import Checkpoint
 from app.jobs.executor import Executor, LostTask, Shared, Task
 from app.model.settings import Path as SettingPath
 from app.model.settings import Setting, settings_of, with_value
-from app.report.result_files import plain
+from app.report.json_report import plain
 from app.system.version import code, versions
 
 SEEDS = tuple(range(10))  # the paper averages over as many trials

@@ -16,7 +16,7 @@ from app.evaluation.table_files import (
     judged_cells,
     placed_cells,
 )
-from app.report.result_files import plain
+from app.report.json_report import plain
 from app.system.hardware import machine
 
 JOURNAL_FILE = "journal.jsonl"

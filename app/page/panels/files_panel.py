@@ -11,6 +11,7 @@ from threading import RLock
 import viser
 
 from algorithms.common.errors import MapMergeError
+from algorithms.common.source_file import SourceFile
 from algorithms.files.case_folder import read_case
 from algorithms.files.fleet_archive import fleet_from_zip
 from algorithms.files.fleet_file import read_fleet
@@ -87,10 +88,10 @@ def inputs_from(
         doubt = f"{text.name} names the image {named}; loaded is {image.name}. Do they belong together?"
         return MapSlot(grid, doubt=doubt)
 
-    seen = uploads.get("observation")
-    inputs = MergeInputs(
-        maps=tuple(read(number) for number in (1, 2)), name="your files" if uploads else ""
-    ).knowing(known_from_bytes(seen.name, seen.content) if seen else ())
+    inputs = MergeInputs(tuple(map(read, (1, 2))), name="your files" if uploads else "")
+    if seen := uploads.get("observation"):
+        told = inputs.knowing(known_from_bytes(seen.name, seen.content))
+        inputs = told.read_from(SourceFile.of(seen.name, seen.content))
     known.clear()  # of what is not there any more
     known.update(now)
     return inputs

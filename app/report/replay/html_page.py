@@ -109,7 +109,7 @@ def replay_of(
 def replay_html(recording: Recording, about: ReplayMetadata) -> bytes:
     """The page; equal runs give equal bytes. Every text in it is data, never markup."""
     data = recording | {
-        "name": about.inputs.name,
+        "name": about.inputs.title,
         "method": METHODS[about.method].title,
         "seed": about.seed,
         "version": about.versions.get("mapmeld", "unknown"),
@@ -119,7 +119,7 @@ def replay_html(recording: Recording, about: ReplayMetadata) -> bytes:
         "dark": {_red_green_blue(LIGHT, name): _red_green_blue(DARK, name) for name in RECOLOURED},
     }
     parts = {
-        "{{title}}": escape(f"{about.inputs.name}: replay of a merge"),
+        "{{title}}": escape(f"{about.inputs.title}: replay of a merge"),
         "/*{{style}}*/": asset("replay/player.css"),
         "/*{{ink}}*/": asset("map_drawing.js"),
         "/*{{charts}}*/": asset("replay/charts.js"),

@@ -147,7 +147,7 @@ def sizes(inputs: MergeInputs) -> list[list[str]]:
 
 def beginning(inputs: MergeInputs) -> dict[str, Any]:
     """What there is before anything was done."""
-    return {"title": inputs.name, "rows": [*sizes(inputs), ["known", counted(inputs.known)]]}
+    return {"title": inputs.title, "rows": [*sizes(inputs), ["known", counted(inputs.known)]]}
 
 
 def observed(inputs: MergeInputs) -> dict[str, Any]:

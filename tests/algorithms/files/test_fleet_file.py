@@ -12,20 +12,19 @@ from hypothesis import strategies as st
 
 from algorithms.common.errors import InputFileError
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import LONGEST_NAME, is_name
 from algorithms.files.atomic_write import write_files
 from algorithms.files.fleet_file import FLEET_FILE, fleet_from_bytes, fleet_to_bytes, read_fleet
 from algorithms.files.fleet_truth_file import FleetTruth, fleet_truth_to_bytes, read_fleet_truth
 from algorithms.files.map_file import map_to_bytes
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import (
-    LONGEST_NAME,
     MOST_PRIORS,
     MOST_ROBOTS,
     MOST_SIGHTINGS,
     Fleet,
     FleetPrior,
     FleetSighting,
-    is_name,
 )
 from algorithms.observations.observation import Observation
 from algorithms.observations.priors import InitialPose, NearPlace, Prior, TurnPrior

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
-from algorithms.common.robot_names import RobotNames
+from algorithms.common.robot_names import LONGEST_NAME, NAME_RULE, RobotNames, is_name
 from algorithms.files.case_folder import Case
 from algorithms.fleets.fleet_merge import merge_fleet, run_fleet
 from algorithms.fleets.pair_hypotheses import Hypothesis, PairFinding, PairOrder, pair_orders
-from algorithms.observations.fleet import LONGEST_NAME, NAME_RULE, Fleet, FleetPrior, FleetSighting, is_name
+from algorithms.observations.fleet import Fleet, FleetPrior, FleetSighting
 from algorithms.observations.observation import Observation
 from algorithms.observations.pair_problem import Known
 from algorithms.observations.priors import InitialPose, NearPlace, Prior, TurnPrior

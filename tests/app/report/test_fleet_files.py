@@ -15,14 +15,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import is_name
 from algorithms.files.atomic_write import write_files
 from algorithms.files.map_file import map_to_bytes, read_map
 from algorithms.files.observation_file import known_to_bytes
 from algorithms.maps.grid_map import GridMap
-from algorithms.observations.fleet import is_name
 from app.cli.main import main
 from app.report.fleet_files import transforms_yaml
-from app.report.ros_transform import publish_command
+from app.report.ros_transform import frame_names, publish_command
 
 ALL = {"merged.pgm", "merged.yaml", "transforms.yaml", "graph.g2o", "report.html", "report.json"}
 
@@ -156,10 +156,12 @@ def test_whatever_robots_are_called_their_transforms_read_back_and_a_shell_runs_
     told = yaml.safe_load(transforms_yaml(SimpleNamespace(islands=(island,))))
     assert told["merged"]["root"] == names[0]
     assert list(told["merged"]["robots"]) == names
+    frames = dict(zip(names, frame_names(names), strict=True))
+    assert len(set(frames.values())) == len(names)
     for name, robot in told["merged"]["robots"].items():
         words = shlex.split(robot["publish"])
         assert len(words) == 14
-        assert words[-3::2] == [f"{names[0]}/map", f"{name}/map"]
+        assert words[-3::2] == [frames[names[0]], frames[name]]
 
 
 def test_a_warning_names_the_robot_whose_map_is_odd_and_who_is_alone_is_said_to_be(tmp_path, capsys):

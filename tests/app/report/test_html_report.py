@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import re
@@ -15,6 +16,7 @@ import yaml
 
 from algorithms.common.pose import Pose2
 from algorithms.common.robot_names import WORDS, RobotNames
+from algorithms.files.case_folder import read_case
 from algorithms.files.map_file import read_map
 from algorithms.files.observation_file import observations_from_bytes
 from algorithms.maps.map_fusion import fuse
@@ -29,7 +31,8 @@ from algorithms.verdict.wall_evidence import Evidence
 from app.model.merge_inputs import MergeInputs
 from app.page.panels.html_widgets import box
 from app.report.html_report import report_page
-from app.report.result_files import ACTED_UPON, ALONE, ResultFiles, report_of, zip_bytes
+from app.report.json_report import report_of
+from app.report.result_files import ACTED_UPON, ALONE, ResultFiles, zip_bytes
 from app.report.ros_transform import publish_command
 
 DEFAULTS = METHODS[DEFAULT_METHOD].defaults
@@ -182,8 +185,25 @@ def test_maps_that_do_not_touch_make_a_page_that_says_that_nothing_is_shared(pag
     assert rows["wall in view of both"] == "0.0 m"
 
 
-def test_the_page_is_the_same_for_the_same_result(page, result, inputs):
+def test_the_page_is_the_same_for_the_same_result_and_date(result, inputs, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    page = page_of(result, inputs)
     assert page_of(result, inputs) == page
+    assert '<p class="made">2023-11-14T22:13:20Z, mapmeld ' in page
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000001")
+    assert page_of(result, inputs) == page.replace("22:13:20Z", "22:13:21Z")
+
+
+def test_the_page_tells_the_files_by_their_hashes_and_what_is_no_default(page, result, case_folder):
+    assert "All settings are the method&#x27;s defaults." in page
+    pair = replace(MergeInputs.of(read_case(case_folder)), names=RobotNames("Bob", "Alice"))
+    changed = replace(DEFAULTS, augment=replace(DEFAULTS.augment, spread=2.5))
+    told = report_page(result, pair, changed, report_of(result, changed, pair=pair)).decode()
+    read(told)
+    assert "1 setting differs from the method&#x27;s defaults: Σ_aug spread (m)." in told
+    image = hashlib.sha256((case_folder / "map2.pgm").read_bytes()).hexdigest()
+    assert f"<td>Alice&#x27;s map</td><td>map2.pgm</td><td>{image}</td>" in told
+    assert "<h1>flat_1: Bob saw Alice</h1>" in told
 
 
 def test_the_archive_reads_back_to_what_was_merged(result, inputs, tmp_path):
@@ -223,7 +243,7 @@ def test_the_files_of_a_fleets_pair_name_its_robots(result, inputs):
         assert observations_from_bytes("o.yaml", files["observation.yaml"].encode()) == inputs.observations
     assert "Mirrored, &lt;Alice&gt;&#x27;s map agrees" in files["report.html"]
     told = yaml.safe_load(ResultFiles(result, known, DEFAULTS).files["transform.yaml"])
-    assert told["publish"].endswith("--frame-id Bob/map --child-frame-id '<Alice>/map'")
+    assert told["publish"].endswith("--frame-id bob/map --child-frame-id '<alice>/map'")
     report = json.loads(files["report.json"])
     assert (report["inputs"]["robot1"], report["inputs"]["robot2"]) == ("Bob", "<Alice>")
     assert "Alice" in report["verdict"]["hint"]

@@ -9,11 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import yaml
-from commandline import inputs
+from commandline import inputs, usage_error
 from PIL import Image
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import WORDS
 from algorithms.files.case_folder import read_case
 from algorithms.files.map_file import read_map
 from algorithms.files.observation_file import write_observations
@@ -324,3 +325,113 @@ def test_a_missing_file_ends_with_2_and_one_line_that_names_it(missing, case_fol
     assert f"no_{missing}: no such file" in said
     assert said.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+def test_robots_that_have_names_are_told_by_them_and_so_are_the_frames_of_their_maps(
+    case_folder, tmp_path, capsys
+):
+    asked = ["merge", *inputs(case_folder), "--out", str(tmp_path), "--names", "Bob", "Alice"]
+    assert main(asked) == 0
+    said = capsys.readouterr().out
+    assert "Alice's map in Bob's map: x " in said
+    texts = {name: (tmp_path / name).read_text("utf-8") for name in ("report.html", "transform.yaml")}
+    for text in (said, *texts.values()):
+        assert WORDS.search(re.sub(r'base64,[^"]*', "", text)) is None
+    assert "Bob saw Alice</h1>" in texts["report.html"]
+    assert "--frame-id bob/map --child-frame-id alice/map" in texts["transform.yaml"]
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert (report["inputs"]["robot1"], report["inputs"]["robot2"]) == ("Bob", "Alice")
+    assert "robot 1" not in report["verdict"]["reason"]
+
+
+@pytest.mark.parametrize(
+    ("names", "fault"),
+    [
+        (("Bob", "Bob"), "both robots are called Bob; give them two names"),
+        (("a/b", "Alice"), "'a/b' is no name for a robot; give 1 to 64 letters, without a slash"),
+    ],
+)
+def test_names_that_no_fleet_would_take_are_refused_in_a_line(case_folder, tmp_path, capsys, names, fault):
+    assert main(["merge", *inputs(case_folder), "--out", str(tmp_path / "out"), "--names", *names]) == 2
+    error = capsys.readouterr().err
+    assert fault in error
+    assert error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_merged_map_comes_in_the_frame_and_the_cells_that_are_asked_for(case_folder, tmp_path, capsys):
+    asked = ["merge", *inputs(case_folder), "--out", str(tmp_path)]
+    assert main([*asked, "--frame", "mov"]) == 0
+    assert "The merged map is in map 2's frame.\n" in capsys.readouterr().out
+    turned = read_map(tmp_path / "merged.yaml")
+    told = yaml.safe_load((tmp_path / "transform.yaml").read_text())
+    T = Pose2(**told["T_ref_mov"])
+    assert told["publish"].endswith("--frame-id map2 --child-frame-id map1")
+    assert main([*asked, "--frame", "mov", "--no-yaw"]) == 0
+    said = re.search(r"without yaw: ([\d,]+) of ([\d,]+) cells changed", capsys.readouterr().out)
+    flat = read_map(tmp_path / "merged.yaml")
+    assert (turned.origin.theta != 0, flat.origin.theta) == (True, 0.0)
+    assert int(said[2].replace(",", "")) == turned.cells.size
+    report = json.loads((tmp_path / "report.json").read_text())["merged_map"]
+    assert report["cells_changed"] == int(said[1].replace(",", "")) > 0
+    assert main([*asked, "--merged-resolution", "0.1"]) == 0
+    coarse = read_map(tmp_path / "merged.yaml")
+    assert coarse.resolution == 0.1
+    for wall in turned.points[::40]:
+        assert flat.value_at(wall) == OCCUPIED
+        assert coarse.value_at(T.apply(wall)) == OCCUPIED
+
+
+def test_a_chosen_frame_may_begin_with_a_minus_and_publishes_both_maps(case_folder, tmp_path):
+    asked = ["merge", *inputs(case_folder), "--out", str(tmp_path)]
+    assert main([*asked, "--frame", "-1.5,2,0.25"]) == 0
+    told = yaml.safe_load((tmp_path / "transform.yaml").read_text())
+    assert told["T_ref_frame"] == {"x": -1.5, "y": 2.0, "theta": 0.25}
+    assert [words.split("--frame-id ")[1] for words in told["publish"]] == [
+        "map --child-frame-id map1",
+        "map --child-frame-id map2",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("words", "fault"),
+    [
+        (["--frame", "map2"], "map2 is neither ref nor mov nor X,Y,YAW"),
+        (["--frame", "1,2"], "1,2 is neither ref nor mov nor X,Y,YAW"),
+        (["--frame", "1,2,nan"], "1,2,nan is neither ref nor mov nor X,Y,YAW"),
+        (["--merged-resolution", "-0.1"], "-0.1 is no positive number of metres"),
+    ],
+)
+def test_a_frame_or_a_cell_that_cannot_be_is_told_before_anything_is_read(words, fault, tmp_path, capsys):
+    assert usage_error("merge", "a.yaml", "b.yaml", "--out", tmp_path, *words) == 2
+    assert fault in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "fault"),
+    [
+        (["--frame", "1e9,0,0"], "no frame lies at 1e+09, 0 m; give x, y and yaw in map 1's frame"),
+        (["--merged-resolution", "0.0001"], "the map in other cells"),
+        (["--merged-resolution", "1000"], "a map cannot have cells of 1000 m"),
+    ],
+)
+def test_a_merged_map_that_cannot_be_made_is_told_in_a_line_and_nothing_is_left(
+    words, fault, case_folder, tmp_path, capsys
+):
+    assert main(["merge", *inputs(case_folder), "--out", str(tmp_path / "out"), *words]) == 2
+    error = capsys.readouterr().err
+    assert fault in error
+    assert error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_with_a_date_that_is_set_two_merges_leave_the_same_page_but_for_the_times(
+    case_folder, tmp_path, monkeypatch
+):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    pages = []
+    for folder in (tmp_path / "one", tmp_path / "two"):
+        assert main(["merge", *inputs(case_folder), "--out", str(folder)]) == 0
+        pages.append(re.sub(r"<td>\d+ ms</td>", "", (folder / "report.html").read_text("utf-8")))
+        assert json.loads((folder / "report.json").read_text())["made"] == "2023-11-14T22:13:20Z"
+    assert pages[0] == pages[1]

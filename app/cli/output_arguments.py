@@ -1,0 +1,64 @@
+"""Arguments that say in which frame and in which cells the merged map is written."""
+
+from __future__ import annotations
+
+import argparse
+from contextlib import suppress
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from app.cli.argument_parser import Parser
+
+if TYPE_CHECKING:
+    from app.report.export_frame import ExportFrame
+
+OWNERS = ("ref", "mov")
+
+
+def add_output(parser: Parser) -> argparse._ArgumentGroup:
+    """Add ``--no-yaw`` and ``--merged-resolution`` to a group, which is given back."""
+    group = parser.add_argument_group("the merged map", "As it was merged, unless told otherwise.")
+    about = "resample it so that its origin has no yaw, as Nav2's costmap wants it"
+    group.add_argument("--no-yaw", action="store_true", help=f"{about}; how many cells changed is told")
+    about = "resample it to cells of M metres; no wall is lost, and how many cells changed is told"
+    group.add_argument("--merged-resolution", type=_size, metavar="M", help=about)
+    return group
+
+
+def add_frame(parser: Parser) -> None:
+    """Add the same and ``--frame``, of two maps."""
+    about = (
+        "whose frame it is in: map 1's (ref, the default), map 2's (mov), or one whose origin lies at X, Y "
+        "in map 1's and whose x-axis is turned by YAW there; metres, radians"
+    )
+    add_output(parser).add_argument(
+        "--frame", type=_frame, default="ref", metavar="ref|mov|X,Y,YAW", help=about
+    )
+
+
+def frame_of(args: argparse.Namespace) -> ExportFrame:
+    """What is asked for; raises SettingError."""
+    from algorithms.common.pose import Pose2
+    from app.report.export_frame import ExportFrame
+
+    frame = getattr(args, "frame", "ref")
+    given = frame if frame in OWNERS else Pose2.from_array(frame)
+    return ExportFrame(given, not args.no_yaw, args.merged_resolution)
+
+
+def _frame(text: str) -> str | tuple[float, ...]:
+    if text in OWNERS:
+        return text
+    with suppress(ValueError):
+        numbers = tuple(float(part) for part in text.split(","))
+        if len(numbers) == 3 and all(map(isfinite, numbers)):
+            return numbers
+    raise argparse.ArgumentTypeError(f"{text} is neither ref nor mov nor X,Y,YAW in metres and radians")
+
+
+def _size(text: str) -> float:
+    with suppress(ValueError):
+        number = float(text)
+        if 0 < number < float("inf"):
+            return number
+    raise argparse.ArgumentTypeError(f"{text} is no positive number of metres")
