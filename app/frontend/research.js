@@ -16,6 +16,18 @@
     if (frames) requestAnimationFrame(() => stay(selector, frames - 1, mine));
   }
   S.kit.stay = stay;
+  // What was opened stays open in the next result, though Python writes it anew; researchers find the numbers open.
+  const folds = {};
+  document.addEventListener("click", (e) => {
+    const fold = e.target.closest?.("details[data-mm-fold]>summary")?.parentElement;
+    if (fold) folds[fold.dataset.mmFold] = !fold.open;
+  });
+  new MutationObserver(() => document.querySelectorAll("details[data-mm-fold]:not([data-mm-known])").forEach((fold) => {
+    const name = fold.dataset.mmFold;
+    fold.dataset.mmKnown = "";
+    fold.open = folds[name] ?? (name === "numbers" && document.body.dataset.mmMode === "research");
+  })).observe(document.body, { childList: true, subtree: true });
+
   document.addEventListener("change", (e) => {
     const method = e.target.dataset?.mmPick;
     if (!method) return;
