@@ -90,7 +90,9 @@ def _correlating(detail: steps.PlaneDetail, run: RunState) -> str:
 def _weighing(detail: steps.WeighedDetail, _: RunState) -> str:
     best, places = detail.answers[0], len(detail.answers)
     named = (
-        "The whole maps speak for this place" if places == 1 else f"Of {places} places one is the likeliest"
+        "Held against the whole maps, this place stands"
+        if places == 1
+        else f"Of {places} places one is the likeliest"
     )
     if not best.moved:
         return f"{named}: {best.evidence.floor:.0f} m² of floor in common."

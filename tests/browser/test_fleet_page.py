@@ -162,7 +162,7 @@ def test_an_opened_pair_is_told_by_its_robots_names_and_two_maps_without_names_a
     tab.wait_for("refused")
     settle(lambda: tab.page.locator("[data-mm-suggestion]").count(), "what it suggests")
     assert "little keeps <i>Alice's map in its place" in tab.state
-    assert tab.number("<i>Alice known to")
+    assert tab.number("<i>Alice's place, 1 σ")
     assert of_two(tab) == []
     for stage in ("Turn", "Shift", "Proof"):
         tab.press(stage)

@@ -25,7 +25,7 @@ class RunPanel:
         self._counting = Lock()  # they begin and end in threads of their own
         icon = viser.Icon.PLAYER_STOP
         self.stop = gui.add_button("Stop", color=STOP, icon=icon, disabled=True, order=2)
-        hint = "How long each step stays. Instant: as fast as it is computed."
+        hint = "How fast the steps are shown. Instant: as fast as they are computed."
         self._speed = gui.add_button_group("Speed", tuple(PACES), order=3, hint=hint)
         self._speed.value = "Normal"
         self._view = gui.add_button_group("View", (MAP, HEIGHTS, SWARM), order=4)
