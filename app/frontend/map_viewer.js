@@ -170,7 +170,7 @@
     ink.style.cssText = "position:absolute;left:0;top:0;pointer-events:none;z-index:1";
     hud = document.createElement("div"); hud.id = "mapmeld-hud";
     hud.innerHTML = '<div class="mm-head"><div class="mm-title"><b>mapmeld</b><span class="mm-case"></span></div>' +
-      '<div class="mm-tools"></div><div class="mm-state"><i></i><span></span></div><div class="mm-bar"><i></i></div></div><div class="mm-legend"></div>';
+      '<div class="mm-tools"></div><div class="mm-state"><i></i><span></span></div><div class="mm-bar"><i></i></div></div><div class="mm-legend"></div><div class="mm-said" role="status"></div>';
     const parent = canvas.parentElement;
     parent.append(ink, hud);
     each("adopt", hud, canvas);
@@ -186,6 +186,7 @@
     hud.dataset.theme = S.dark ? "dark" : "light";
     document.body.dataset.mmMode = h.research ? "research" : "operator";
     put(".mm-case", h.case); put(".mm-state span", h.state);
+    if (["accepted", "bent", "refused", "failed"].includes(h.mood)) put(".mm-said", h.state); // for screen readers: steps would be too many
     hud.querySelector(".mm-state").dataset.mood = h.mood || "idle";
     hud.querySelector(".mm-state").classList.toggle("mm-long", (h.state || "").length > 110);
     const bar = hud.querySelector(".mm-bar");
@@ -204,6 +205,14 @@
     [data-mantine-color-scheme=dark] .mantine-Button-root[style*="--button-bg: #e2e8f0"]{--button-bg:#374151!important;--button-hover:#4B5563!important;--button-color:#F9FAFB!important} /* palette.QUIET, in the dark */
     button.mantine-Button-root[aria-pressed]{padding-left:3px!important;padding-right:3px!important;min-width:0}
     *:has(> p > label:empty){display:none}
+    #webgl-software-rendering,button:has(.tabler-icon-adjustments){display:none!important} /* viser's own words and settings */
+    :root[data-mantine-color-scheme=light]{--mantine-color-dimmed:#4B5563!important} :root[data-mantine-color-scheme=dark]{--mantine-color-dimmed:#C1C7D0!important}
+    [data-mantine-color-scheme=light] .mantine-Button-root[data-variant=outline]:not([aria-pressed=true]){--button-color:#005A8C!important;--button-bd:1px solid #0072B2!important}
+    .mm-said{position:absolute;width:1px;height:1px;overflow:hidden;clip-path:inset(50%)}
+    @media (pointer:coarse){ /* fingers */
+      .mantine-Button-root,.mantine-Input-input,.mm-tools button,.mm-step{min-height:40px!important;min-width:40px}
+      .mantine-Slider-root,.mantine-Checkbox-body{min-height:40px;display:flex;align-items:center}
+    }
     .mantine-Notifications-root{top:auto!important;bottom:84px!important}
     .mantine-ScrollArea-viewport>div{padding-right:8px} /* the scroll bar lies over what it scrolls */
     #mapmeld-hud[data-theme=dark]{color:#F9FAFB}
