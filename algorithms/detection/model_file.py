@@ -14,9 +14,10 @@ from algorithms.detection.hog_grid import WindowShape
 from algorithms.detection.svm_detector import DetectorModel
 from algorithms.files.map_file import read_bytes
 
-VERSION = 1
-ARRAYS = ("version", "window", "labels", "weights", "biases", "calibration")
-MOST_BYTES = 16 * 2**20  # of all arrays together; ours have 12,000
+VERSION = 2
+NUMBERS = ("weights", "biases", "calibration", "class_weights", "class_biases")
+ARRAYS = ("version", "window", "labels", *NUMBERS)
+MOST_BYTES = 16 * 2**20  # of all arrays together; ours have 24,000
 MOST_CELLS, MOST_PIXELS = 32, 32  # of a window, and of a cell, a side
 REMEDY = "give a model that mapmeld detect train wrote"
 SHIPPED = Path(__file__).with_name("paper_board_robot.npz")
@@ -76,7 +77,7 @@ def _model(name: str, found: dict[str, np.ndarray]) -> DetectorModel:
     return DetectorModel(
         WindowShape(int(rows), int(cols), int(cell), border),
         tuple(str(label) for label in found["labels"]),
-        *(np.asarray(found[array], dtype=np.float32) for array in ("weights", "biases", "calibration")),
+        *(np.asarray(found[array], dtype=np.float32) for array in NUMBERS),
     )
 
 
@@ -87,9 +88,7 @@ def model_to_bytes(model: DetectorModel) -> bytes:
         "version": np.array(VERSION),
         "window": np.array([shape.rows, shape.cols, shape.cell, shape.border]),
         "labels": np.array(model.labels),
-        "weights": model.weights,
-        "biases": model.biases,
-        "calibration": model.calibration,
+        **{array: getattr(model, array) for array in NUMBERS},
     }
     data = BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:

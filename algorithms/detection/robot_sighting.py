@@ -12,6 +12,7 @@ from algorithms.common.pose import FloatArray, Pose2
 from algorithms.detection.detection import Detection
 from algorithms.detection.footprint import Footprint
 from algorithms.detection.map_walls import MapWalls
+from algorithms.detection.mirror_images import is_mirror_image
 from algorithms.detection.range_bearing import RobotPosition, position_of
 from algorithms.detection.scan_clusters import BEFORE, Cluster, clusters_of
 from algorithms.detection.tag_detector import position_by_tag
@@ -160,7 +161,7 @@ def _nothing(sighted: Sequence[Sighted]) -> str:
     if not sighted:
         return "no robot is found in the image; come nearer, make light, or train the detector on your robot"
     best = sighted[0]
-    return f"the likeliest box ({best.detection.probability:.0%}) is refused: {best.why_not}"
+    return f"the likeliest box ({min(best.detection.probability, 0.999):.1%}) is refused: {best.why_not}"
 
 
 def _sighted(
@@ -180,8 +181,8 @@ def _sighted(
         if position is not None and position.unexplained > MISFIT:
             share = f"{position.unexplained:.0%} of the beams do not fit"
             why_not = f"what the laser sees there does not have the shape of the robot ({share})"
-        if not why_not and walls is not None:
-            why_not = walls.deny(cluster, view.scan)
+        if not why_not:
+            why_not = _mirrored(cluster, view.scan) if walls is None else walls.deny(cluster, view.scan)
         if why_not or position is None:
             refused.append(Sighted(one, cluster, None, why_not))
         else:
@@ -193,6 +194,13 @@ def _sighted(
         why_not = f"the laser sees {len(taken)} things of a robot's size in the direction of the box"
         return Sighted(one, None, None, why_not)
     return best
+
+
+def _mirrored(cluster: Cluster, scan: LaserScan) -> str:
+    """Why a cluster may be a mirror image, told without a map; empty where nothing says so."""
+    if not is_mirror_image(cluster, scan):
+        return ""
+    return "the laser sees the same things before the wall there: a mirror shows it, or give the robot's map"
 
 
 def _no_cluster(one: Detection, view: LaserView) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 
 import cv2
@@ -11,14 +11,14 @@ import numpy as np
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import FloatArray
 from algorithms.detection.detection import Detection, Picture, strongest
-from algorithms.detection.hog_grid import Features, WindowShape, grey, hog_grid, scores
+from algorithms.detection.hog_grid import Features, WindowShape, grey, hog_grid, scores, window_features
 from algorithms.sensors.camera import Camera, check_image_size
 
 WIDEST = 640  # pixels; larger images are made smaller first: time, and a robot at 5 m is as large in the view
 STEP = 1.2  # from one size of the pyramid to the next
 LEAST_PROBABILITY = 0.5
 AROUND = 2  # cells added on every side: a robot that fills the image, or stands at its edge
-MOST_FOUND = 64  # windows of one class and size that are looked at further
+MOST_FOUND = 128  # windows of one size that are looked at further
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,9 +27,10 @@ class DetectorModel:
 
     shape       : of the window
     labels      : names of the classes
-    weights     : (classes, shape.length)
+    weights     : (classes, shape.length) of one machine per class, against everything that is no robot
     biases      : (classes,)
     calibration : (classes, 2) a, b of P = 1 / (1 + exp(−(a s + b))), s the machine's value (Platt)
+    class_weights, class_biases : likewise, of the machines that tell the classes of robots apart
     raises      : SettingError
     """
 
@@ -38,6 +39,8 @@ class DetectorModel:
     weights: Features
     biases: Features
     calibration: Features
+    class_weights: Features
+    class_biases: Features
 
     def __post_init__(self) -> None:
         classes = len(self.labels)
@@ -45,6 +48,8 @@ class DetectorModel:
             "weights": (self.weights, (classes, self.shape.length)),
             "biases": (self.biases, (classes,)),
             "calibration": (self.calibration, (classes, 2)),
+            "class_weights": (self.class_weights, (classes, self.shape.length)),
+            "class_biases": (self.class_biases, (classes,)),
         }
         for name, (array, size) in wanted.items():
             if array.shape != size or not np.isfinite(array).all():
@@ -64,7 +69,10 @@ class SvmDetector:
 
     def detect(self, picture: Picture, camera: Camera | None = None) -> tuple[Detection, ...]:
         """Robots of at least the least probability, the likeliest first; one box each."""
-        return strongest([one for one in self.windows(picture) if one.probability >= self.least_probability])
+        likely = [one for one in self.windows(picture) if one.probability >= self.least_probability]
+        image = grey(picture)
+        found = strongest(likely)
+        return tuple(replace(one, label=self._class_of(image, np.array(one.box()))) for one in found)
 
     def windows(self, picture: Picture) -> list[Detection]:
         """The likeliest windows of each size, also those that are no robot: before suppression."""
@@ -92,18 +100,26 @@ class SvmDetector:
         chances = 1 / (1 + np.exp(-(values * model.calibration[:, 0] + model.calibration[:, 1])))
         high, wide = shape.body
         edge = shape.border * shape.cell - pad
-        found = []
-        for k, label in enumerate(model.labels):
-            of_class = chances[..., k]
-            count = min(MOST_FOUND, of_class.size)
-            best = np.argpartition(-of_class, count - 1, axis=None)[:count]
-            rows, cols = np.unravel_index(np.sort(best), of_class.shape)
-            tops, lefts = rows * shape.cell + edge, cols * shape.cell + edge
-            boxes = np.stack([lefts, tops, lefts + wide, tops + high], axis=1) * stretch - 0.5
-            for box, chance in zip(boxes.tolist(), of_class[rows, cols].tolist(), strict=True):
-                left, top, right, bottom = box
-                found.append(Detection(left, top, right, bottom, chance, label))
-        return found
+        likeliest = chances.max(axis=2)
+        kinds = chances.argmax(axis=2)
+        count = min(MOST_FOUND, likeliest.size)
+        best = np.sort(np.argpartition(-likeliest, count - 1, axis=None)[:count])
+        rows, cols = np.unravel_index(best, likeliest.shape)
+        tops, lefts = rows * shape.cell + edge, cols * shape.cell + edge
+        boxes = np.stack([lefts, tops, lefts + wide, tops + high], axis=1) * stretch - 0.5
+        labels = [model.labels[kind] for kind in kinds[rows, cols]]
+        return [
+            Detection(left, top, right, bottom, chance, label)
+            for (left, top, right, bottom), chance, label in zip(
+                boxes.tolist(), likeliest[rows, cols].tolist(), labels, strict=True
+            )
+        ]
+
+    def _class_of(self, image: Features, box: FloatArray) -> str:
+        """What a robot in a (4,) box is; every machine against the background is nearly certain of it."""
+        model = self.model
+        values = model.class_weights @ window_features(image, box, model.shape) + model.class_biases
+        return model.labels[int(np.argmax(values))]
 
 
 def smallest_robot(model: DetectorModel, width: int) -> int:

@@ -189,7 +189,8 @@ def _fit(
     seed: int,
     tested: bool = True,
 ) -> tuple[DetectorModel, tuple[ClassScore, ...]]:
-    """One SVM per class against all backgrounds, its probability from its values (Platt).
+    """One SVM per class against all backgrounds, its probability from its values (Platt); one more per class
+    against the other classes.
 
     tested : whether those are the values of windows kept from the training; the probabilities are true then
     """
@@ -197,20 +198,24 @@ def _fit(
     from sklearn.model_selection import GroupKFold, cross_val_predict
     from sklearn.svm import LinearSVC
 
+    def machine() -> Any:
+        return LinearSVC(C=PENALTY, class_weight="balanced", random_state=seed, max_iter=5000)
+
     data, names, of = np.stack(rows), np.array(labels), np.array(groups)
+    robots, classes = names != "", sorted(set(labels) - {""})
     weights, biases, calibration, results = [], [], [], []
-    for label in sorted(set(labels) - {""}):
-        used = (names == label) | (names == "")
+    class_weights, class_biases = np.zeros((len(classes), data.shape[1])), np.zeros(len(classes))
+    for k, label in enumerate(classes):
+        used = (names == label) | ~robots
         x, y = data[used], names[used] == label
-
-        def machine() -> Any:
-            return LinearSVC(C=PENALTY, class_weight="balanced", random_state=seed, max_iter=5000)
-
         fitted = machine().fit(x, y)
         values = fitted.decision_function(x)
         if tested:
             folds = GroupKFold(min(FOLDS, len(set(of[used & (names == label)]))))
             values = cross_val_predict(machine(), x, y, groups=of[used], cv=folds, method="decision_function")
+        if len(classes) > 1:
+            told = machine().fit(data[robots], names[robots] == label)
+            class_weights[k], class_biases[k] = told.coef_[0], told.intercept_[0]
         line = LogisticRegression(C=1e6).fit(values[:, None], y)
         weights.append(fitted.coef_[0])
         biases.append(fitted.intercept_[0])
@@ -222,6 +227,7 @@ def _fit(
                 label, right / max(1, int(said.sum())), right / int(y.sum()), int(y.sum()), int((~y).sum())
             )
         )
-    arrays = (np.array(part, dtype=np.float32) for part in (weights, biases, calibration))
-    model = DetectorModel(shape, tuple(score.label for score in results), *arrays)
+    parts = weights, biases, calibration, class_weights, class_biases
+    arrays = (np.array(part, dtype=np.float32) for part in parts)
+    model = DetectorModel(shape, tuple(classes), *arrays)
     return model, tuple(results)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from textwrap import indent
 
 from algorithms.common.errors import InputFileError, SettingError
-from algorithms.common.robot_names import NAME_RULE, is_name
+from algorithms.common.robot_names import NAME_RULE, RobotNames, is_name
 from algorithms.files import yaml_fields as fields
 from algorithms.files.foreign_files import check_foreign
 from algorithms.files.map_file import read_bytes, read_map
@@ -96,10 +97,8 @@ def _sightings(f: Fields, names: list[str]) -> tuple[FleetSighting, ...]:
             _robot(one.section(role, f"add {role}: {{robot: NAME, pose: [x, y, yaw]}}"), "robot", names)
             for role in ("observer", "observed")
         )
-        try:
+        with _told_by_name(one, RobotNames(observer, observed)):
             sightings.append(FleetSighting(observer, observed, observation_of(one, more=("robot",))))
-        except SettingError as error:
-            raise InputFileError(f.source, f"{one.prefix}{error}", "correct it") from error
     return tuple(sightings)
 
 
@@ -109,11 +108,23 @@ def _priors(f: Fields, names: list[str]) -> tuple[FleetPrior, ...]:
     for one in _entries(f, "known", "known", MOST_PRIORS, remedy):
         one.refuse_unknown("of", "in", *PRIORS)
         mov, ref = (_robot(one, role, names) for role in ("of", "in"))
-        told = [FleetPrior(ref, mov, prior) for prior in priors_of(one, PLACES)]
+        with _told_by_name(one, RobotNames(ref, mov)):
+            told = [FleetPrior(ref, mov, prior) for prior in priors_of(one, PLACES)]
         if not told:
             raise one.error(" or ".join(PRIORS), "is missing", remedy)
         priors += told
     return tuple(priors)
+
+
+@contextmanager
+def _told_by_name(entry: Fields, names: RobotNames) -> Iterator[None]:
+    """What is wrong with an entry on two robots is told with their names."""
+    try:
+        yield
+    except SettingError as error:
+        raise InputFileError(entry.source, names.told(f"{entry.prefix}{error}"), "correct it") from error
+    except InputFileError as error:
+        raise InputFileError(error.source, names.told(error.found), names.told(error.remedy)) from error
 
 
 def _entries(f: Fields, key: str, each: str, most: int, remedy: str) -> Iterator[Fields]:

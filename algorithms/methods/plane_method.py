@@ -122,7 +122,7 @@ def correlate(problem: PairProblem, config: PlaneMethodConfig) -> Iterator[Plane
         searched += sum(look.shifts for look in looks) * correlation.cell**2 / total
         done, best = start + len(looks), max(looks, key=lambda look: look.top)
         tops[start:done] = [look.top if len(look.values) else np.nan for look in looks]
-        picture = picture_of(correlation, best, correlation.within(best.turn, window))
+        picture = picture_of(correlation, best)
         so_far = poses, values, searched
         yield PlaneDetail(done, correlation.turns, tops.copy(), picture, correlation.cell, *so_far)
 

@@ -37,16 +37,11 @@ class CorrelationPicture:
         return self.low + self.pixel * np.array(self.values.shape[::-1])
 
 
-def picture_of(
-    plane: PlaneCorrelation, look: TurnLook, within: BoolArray | None = None, pixels: int = PIXELS
-) -> CorrelationPicture | None:
-    """The picture of a turn that was looked at, of the shifts that are left; None where none is.
-
-    within : ``PlaneCorrelation.within`` of the turn
-    """
+def picture_of(plane: PlaneCorrelation, look: TurnLook, pixels: int = PIXELS) -> CorrelationPicture | None:
+    """The picture of a turn that was looked at, of the shifts that are left; None where none is."""
     if look.surface is None or not look.shifts:
         return None
-    shown = look.surface if within is None else np.where(within, look.surface, -np.inf)
+    shown = look.surface if look.within is None else np.where(look.within, look.surface, -np.inf)
     whole, first = plane.unwrapped(shown)
     (bottom, top), (left, right) = (_ends(np.isfinite(whole).any(axis=axis)) for axis in (1, 0))
     step = -(-max(top - bottom, right - left) // pixels)

@@ -26,7 +26,7 @@ from algorithms.optimisation.objective import PAD
 
 IntArray = NDArray[np.intp]
 
-LOOK = 4  # cells between two places at which the window is asked
+LOOK = 8  # cells between two places at which the window is asked
 
 
 @dataclass(frozen=True)
@@ -54,6 +54,7 @@ class TurnLook:
     poses, values : (P, 3), (P,) x, y, theta of T_ref_mov on the highest hills, and how high they are; metres
               of wall
     shifts  : how many shifts the window leaves
+    within  : ``PlaneCorrelation.within`` of it
     """
 
     turn: float
@@ -61,6 +62,7 @@ class TurnLook:
     poses: FloatArray
     values: Float32Array
     shifts: int
+    within: BoolArray | None
 
     @property
     def top(self) -> float:
@@ -102,11 +104,11 @@ class PlaneCorrelation:
         """The highest hills of a turn, so many at most."""
         within = self.within(turn, window)
         if within is not None and not within.any():
-            return TurnLook(turn, None, np.zeros((0, 3)), np.zeros(0, dtype=np.float32), 0)
+            return TurnLook(turn, None, np.zeros((0, 3)), np.zeros(0, dtype=np.float32), 0, within)
         surface_ = self.surface(turn)
         rows, cols, values = self.peaks(surface_, most, within)
         shifts = surface_.size if within is None else int(within.sum())
-        return TurnLook(turn, surface_, self.poses(turn, rows, cols), values, shifts)
+        return TurnLook(turn, surface_, self.poses(turn, rows, cols), values, shifts, within)
 
     def surface(self, turn: float) -> Float32Array:
         """``shape`` metres of wall that agree less metres that contradict, for every shift."""

@@ -120,6 +120,11 @@ class BrowserMessages(ABC):
         with self._lock:
             self._pending["key"] = key
 
+    def remember_mode(self, mode: str) -> None:
+        """Have the browser keep for whom its tabs are from now on."""
+        with self._lock:
+            self._pending["mode"] = mode
+
     def flush(self) -> None:
         with self._lock:
             if not self._pending:

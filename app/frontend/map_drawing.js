@@ -135,7 +135,7 @@ const mapmeldInk = (() => {
     const nx = x + wide + 26;
     g.beginPath(); g.moveTo(nx, y - 16); g.lineTo(nx + 5, y); g.lineTo(nx, y - 4); g.lineTo(nx - 5, y); g.closePath();
     g.lineWidth = 4; g.strokeStyle = view.dark ? "#111827" : "#fff"; g.stroke(); g.fillStyle = colour; g.fill();
-    words(g, view, "N", nx, y - 24, colour, 11, "center");
+    words(g, view, "+y", nx, y - 24, colour, 11, "center");
     return colour;
   }
   // The entries of the legend as elements; how they look is up to the page.

@@ -7,9 +7,12 @@
   // --- a reload finds everything as it was: see app/web/session_store.py -----------------------------------------
   const KEY = "mapmeld";
   let greeted = false;
+  const MODE = "mapmeld-mode", MODES = ["Operator", "Research"];
+  const mode = () => { try { return MODES.find((known) => known === localStorage.getItem(MODE)) || ""; } catch { return ""; } };
   const stored = () => { try { return sessionStorage.getItem(KEY) || ""; } catch { return ""; } }; // may be forbidden
   S.heard.push((message) => {
-    if (message.channel) { S.tell("hello", { key: stored(), again: greeted }); greeted = true; }
+    if (message.channel) { S.tell("hello", { key: stored(), again: greeted, mode: mode() }); greeted = true; }
+    if (message.mode) { try { localStorage.setItem(MODE, message.mode); } catch { /* then the next tab opens as the server has it */ } }
     if (message.key) { try { sessionStorage.setItem(KEY, message.key); } catch { /* then a reload starts anew */ } }
   });
 

@@ -170,7 +170,7 @@
     ink.style.cssText = "position:absolute;left:0;top:0;pointer-events:none;z-index:1";
     hud = document.createElement("div"); hud.id = "mapmeld-hud";
     hud.innerHTML = '<div class="mm-head"><div class="mm-title"><b>mapmeld</b><span class="mm-case"></span></div>' +
-      '<div class="mm-tools"></div><div class="mm-state"><i></i><span></span></div><div class="mm-bar"><i></i></div></div><div class="mm-legend"></div>';
+      '<div class="mm-tools"></div><div class="mm-state"><i></i><span></span></div><div class="mm-bar"><i></i></div></div><div class="mm-legend"></div><div class="mm-said" role="status"></div>';
     const parent = canvas.parentElement;
     parent.append(ink, hud);
     each("adopt", hud, canvas);
@@ -184,7 +184,9 @@
     if (!hud) return;
     const h = S.hud, put = (name, text) => { const e = hud.querySelector(name); if (e.textContent !== (text || "")) e.textContent = text || ""; };
     hud.dataset.theme = S.dark ? "dark" : "light";
+    document.body.dataset.mmMode = h.research ? "research" : "operator";
     put(".mm-case", h.case); put(".mm-state span", h.state);
+    if (["accepted", "bent", "refused", "failed"].includes(h.mood)) put(".mm-said", h.state); // for screen readers: steps would be too many
     hud.querySelector(".mm-state").dataset.mood = h.mood || "idle";
     hud.querySelector(".mm-state").classList.toggle("mm-long", (h.state || "").length > 110);
     const bar = hud.querySelector(".mm-bar");
@@ -203,6 +205,14 @@
     [data-mantine-color-scheme=dark] .mantine-Button-root[style*="--button-bg: #e2e8f0"]{--button-bg:#374151!important;--button-hover:#4B5563!important;--button-color:#F9FAFB!important} /* palette.QUIET, in the dark */
     button.mantine-Button-root[aria-pressed]{padding-left:3px!important;padding-right:3px!important;min-width:0}
     *:has(> p > label:empty){display:none}
+    #webgl-software-rendering,button:has(.tabler-icon-adjustments){display:none!important} /* viser's own words and settings */
+    :root[data-mantine-color-scheme=light]{--mantine-color-dimmed:#4B5563!important} :root[data-mantine-color-scheme=dark]{--mantine-color-dimmed:#C1C7D0!important}
+    [data-mantine-color-scheme=light] .mantine-Button-root[data-variant=outline]:not([aria-pressed=true]){--button-color:#005A8C!important;--button-bd:1px solid #0072B2!important}
+    .mm-said{position:absolute;width:1px;height:1px;overflow:hidden;clip-path:inset(50%)}
+    @media (pointer:coarse){ /* fingers */
+      .mantine-Button-root,.mantine-Input-input,.mm-tools button,.mm-step{min-height:40px!important;min-width:40px}
+      .mantine-Slider-root,.mantine-Checkbox-body{min-height:40px;display:flex;align-items:center}
+    }
     .mantine-Notifications-root{top:auto!important;bottom:84px!important}
     .mantine-ScrollArea-viewport>div{padding-right:8px} /* the scroll bar lies over what it scrolls */
     #mapmeld-hud[data-theme=dark]{color:#F9FAFB}
@@ -211,8 +221,7 @@
     .mm-title{flex:1 1 90px;font-size:12px;color:#6B7280;overflow:hidden;white-space:nowrap;text-overflow:ellipsis}
     .mm-title b{color:#0072B2;font-size:13px;letter-spacing:.01em;margin-right:8px}
     [data-theme=dark] .mm-title{color:#9CA3AF} [data-theme=dark] .mm-title b{color:#56B4E9}
-    .mm-state{flex:1 0 100%;font-size:15px;font-weight:550;display:flex;gap:8px;align-items:baseline;min-height:20px}
-    .mm-state span{display:-webkit-box;-webkit-line-clamp:2;-webkit-box-orient:vertical;overflow:hidden}
+    .mm-state{flex:1 0 100%;font-size:15px;font-weight:550;display:flex;gap:8px;align-items:baseline;min-height:20px;margin:5px -12px -8px;padding:6px 12px 8px;border-left:5px solid transparent;border-radius:0 0 8px 8px;overflow-wrap:anywhere}
     .mm-tools{display:flex;flex-wrap:wrap;gap:4px 6px;min-height:22px;max-width:100%}
     .mm-tools>span{display:inline-flex;flex-wrap:wrap;border:1px solid #CBD5E1;border-radius:6px;overflow:hidden}
     .mm-tools button{pointer-events:auto;font:inherit;font-size:11.5px;line-height:20px;padding:0 7px;border:0;background:transparent;color:inherit;cursor:pointer}
@@ -223,16 +232,19 @@
     [data-theme=dark] .mm-tools button:hover{background:rgba(86,180,233,.18)}
     [data-theme] .mm-tools button[aria-pressed=true]{background:#0072B2;color:#fff}
     .mm-tools [hidden]{display:none}
-    .mm-state.mm-long{font-size:13px} .mm-long span{-webkit-line-clamp:3}
+    .mm-state.mm-long{font-size:13px}
     .mm-state i{width:9px;height:9px;border-radius:50%;flex:none;background:#9CA3AF}
     .mm-state[data-mood=running] i{background:#0072B2;animation:mm-pulse 1s infinite}
-    .mm-state[data-mood=accepted] i{background:#009E73} .mm-state[data-mood=accepted] span{color:#006B4E}
+    .mm-state[data-mood=accepted]{background:rgba(0,158,115,.16);border-left-color:#009E73}
+    .mm-state[data-mood=bent]{background:rgba(230,159,0,.2);border-left-color:#E69F00}
+    .mm-state[data-mood=refused],.mm-state[data-mood=failed]{background:rgba(213,94,0,.14);border-left-color:#D55E00}
+    .mm-state[data-mood=accepted] i{background:#009E73} .mm-state[data-mood=accepted] span{color:#00593F}
     .mm-state[data-mood=refused] i,.mm-state[data-mood=failed] i{background:#D55E00}
-    .mm-state[data-mood=refused] span,.mm-state[data-mood=failed] span{color:#A34700}
+    .mm-state[data-mood=refused] span,.mm-state[data-mood=failed] span{color:#8A3C00}
     [data-theme=dark] .mm-state[data-mood=accepted] span{color:#34D399}
     [data-theme=dark] .mm-state[data-mood=refused] span,[data-theme=dark] .mm-state[data-mood=failed] span{color:#FB923C}
     .mm-state[data-mood=stopped] i,.mm-state[data-mood=bent] i{background:#E69F00}
-    .mm-state[data-mood=bent] span{color:#7A5200}
+    .mm-state[data-mood=bent] span{color:#664400}
     [data-theme=dark] .mm-state[data-mood=bent] span{color:#FBBF24}
     @keyframes mm-pulse{50%{opacity:.25}}
     .mm-bar{position:absolute;left:0;right:0;bottom:0;height:3px;border-radius:0 0 8px 8px;overflow:hidden;background:rgba(0,114,178,.12)}
@@ -249,7 +261,6 @@
     #mapmeld-hud{container-type:inline-size}
     @container (max-width:460px){ /* a small window, or a page that is zoomed */
       .mm-tools button{padding:0 5px}
-      .mm-state span{-webkit-line-clamp:5}
       .mm-legend{bottom:54px;max-width:calc(100% - 24px);gap:1px 10px;font-size:11px}
     }`;
   document.head.append(style);

@@ -16,6 +16,25 @@
     if (frames) requestAnimationFrame(() => stay(selector, frames - 1, mine));
   }
   S.kit.stay = stay;
+  // What was opened stays open in the next result, though Python writes it anew; researchers find the numbers open.
+  const folds = {};
+  document.addEventListener("click", (e) => {
+    const fold = e.target.closest?.("details[data-mm-fold]>summary")?.parentElement;
+    if (fold) folds[fold.dataset.mmFold] = !fold.open;
+  });
+  new MutationObserver(() => {
+    document.querySelectorAll("details[data-mm-fold]:not([data-mm-known])").forEach((fold) => {
+      const name = fold.dataset.mmFold;
+      fold.dataset.mmKnown = "";
+      fold.open = folds[name] ?? (name === "numbers" && document.body.dataset.mmMode === "research");
+    });
+    // viser's sliders and their numbers say nothing to a screen reader; the label stands in the same row
+    document.querySelectorAll('[role=slider][aria-label=""],.mantine-NumberInput-input:not([aria-label])').forEach((e) => {
+      const label = e.closest(".mantine-Flex-root:has(label)")?.querySelector("label");
+      if (label && label.htmlFor !== e.id) e.setAttribute("aria-label", `${label.textContent}${e.role === "slider" ? "" : ", number"}`);
+    });
+  }).observe(document.body, { childList: true, subtree: true });
+
   document.addEventListener("change", (e) => {
     const method = e.target.dataset?.mmPick;
     if (!method) return;

@@ -1,6 +1,7 @@
-"""What the page can be switched to: the views of the scene, and what there is to learn from."""
+"""What the page can be switched to: the views of the scene, what there is to learn from, and for whom."""
 
 from __future__ import annotations
 
 MAP, HEIGHTS, SWARM = "Map", "Heights", "Swarm space"
 LESSON, MUSEUM = "Lesson", "Museum"
+OPERATOR, RESEARCH = "Operator", "Research"

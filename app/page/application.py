@@ -49,11 +49,13 @@ def make_server(
     initial: Case | None = None,
     lesson: Path | None = None,
     access: Access | None = None,
+    research: bool = False,
 ) -> viser.ViserServer:
     """Start to serve; every tab opens with ``initial``.
 
     port   : 0 for any free one (``server.get_port()`` tells which)
     lesson : folder of the lesson's texts; None for those that come along
+    research : tabs open in the mode of researchers, unless their browser remembers another
     access : who may talk to it; None: this machine alone
     raises : PortError where the port is taken or the address is not this machine's
     """
@@ -84,7 +86,7 @@ def make_server(
         if not visited:
             visited = True
             _aside(warm_up_here)
-        pages[client.client_id] = Page(client, first, keep, server.uploads, quota, lesson)
+        pages[client.client_id] = Page(client, first, keep, server.uploads, quota, lesson, research)
 
     @server.on_client_disconnect
     def _(client: viser.ClientHandle) -> None:

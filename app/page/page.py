@@ -9,6 +9,7 @@ import viser
 
 from app.jobs.worker_pool import COMMON
 from app.model.merge_inputs import MergeInputs
+from app.model.view_modes import OPERATOR, RESEARCH
 from app.page.cancellable_task import DownloadTask
 from app.page.editing.knowledge_controller import KnowledgeController
 from app.page.editing.map_drag_controller import MapDragController
@@ -48,6 +49,7 @@ class Page:
     first  : what a new tab opens with
     store  : where a tab leaves what it finds again
     lesson : folder of the lesson's texts; None for those that come along
+    research : whether a browser that remembers no mode gets that of researchers
     """
 
     def __init__(
@@ -58,7 +60,9 @@ class Page:
         uploads: Uploads,
         quota: CellQuota,
         lesson: Path | None = None,
+        research: bool = False,
     ) -> None:
+        self._research = research
         self._client, self._first, self._store, self._uploads = client, first, store, uploads
         self._key = ""  # of what it leaves in the store
         state, history, messages = PageState(), UndoHistory(), TabMessages(client)
@@ -72,7 +76,7 @@ class Page:
         runs = RunController(tab, COMMON.runner(), stop_upload)
         self._inputs = inputs = InputsController(tab, runs, quota)
         self._undo = undo = UndoController(tab, runs, inputs)
-        ViewController(tab, client)
+        self._view = ViewController(tab, client)
         zoom = ZoomController(events, messages, views.map.ground, state.locks)
         drag = MapDragController(tab, undo, runs)
         SuggestionController(tab, drag)
@@ -93,17 +97,21 @@ class Page:
         events.on("unsend", stop_upload)
         # the dock of the charts gets its width when another, beside which it came, is gone
         events.on("left", lambda: teaching.open or seeing.active or panels.charts.visible(True))
-        events.on("hello", self._greet, key=str, again=bool)
+        events.on("hello", self._greet, key=str, again=bool, mode=("", OPERATOR, RESEARCH))
         messages.flush()  # the page says hello when it has read where to
 
-    def _greet(self, key: str, again: bool) -> None:
-        """The browser shows the page: what the tab left behind comes back; otherwise it begins."""
+    def _greet(self, key: str, again: bool, mode: str) -> None:
+        """The browser shows the page: what the tab left behind comes back; otherwise it begins.
+
+        mode : that the browser remembers; empty where it remembers none
+        """
         state, panels, history = self._tab.state, self._tab.panels, self._tab.history
         with state.locks.action:
             if state.closed or self._key:  # a page says so once
                 return
             self._key, saved = self._store.enter(key, again, self._leave)
             self._tab.display.messages.remember(self._key)
+            self._view.research(mode == RESEARCH if mode else self._research)
             if saved is None:
                 self._inputs.load(self._first)
                 return

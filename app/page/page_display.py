@@ -272,6 +272,14 @@ class PageDisplay:
     def _pressed(self) -> list[str]:
         return [*self._panels.run.pressed, self._panels.charts.page]
 
+    def show_research(self, yes: bool) -> None:
+        """Show all settings, the stages and the comparisons, or only what operators need."""
+        panels = self._panels
+        for panel in (panels.run, panels.settings, panels.what_if, panels.charts):
+            panel.research(yes)
+        self.messages.hud(research=yes)
+        self.show_buttons()
+
     # --- colours ----------------------------------------------------------------------------------
 
     def show_theme(self) -> None:

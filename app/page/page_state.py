@@ -59,6 +59,7 @@ class PageState:
     hand          : T_ref_mov of map 2 while a person holds it
     other         : another method's result that is looked at
     fleet         : the fleet that the page shows, or of which it shows a pair; None: there is none
+    research      : settings, stages and comparisons are shown, and not only what operators need
     closed        : the tab is gone
     """
 
@@ -77,6 +78,7 @@ class PageState:
     other: OtherResult | None = None
     fleet: FleetState | None = None
     view: str = MAP
+    research: bool = False
     palette: Palette = LIGHT
     closed: bool = False
     locks: TabLocks = field(default_factory=TabLocks)

@@ -10,7 +10,7 @@ from app.drawing.draw_items import mark
 from app.drawing.palette import DARK, LIGHT
 from app.drawing.scene.map_comparison import MODES
 from app.drawing.scene.map_layers import Mode
-from app.model.view_modes import MAP
+from app.model.view_modes import MAP, OPERATOR, RESEARCH
 from app.page.tab import Tab
 
 OF_TWO_MAPS = "This view is of two maps. Press a pair of the fleet first."
@@ -22,9 +22,9 @@ class ViewController:
 
     def __init__(self, tab: Tab, client: viser.ClientHandle) -> None:
         self._state, self._display, self._modes = tab.state, tab.display, tab.modes
-        self._notices = tab.notices
+        self._notices, self._panels = tab.notices, tab.panels
         self._messages, self._views = tab.display.messages, tab.display.views
-        tab.panels.run.connect_view(self.choose, self.fit, self.darken)
+        tab.panels.run.connect_view(self.choose, self.fit, self.darken, self.choose_research)
         tab.events.on("compare", self.compare, mode=MODES)
         tab.events.on("resized", self._resized)
         client.scene.on_click()(self._read_out)
@@ -44,6 +44,21 @@ class ViewController:
             self._display.recolour()
             self._show()
             self._state.update(palette=self._state.palette)
+
+    def choose_research(self, yes: bool) -> None:
+        """All settings and stages are wanted, or no more than operators need; the browser remembers it."""
+        with self._state.locks.action:
+            self.research(yes)
+            self._messages.remember_mode(self._panels.run.mode)
+            self._messages.flush()
+
+    def research(self, yes: bool) -> None:
+        self._panels.run.mode = RESEARCH if yes else OPERATOR
+        if not yes and self._state.view != MAP:
+            self.choose(MAP)
+        with self._state.locks.drawing:
+            self._state.update(research=yes)
+            self._display.show_research(yes)
 
     def _show(self) -> None:
         mode = self._modes.current

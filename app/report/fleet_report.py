@@ -70,7 +70,8 @@ def summary(result: FleetResult, total: int) -> str:
     alone = [island.root for island in result.islands[1:] if len(island.poses) == 1]
     groups = [" and ".join(island.poses) for island in result.islands[1:] if len(island.poses) > 1]
     if groups:
-        said.append(f"A map of their own have {'; '.join(groups)}.")
+        of_them = "a map" if len(groups) == 1 else "maps"
+        said.append(f"{'; '.join(groups)} have {of_them} of their own.")
     if alone:
         said.append(f"Nothing ties {', '.join(alone)} to the rest.")
     said += [f"{name} was taken out again: {why}." for name, why in result.refused.items()]

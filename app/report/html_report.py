@@ -131,7 +131,7 @@ def _pictures(result: MergeResult, inputs: MergeInputs, found: Contradictions, c
 def _likely(result: MergeResult, names: RobotNames) -> list[str]:
     verdict = result.verdict
     said = (
-        f"{merges_of(verdict.probability).capitalize()}, by what merges of simulated buildings teach: "
+        f"{merges_of(verdict.probability).capitalize()}, as learned from merges of simulated buildings: "
         f"{verdict_text.likelihood(verdict.probability)}."
     )
     caption = (

@@ -55,7 +55,7 @@ def _numbers(result: MergeResult, inputs: MergeInputs, config: Any) -> list[tupl
         ("T: Δx", f"{T.x:.3f} m"),
         ("T: Δy", f"{T.y:.3f} m"),
         ("T: Δθ", f"{degrees(T.theta):.2f} ± {degrees(turn):.2f}°"),
-        ("robot 2 known to" if result.encounters else "map 2's middle known to", f"± {at_robot:.3f} m"),
+        ("robot 2's place, 1 σ" if result.encounters else "map 2's middle, 1 σ", f"± {at_robot:.3f} m"),
     ]
     if result.value is not None and isfinite(result.value):
         measure = measure_of(config)

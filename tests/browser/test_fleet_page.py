@@ -21,6 +21,12 @@ from app.system.data_paths import fleets, samples
 pytestmark = pytest.mark.browser
 
 ISLAND = "home_fleet_island"
+WATCH_PAIRS = """() => {
+    const pairs = () => [...document.querySelectorAll("button[data-mm-pair]")].map((row) => row.innerText);
+    const watch = new MutationObserver(() => window.seenPairs.push(...pairs()));
+    window.seenPairs = [];
+    watch.observe(document.body, { subtree: true, childList: true, characterData: true });
+}"""
 LIE = "r3 saw r4\nleft out: r3's sighting of r4 would put it 3.7 m off"
 
 
@@ -50,9 +56,10 @@ def island(open_tab) -> Tab:
 def test_a_fleet_is_merged_before_the_eyes_and_says_who_lies_and_who_is_alone(island):
     assert set(robots(island)) == {f"r{k}" for k in range(1, 7)}
     assert len(rows(island, "pair")) == 6
+    island.page.evaluate(WATCH_PAIRS)  # each stands there but for a moment
     island.press("Merge")
-    settle(lambda: any("right by itself" in row for row in rows(island, "pair")), "the first pair")
     merged(island)
+    assert any("right by itself" in row for row in island.page.evaluate("() => window.seenPairs"))
     assert island.state.startswith("4 of 6 robots are in the map of r1.")
     told = robots(island)
     assert told["r1"] == "the anchor"
@@ -155,7 +162,7 @@ def test_an_opened_pair_is_told_by_its_robots_names_and_two_maps_without_names_a
     tab.wait_for("refused")
     settle(lambda: tab.page.locator("[data-mm-suggestion]").count(), "what it suggests")
     assert "little keeps <i>Alice's map in its place" in tab.state
-    assert tab.number("<i>Alice known to")
+    assert tab.number("<i>Alice's place, 1 σ")
     assert of_two(tab) == []
     for stage in ("Turn", "Shift", "Proof"):
         tab.press(stage)

@@ -79,6 +79,7 @@ def test_the_page_asks_nobody_but_its_own_server(browser, server):
     page.on("websocket", lambda socket: asked.append(socket.url))
     page.goto(f"http://127.0.0.1:{server.get_port()}/")
     page.wait_for_function(READY, timeout=1000 * PATIENCE)
+    page.get_by_role("button", name="Research", exact=True).click()
     page.get_by_role("button", name="Instant", exact=True).click()
     page.get_by_role("button", name="Merge", exact=True).click()
     mood = "() => document.querySelector('.mm-state').dataset.mood"

@@ -8,7 +8,11 @@ import numpy as np
 from algorithms.detection.detection import Picture
 from algorithms.detection.svm_training import Background, RobotExample
 
+Lines = tuple[tuple[tuple[float, float], tuple[float, float]], ...]
+
 SIDE = 48  # pixels of a board, as it is drawn
+CROSS = (((0.2, 0.2), (0.8, 0.8)), ((0.8, 0.2), (0.2, 0.8)))  # lines on it; shares of its side
+BARS = (((0.3, 0.2), (0.3, 0.8)), ((0.7, 0.2), (0.7, 0.8)))
 
 
 def room(rng: np.random.Generator, width: int = 200, height: int = 150) -> Picture:
@@ -21,13 +25,15 @@ def room(rng: np.random.Generator, width: int = 200, height: int = 150) -> Pictu
     return np.ascontiguousarray(picture)
 
 
-def with_board(rng: np.random.Generator, size: int = SIDE) -> tuple[Picture, np.ndarray]:
-    """A room with a white board that has a dark cross; and the board's box."""
+def with_board(
+    rng: np.random.Generator, size: int = SIDE, lines: Lines = CROSS
+) -> tuple[Picture, np.ndarray]:
+    """A room with a white board that has dark lines; and the board's box."""
     picture = room(rng)
     height, width = picture.shape[:2]
     left, top = int(rng.integers(2, width - size - 2)), int(rng.integers(2, height - size - 2))
     board = np.full((size, size, 3), 235, np.uint8)
-    for a, b in (((0.2, 0.2), (0.8, 0.8)), ((0.8, 0.2), (0.2, 0.8))):
+    for a, b in lines:
         ends = [tuple(int(size * part) for part in point) for point in (a, b)]
         cv2.line(board, *ends, (20, 20, 20), max(2, size // 8))
     picture[top : top + size, left : left + size] = board

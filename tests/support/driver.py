@@ -29,6 +29,9 @@ ARGUMENTS = [
 ]
 READY = "() => window.mapmeld?.applied > 0 && document.querySelector('.mm-state span')?.textContent"
 
+REMEMBER = """try {{ localStorage.getItem("mapmeld-mode") || localStorage.setItem("mapmeld-mode", "{}"); }}
+catch {{ /* a page without a place to remember */ }}"""
+
 # where two points of the scene are in the window, two frames later
 AFTER_A_FRAME = """() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(
     () => done([[0, 0], [7, 4]].map((p) => window.mapmeld.pixel(p))))))"""
@@ -54,10 +57,20 @@ def settle(check: Callable[[], Any], what: str) -> Any:
 class Tab:
     """Finds things by their words; waits by polling."""
 
-    def __init__(self, browser: Browser, address: str, size: tuple[int, int], touch: bool = False) -> None:
+    def __init__(
+        self,
+        browser: Browser,
+        address: str,
+        size: tuple[int, int],
+        touch: bool = False,
+        mode: str = "Research",
+    ) -> None:
+        """``mode``: that the browser remembers; empty for a browser that was never here."""
         self.context = browser.new_context(
             viewport={"width": size[0], "height": size[1]}, accept_downloads=True, has_touch=touch
         )
+        if mode:
+            self.context.add_init_script(REMEMBER.format(mode))
         self.page: Page = self.context.new_page()
         self.errors: list[str] = []
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))

@@ -74,7 +74,7 @@ class WireTab:
         Thread(target=self._read, daemon=True).start()
         self.send("ViewerCameraMessage", **CAMERA)
         until(lambda: self.words.get("channel"), "the channel", patience)
-        self.tell("hello", key=key, again=again)
+        self.tell("hello", key=key, again=again, mode="Research")
         until(lambda: self.words.get("state"), "the page")
 
     def _read(self) -> None:

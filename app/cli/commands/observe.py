@@ -25,6 +25,7 @@ from algorithms.detection.robot_sighting import (
 from algorithms.files.atomic_write import check_folder, write_files
 from algorithms.files.camera_file import CAMERA_FILE
 from algorithms.files.camera_picture import picture_to_jpeg, picture_to_png, read_picture
+from algorithms.files.case_folder import FIRST_MAP_FILE
 from algorithms.files.encounter_table import ENCOUNTER_TABLE, EncounterRow, read_encounters
 from algorithms.files.map_file import read_map
 from algorithms.files.observation_file import known_to_bytes
@@ -61,7 +62,8 @@ Examples:
                                      several images, each a line: image, scan, observer_x, observer_y,
                                      observer_yaw, observed_x, observed_y and observed_yaw
   mapmeld observe sample_maps/office_r2_r1 --out observation.yaml
-                                     a folder with {ENCOUNTER_TABLE} and {CAMERA_FILE}
+                                     a folder with {ENCOUNTER_TABLE} and {CAMERA_FILE}; its
+                                     {FIRST_MAP_FILE} counts as --map
 
 --camera is a calibration as ROS's camera_info, --scan a LaserScan as "ros2 topic echo --once /scan" prints
 it. Poses are metres and radians: robot 1 in map 1, robot 2 in map 2. The standard deviations are those of
@@ -113,7 +115,8 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         if file is not None:
             check_folder(file.parent)
     detector = detector_of(args)
-    grid = None if args.map is None else read_map(args.map)
+    map_file = args.map or _map_beside(args.table)
+    grid = None if map_file is None else read_map(map_file)
     files: dict[Path, bytes] = {}
     found: list[Observation] = []
     told: list[dict[str, Any]] = []
@@ -165,6 +168,12 @@ def _from_table(args: argparse.Namespace) -> Iterator[_Encounter]:
     for row in read_encounters(file):
         scan = file.parent / row.scan if row.scan else None
         yield _Encounter(file.parent / row.image, scan, row.observer, _place(row))
+
+
+def _map_beside(table: Path | None) -> Path | None:
+    """Robot 1's map in a folder of encounters, where there is one."""
+    beside = None if table is None or not table.is_dir() else table / FIRST_MAP_FILE
+    return beside if beside is not None and beside.exists() else None
 
 
 def _place(row: EncounterRow) -> tuple[float, ...]:

@@ -62,6 +62,8 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     )
     # its name in earlier versions, still taken from those who wrote it into a script
     parser.add_argument("--behind", action="append", default=[], help=argparse.SUPPRESS)
+    help_ = "operator (default): maps, sighting, result; research: every setting and stage, too"
+    parser.add_argument("--mode", choices=("operator", "research"), default="operator", help=help_)
     parser.add_argument("--verbose", action="store_true", help="log who comes and what is run, too")
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
     parser.add_argument(
@@ -91,7 +93,8 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         _check_lesson(args.lesson)
     access = access_for(args.host, args.token_file, proxies, args.certfile, args.keyfile)
     logs.hide(access.token)
-    server = make_server(args.host, args.port, _case(args), args.lesson, access)
+    research = args.mode == "research"
+    server = make_server(args.host, args.port, _case(args), args.lesson, access, research)
     port = server.get_port()
     url = address(args.host, port, access)
     try:

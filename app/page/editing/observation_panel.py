@@ -46,7 +46,7 @@ class ObservationPanel:
         self._names = UNNAMED
         self._html = gui.add_html("", visible=False)
         quiet: Any = {"color": QUIET, "visible": False}
-        hint = "With the mouse, in place of an observation file; or mend the one there is."
+        hint = "With the mouse, in place of an observation file; or to correct the one there is."
         icon = viser.Icon.MAP_PIN
         self._toggle = gui.add_button("Place robots on the maps", icon=icon, hint=hint, **quiet)
         self._step = gui.add_html("", visible=False)

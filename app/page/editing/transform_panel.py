@@ -22,7 +22,7 @@ HOW = (
     "Drag map 2. To turn it, drag the knob, or hold Shift or Alt. Arrow keys: one cell, with "
     "Shift 1 cm; [ and ]: 0.5°, with Shift 0.1°. The empty ground still pans."
 )
-MOVE, BEGIN_HINT = "Move map 2 by hand", "Drag and turn it over map 1, or mend what the method found."
+MOVE, BEGIN_HINT = "Move map 2 by hand", "Drag and turn it over map 1, or correct what the method found."
 LABELS = "T: Δx (m)", "T: Δy (m)", "T: Δθ (°)"
 HINTS = (
     "Right, in map 1.",

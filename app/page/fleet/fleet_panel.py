@@ -45,7 +45,7 @@ class FleetPanel:
                 self.yaml = gui.add_upload_button("Robot: YAML", mime_type=".yaml,.yml", **quiet)
                 kinds = ",".join(READABLE_SUFFIXES)
                 self.image = gui.add_upload_button("Robot: image", mime_type=kinds, **quiet)
-                hint = "A map that came along."
+                hint = "A map that ships with mapmeld."
                 self.sample = gui.add_dropdown("Or a sample", (NO_SAMPLE, *sample_robots()), hint=hint)
             icon = viser.Icon.DOWNLOAD
             hint = "The merged maps, transforms, graph and report, as a zip."

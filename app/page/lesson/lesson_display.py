@@ -51,6 +51,7 @@ class LessonDisplay:
     def dock(self, open_: bool, turned: bool) -> None:
         """Open the dock or close it; ``turned``: the map is in view from now on, and was not before."""
         self._panel.visible(open_)
+        self._display.show_research(open_ or self._state.research)  # the sliders move the lesson, too
         self._display.views.comparison.clear()
         self._display.clear_read_out()
         self._display.messages.layer("lesson", None)

@@ -1,4 +1,6 @@
-"""The dock at the left: the curves and numbers of the stage at hand."""
+"""The dock at the left: curves and numbers of the stage at hand. Operators have no dock, but a wider map, and
+the last page, the result, in a folder among the others.
+"""
 
 from __future__ import annotations
 
@@ -58,6 +60,7 @@ class ChartsPanel:
         self._turned = turned
         self._panel = gui.add_panel()
         self._chosen = False
+        self._stages, self._wanted = False, True  # whether the dock is for researchers, and has its place
         self.names = UNNAMED
         self._shown: dict[str, object] = {}  # by the name of a chart or text: what it was made from
         with self._panel.add_tab("Stages", icon=viser.Icon.CHART_LINE):
@@ -78,9 +81,12 @@ class ChartsPanel:
             (self._rivals, (PROOF,), "proof"),
             (self.result, (RESULT,), "result"),
         ]
+        self._folder = gui.add_folder("Result", order=5.0, visible=False)
+        with self._folder:
+            self._alone = gui.add_html("")
         self._panel.dock_left()
         self._panel.set_width(WIDTH)
-        self.page = TURN
+        self.page = RESULT
         self._show_page()
 
     def add_tab(self, title: str, icon: viser.IconName) -> Any:
@@ -89,8 +95,9 @@ class ChartsPanel:
 
     def visible(self, yes: bool) -> None:
         """Show the dock, or leave its place to another."""
-        self._panel.visible = yes
-        if yes:
+        self._wanted = yes
+        put(self._panel, visible=yes and self._stages)
+        if yes and self._stages:
             self._panel.set_width(WIDTH)
 
     # --- pages ------------------------------------------------------------------------------------
@@ -102,6 +109,14 @@ class ChartsPanel:
         self.page = self._pages.value
         self._show_page()
         self._turned()
+
+    def research(self, yes: bool) -> None:
+        """Show the dock, or the result alone in a folder."""
+        self._stages = yes
+        self.visible(self._wanted)
+        if not yes:
+            self.page = RESULT
+        self._show_page()
 
     def follow(self) -> None:
         """Go along with the run from now on."""
@@ -116,6 +131,9 @@ class ChartsPanel:
 
     def _show_page(self) -> None:
         put(self._pages, value=self.page)
+        alone = "" if self._stages else str(self._shown.get("result", ""))
+        put(self._alone, content=alone)
+        put(self._folder, visible=bool(alone))
         empty = True
         for handle, pages, name in self._widgets:
             shown = self.page in pages and bool(self._shown.get(name))
@@ -181,7 +199,7 @@ class ChartsPanel:
                 self._rivals.content = table(rows, head) if rows else ""
         elif run.reached(Fusion):  # of an earlier run; this method proves nothing
             self._forget("proof")
-        if follow and not self._chosen:
+        if follow and self._stages and not self._chosen:
             self.page = row_of(detail).page or self.page
         self._show_page()
 

@@ -173,7 +173,7 @@ class ImageForm:
         raw = self._mode.value == "raw"
         for widget in (self._occupied, self._free, self._negate):
             put(widget, visible=not raw)
-        about = f"{self._image.name} came without a YAML file. Say what that would say, or load it."
+        about = f"{self._image.name} came without a YAML file. Give its values here, or load that file."
         self._about.content = _small(f"{about} {WHAT_IT_MEANS[self._mode.value]}")
         try:
             meta = self.meta

@@ -1,4 +1,4 @@
-"""The answer: a sentence first, then the numbers it rests on."""
+"""The answer: what it means first, then why, then the numbers it rests on."""
 
 from __future__ import annotations
 
@@ -26,31 +26,49 @@ def result_html(
     faded: bool = False,
     suggestions: str = "",
 ) -> str:
-    """HTML of the whole result; faded where it is out of date.
+    """HTML of the whole result but for the verdict's sentence, which stands above the map; where it is out of
+    date faded, with that sentence.
 
     config : the settings that were used
     found  : where the maps contradict each other
     suggestions : HTML of what a refused merge suggests; never faded, since each can still be taken
     """
     verdict, names = result.verdict, inputs.names
-    note = "Out of date: something was changed." if faded else names.told(words.remedy(result))
+    if faded:
+        head = box(
+            names.told(verdict.reason), words.mood(verdict), "Out of date: something was changed.", True
+        )
+    else:
+        remedy = names.told(words.remedy(result))
+        head = box(remedy, words.mood(verdict)) if remedy else ""
     return (
-        box(names.told(verdict.reason), words.mood(verdict), note, faded)
+        head
         + suggestions
         + why_html(verdict, faded, names)
         + (places_html(found, faded, names) if found is not None else "")
-        + table(numbers(result, inputs, config), faded=faded)
-        + table(times(result), ("time per stage", "ms"), faded)
+        + _fold("Numbers", "numbers", _numbers(result, inputs, config, faded), faded)
+    )
+
+
+def _numbers(result: MergeResult, inputs: MergeInputs, config: Any, faded: bool) -> str:
+    return table(numbers(result, inputs, config), faded=faded) + table(
+        times(result), ("time per stage", "ms"), faded
+    )
+
+
+def _fold(title: str, name: str, content: str, faded: bool) -> str:
+    """HTML of something to be opened; the browser keeps it open in the next result, by its name."""
+    dim = ";opacity:.4" if faded else ""
+    return (
+        f'<details data-mm-fold="{name}" style="margin:0 0 8px;font-size:12.5px{dim}">'
+        f'<summary style="cursor:pointer;margin:0 10px 4px">{title}</summary>{content}</details>'
     )
 
 
 def why_html(verdict: Verdict, faded: bool = False, names: RobotNames = UNNAMED) -> str:
     """HTML of the verdict to be opened: a bar per quantity that it rests on."""
-    dim = ";opacity:.4" if faded else ""
-    return (
-        f'<details style="margin:0 10px 8px;font-size:12.5px{dim}"><summary style="cursor:pointer">'
-        f"Why {words.likelihood(verdict.probability)}?</summary>{bars(verdict, LIGHT, names)}</details>"
-    )
+    content = f'<div style="margin:0 10px">{bars(verdict, LIGHT, names)}</div>'
+    return _fold(f"Why {words.likelihood(verdict.probability)}?", "why", content, faded)
 
 
 def places_html(found: Contradictions, faded: bool = False, names: RobotNames = UNNAMED) -> str:

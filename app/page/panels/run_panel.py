@@ -10,7 +10,7 @@ import viser
 from algorithms.methods.registry import METHODS
 from app.drawing.palette import LIGHT, QUIET, STOP
 from app.model.playback import PACES
-from app.model.view_modes import HEIGHTS, LESSON, MAP, MUSEUM, SWARM
+from app.model.view_modes import HEIGHTS, LESSON, MAP, MUSEUM, OPERATOR, RESEARCH, SWARM
 from app.page.panels.html_widgets import Action, on_choice, on_press, put
 
 NAMES = {method.title: name for name, method in METHODS.items()}
@@ -25,7 +25,7 @@ class RunPanel:
         self._counting = Lock()  # they begin and end in threads of their own
         icon = viser.Icon.PLAYER_STOP
         self.stop = gui.add_button("Stop", color=STOP, icon=icon, disabled=True, order=2)
-        hint = "How long each step stays. Instant: as fast as it is computed."
+        hint = "How fast the steps are shown. Instant: as fast as they are computed."
         self._speed = gui.add_button_group("Speed", tuple(PACES), order=3, hint=hint)
         self._speed.value = "Normal"
         self._view = gui.add_button_group("View", (MAP, HEIGHTS, SWARM), order=4)
@@ -34,6 +34,11 @@ class RunPanel:
         )
         self._learn = gui.add_button_group("Learn", (LESSON, MUSEUM), order=4.7, hint=hint)
         self._open: list[str] = []  # which of them are
+        hint = (
+            "Operator: maps, sighting, result, export. Research: every setting of the method, its stages, "
+            "comparison with others and sweeps, too."
+        )
+        self._mode = gui.add_button_group("Mode", (OPERATOR, RESEARCH), order=4.75, hint=hint)
         with gui.add_folder("Run", order=50):
             hint = "The way to merge; each has its own defaults."
             self._method = gui.add_dropdown("Method", tuple(NAMES), hint=hint)
@@ -51,15 +56,27 @@ class RunPanel:
         self._method.on_update(lambda _: method(NAMES[self._method.value]))
         on_choice(self._seed, seed)
 
-    def connect_view(self, view: Callable[[str], None], fit: Action, dark: Callable[[bool], None]) -> None:
+    def connect_view(
+        self,
+        view: Callable[[str], None],
+        fit: Action,
+        dark: Callable[[bool], None],
+        research: Callable[[bool], None],
+    ) -> None:
         """What is done where a person wants to see it otherwise."""
         self._view.on_click(lambda event: view(self._view.value) if event.client_id is not None else None)
         self._fit.on_click(lambda _: fit())
         self._dark.on_update(lambda _: dark(self._dark.value))
+        self._mode.on_click(lambda _: research(self._mode.value == RESEARCH))
 
     def connect_learn(self, lesson: Action, museum: Action) -> None:
         """What is done where a person opens or closes the lesson or the museum."""
         self._learn.on_click(lambda _: lesson() if self._learn.value == LESSON else museum())
+
+    def research(self, yes: bool) -> None:
+        """Show what only researchers set, or hide it."""
+        for handle in (self._view, self._method, self._seed):
+            put(handle, visible=yes)
 
     @property
     def view(self) -> str:
@@ -82,6 +99,14 @@ class RunPanel:
     def speed(self, name: str) -> None:
         if name in PACES:
             put(self._speed, value=name)
+
+    @property
+    def mode(self) -> str:
+        return str(self._mode.value)
+
+    @mode.setter
+    def mode(self, mode: str) -> None:
+        put(self._mode, value=mode)
 
     @property
     def seed(self) -> int:
@@ -115,4 +140,4 @@ class RunPanel:
 
     @property
     def pressed(self) -> list[str]:
-        return [self._speed.value, self._view.value, *self._open]
+        return [self._speed.value, self._view.value, self._mode.value, *self._open]

@@ -81,6 +81,7 @@ class SettingsPanel:
         self._notes: dict[str, Any] = {}
         self._cells: tuple[float, ...] = ()
         self._writer = 0  # a value that is written calls back at once, half-way through the others
+        self._shown = False  # whether any setting is
         self.method = DEFAULT_METHOD
         self.config: Any = METHODS[self.method].defaults
         self._build()
@@ -108,6 +109,11 @@ class SettingsPanel:
         for folder in self._folders.values():
             folder.remove()
         self._build()
+
+    def research(self, yes: bool) -> None:
+        """Show the settings, or hide all of them."""
+        self._shown = yes
+        self._hide_idle()
 
     def resolutions(self, *cells: float) -> None:
         """Metres per cell of the maps, so that lengths are shown in cells, too."""
@@ -235,7 +241,8 @@ class SettingsPanel:
         for path, handle in self._handles.items():
             put(handle, visible=not idle(self.config, path))
         for title, folder in self._folders.items():
-            put(folder, visible=not all(idle(self.config, path) for path in self._paths_in(title)))
+            useful = not all(idle(self.config, path) for path in self._paths_in(title))
+            put(folder, visible=self._shown and useful)
 
     def _show_cells(self) -> None:
         """Lengths in cells below the sliders of a folder; the maps may differ in resolution."""

@@ -33,9 +33,7 @@ class SuggestionPictures:
                 for each in suggestions_of(result)
             ]
             made = self._made = result.weighed, palette, names, "".join(buttons)
-        said = (
-            "Is it one of these? Press one to lay map 2 so; then take it, or mend it first, under “By hand”."
-        )
+        said = "Is it one of these? Press one to see it; then take it, or correct it first under “By hand”."
         take = '<button type="button" class="mm-take">Take it</button>'
         return (
             f'<div class="mm-suggestions"><p>{escape(names.told(said), quote=False)}</p>{made[3]}{take}</div>'

@@ -115,6 +115,7 @@ class WhatIfPanel:
         self._rules = rules
         self._result: MergeResult | None = None
         self._names = UNNAMED
+        self._wanted = False
         self._shown: dict[str, float] = {}  # of the result, as the sliders show it
         self._turn = RLock()  # sliders call back from many threads
         self._writer = 0  # a value that is written calls back at once
@@ -139,7 +140,7 @@ class WhatIfPanel:
         with self._turn:
             self._names = names
             self._result = result if result is not None and result.weighed else None
-            self._folder.visible = self._result is not None
+            self._show()
             if self._result is None:
                 return
             self._writer = get_ident()
@@ -148,6 +149,15 @@ class WhatIfPanel:
             finally:
                 self._writer = 0
             self._tell(self._result)
+
+    def research(self, yes: bool) -> None:
+        """Show the folder where there is a result, or hide it."""
+        with self._turn:
+            self._wanted = yes
+            self._show()
+
+    def _show(self) -> None:
+        put(self._folder, visible=self._wanted and self._result is not None)
 
     def _write(self, result: MergeResult) -> None:
         for name, value in numbers_of(result).items():

@@ -75,7 +75,7 @@ class SensorsController:
             for number, known in ((1, self.place.observer), (2, self.place.observed))
             if known is None
         ]
-        said = f"Say where {' and where '.join(missing)}: under “Where the robots stood”."
+        said = f"Give where {' and where '.join(missing)}: under “Where the robots stood”."
         return self._state.inputs.names.told(said) if missing else ""
 
     def typed(self, name: str, value: float) -> None:

@@ -57,7 +57,7 @@ class SensorsPanel:
             self._files = gui.add_upload_button(
                 "Choose files", mime_type=KINDS, color=QUIET, hint=hint, icon=icon
             )
-            hint = "What came along with these maps: the image, the scan, and where the robots stood."
+            hint = "The image, the scan and the robots' places that ship with this sample."
             icon = viser.Icon.PHOTO
             self._sample = gui.add_button("From the sample", color=QUIET, hint=hint, icon=icon, visible=False)
             hint = "Each line of encounters.csv is a time at which robot 1 saw robot 2."

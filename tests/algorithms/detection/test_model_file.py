@@ -14,15 +14,21 @@ from hypothesis import strategies as st
 
 from algorithms.common.errors import InputFileError
 from algorithms.detection.hog_grid import WindowShape
-from algorithms.detection.model_file import model_from_bytes, model_to_bytes, read_model, shipped_model
+from algorithms.detection.model_file import (
+    ARRAYS,
+    NUMBERS,
+    model_from_bytes,
+    model_to_bytes,
+    read_model,
+    shipped_model,
+)
 from algorithms.detection.svm_detector import DetectorModel
 
 
 def made(rows=5, cols=6, classes=2, seed=0):
     shape, rng = WindowShape(rows, cols, 6), np.random.default_rng(seed)
-    arrays = [
-        rng.normal(size=size).astype(np.float32) for size in ((classes, shape.length), classes, (classes, 2))
-    ]
+    machines = (classes, shape.length), classes
+    arrays = [rng.normal(size=size).astype(np.float32) for size in (*machines, (classes, 2), *machines)]
     return DetectorModel(shape, tuple(f"class_{k}" for k in range(classes)), *arrays)
 
 
@@ -32,7 +38,7 @@ def test_a_model_comes_back_as_it_was_written(rows, cols, classes):
     data = model_to_bytes(model)
     back = model_from_bytes("m.npz", data)
     assert (back.shape, back.labels) == (model.shape, model.labels)
-    for name in ("weights", "biases", "calibration"):
+    for name in NUMBERS:
         assert np.array_equal(getattr(back, name), getattr(model, name))
     assert model_to_bytes(back) == data
 
@@ -99,7 +105,7 @@ def test_a_changed_byte_is_read_or_told(place, value):
 def test_a_zip_that_lies_about_its_size_is_told(tmp_path):
     file = tmp_path / "bomb.npz"
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name in ("version", "window", "labels", "weights", "biases", "calibration"):
+        for name in ARRAYS:
             archive.writestr(f"{name}.npy", bytes(4_000_000))
     with pytest.raises(InputFileError, match="unpacks to more"):
         read_model(file)

@@ -6,14 +6,14 @@ from functools import cache
 
 import numpy as np
 import pytest
-from drawn_robots import examples, room, with_board
+from drawn_robots import BARS, CROSS, examples, room, with_board
 
 from algorithms.common.errors import SettingError
 from algorithms.detection.detection import overlaps
 from algorithms.detection.hog_grid import WindowShape, grey, hog_grid, scores, window_features
-from algorithms.detection.model_file import model_to_bytes
+from algorithms.detection.model_file import NUMBERS, model_to_bytes
 from algorithms.detection.svm_detector import DetectorModel, SvmDetector
-from algorithms.detection.svm_training import Training, TrainingStep, train, window_shape
+from algorithms.detection.svm_training import RobotExample, Training, TrainingStep, train, window_shape
 
 
 @cache
@@ -32,6 +32,23 @@ def test_a_board_that_was_never_seen_is_found_where_it_is():
         assert found
         joint, _ = overlaps(np.array([found[0].box()]), box)
         assert joint[0] > 0.3  # it has learned sixteen boards
+
+
+def test_boards_of_two_classes_are_found_and_told_apart():
+    rng, classes = np.random.default_rng(3), {"cross": CROSS, "bars": BARS}
+    robots = [
+        RobotExample(*with_board(rng, int(rng.integers(40, 90)), lines), label)
+        for _ in range(16)
+        for label, lines in classes.items()
+    ]
+    *_, result = train(robots, examples(16)[1])
+    detector, right = SvmDetector(result.model), 0
+    for label, lines in [*classes.items()] * 8:
+        picture, box = with_board(rng, int(rng.integers(44, 80)), lines)
+        found = detector.detect(picture)
+        on_it = overlaps(np.array([one.box() for one in found]).reshape(-1, 4), box)[0] > 0.3
+        right += any(on and one.label == label for on, one in zip(on_it, found, strict=True))
+    assert right >= 14
 
 
 def test_rooms_without_a_board_are_left_alone():
@@ -105,10 +122,10 @@ def test_sliding_a_window_is_the_product_with_every_window():
     assert scores(grid[:2], shape, weights).size == 0
 
 
-@pytest.mark.parametrize("wrong", ["weights", "biases", "calibration"])
+@pytest.mark.parametrize("wrong", NUMBERS)
 def test_a_model_whose_numbers_do_not_fit_its_window_is_refused(wrong):
     model = trained().model
-    parts = {name: getattr(model, name) for name in ("shape", "labels", "weights", "biases", "calibration")}
+    parts = {name: getattr(model, name) for name in ("shape", "labels", *NUMBERS)}
     with pytest.raises(SettingError, match=wrong):
         DetectorModel(**{**parts, wrong: parts[wrong][..., :-1]})
     with pytest.raises(SettingError, match=wrong):

@@ -144,7 +144,7 @@ def test_who_says_hello_again_and_again_gets_nothing_more_and_leaves_nothing_beh
     tab = WireTab(server.get_port())
     key = tab.words["key"]
     for key_then, again in [("", False), (key, True), (key, False), ("", True)]:
-        tab.tell("hello", key=key_then, again=again)
+        tab.tell("hello", key=key_then, again=again, mode="")
     tab.choose("Instant")
     tab.press("Merge")
     assert merged(tab)

@@ -124,15 +124,29 @@ def test_without_calibration_pixels_are_counted(seen):
     assert read_observations(seen / "observation.yaml")
 
 
-def test_a_map_whose_wall_is_before_the_robot_denies_it(seen, capsys):
+def with_wall(folder, name):
+    """A map with a wall one metre ahead of who stands at (−1, 0)."""
     cells = np.full((200, 200), FREE, np.int8)
-    cells[:, 100:104] = OCCUPIED  # one metre ahead
-    grid = GridMap(cells, 0.05, Pose2(-5.0, -5.0, 0.0), "wall")
-    for name, data in map_to_bytes(grid, "wall").items():
-        (seen / name).write_bytes(data)
+    cells[:, 100:104] = OCCUPIED
+    for file, data in map_to_bytes(GridMap(cells, 0.05, Pose2(-5.0, -5.0, 0.0), name), name).items():
+        (folder / file).write_bytes(data)
+
+
+def test_a_map_whose_wall_is_before_the_robot_denies_it(seen, capsys):
+    with_wall(seen, "wall")
     apart = [word for word in words(seen, f"--map={seen / 'wall.yaml'}") if "observer-pose" not in word]
     assert main([*apart, "--observer-pose=-1.0,0.0,0.0"]) == 1
     assert "the map has a wall" in capsys.readouterr().out
+
+
+def test_the_map_in_a_folder_of_encounters_counts(seen, capsys):
+    rows = [EncounterRow("seen.jpg", "scan.yaml", Pose2(-1.0, 0.0, 0.0), 3.0, 4.0)]
+    (seen / "encounters.csv").write_bytes(encounters_to_bytes(rows))
+    with_wall(seen, "map1")
+    assert main(["observe", str(seen), f"--out={seen / 'observation.yaml'}"]) == 1
+    assert "the map has a wall" in capsys.readouterr().out
+    table = str(seen / "encounters.csv")  # which names no map
+    assert main(["observe", table, f"--out={seen / 'observation.yaml'}"]) == 0
 
 
 def test_a_table_gives_a_sighting_for_every_line(seen, capsys):

@@ -25,7 +25,9 @@ def widget(*_: object, **__: object) -> SimpleNamespace:
 def panel() -> ChartsPanel:
     gui = MagicMock()
     gui.add_html.side_effect = gui.add_uplot.side_effect = widget
-    return ChartsPanel(Mock(gui=gui), Mock())
+    panel = ChartsPanel(Mock(gui=gui), Mock())
+    panel.research(True)
+    return panel
 
 
 @pytest.fixture(scope="module")

@@ -16,6 +16,7 @@ from algorithms.files.observation_file import known_to_bytes
 from algorithms.files.truth_file import Truth
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge, run
 from algorithms.methods.steps import CandidatesDetail, HoughDetail
+from algorithms.verdict.decision import Outcome
 from app.model import chart_data as charts
 from app.model.merge_inputs import MergeInputs, Upload
 from app.model.run_state import RunState
@@ -90,11 +91,22 @@ def test_a_bad_upload_is_named(inputs):
         inputs_from({"observation": Upload("o.yaml", b"range: 3")})
 
 
-def test_the_sentence_comes_before_the_numbers(result, inputs):
+def test_why_comes_before_the_numbers_and_the_sentence_is_repeated_only_where_it_is_out_of_date(
+    result, inputs
+):
     page = result_html(result, inputs)
-    assert page.index(result.verdict.reason) < page.index("T: Δx") < page.index("time per stage")
+    assert page.index("Why ") < page.index("T: Δx") < page.index("time per stage")
+    assert result.verdict.reason not in page
     assert "opacity:.4" not in page
-    assert "Out of date" in result_html(result, inputs, faded=True)
+    faded = result_html(result, inputs, faded=True)
+    assert faded.index(result.verdict.reason) < faded.index("Out of date") < faded.index("Why ")
+
+
+def test_what_would_help_a_refused_merge_comes_first(result, inputs):
+    against = replace(result.verdict, accepted=False, outcome=Outcome.REFUSED, hint="Look again.")
+    refused = replace(result, verdict=against)
+    page = result_html(refused, inputs)
+    assert page.index("Look again.") < page.index("<summary")
 
 
 def test_eq_23_says_which_overlap_it_is_over(result, inputs):

@@ -73,7 +73,9 @@ def test_several_sightings_count_but_for_the_one_that_is_moved(small_case):
 def panel():
     server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
     with standing(server):
-        yield WhatIfPanel(server.gui, lambda: RULES)
+        panel = WhatIfPanel(server.gui, lambda: RULES)
+        panel.research(True)
+        yield panel
 
 
 def test_the_sliders_begin_with_the_numbers_of_the_merge_whatever_its_size(panel, result):
@@ -104,6 +106,10 @@ def test_a_moved_slider_changes_what_is_said_and_reset_takes_it_back(panel, resu
 
 def test_without_a_merge_there_is_nothing_to_ask(panel, result):
     panel.offer(result)
+    assert panel._folder.visible
+    panel.research(False)
+    assert not panel._folder.visible
+    panel.research(True)
     assert panel._folder.visible
     panel.offer(None)
     assert not panel._folder.visible

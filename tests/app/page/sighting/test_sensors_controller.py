@@ -96,7 +96,7 @@ def test_map_1_is_asked_where_a_person_wants_it_and_the_place_is_known(sensors, 
     tab.panels.sensors.settings = LookSettings("tags")
     tab.state.update(inputs=MergeInputs.pair(*tab.state.inputs.grids))
     assert sensors.order().grid is None
-    assert sensors.unplaced.startswith("Say where robot 1 stood in map 1 and where robot 2")
+    assert sensors.unplaced.startswith("Give where robot 1 stood in map 1 and where robot 2")
 
 
 def test_a_file_that_is_none_is_told_at_once_and_what_was_there_stays(sensors, tab):
@@ -137,7 +137,7 @@ def test_a_place_that_nobody_knows_is_begun_with_a_number(sensors, tab):
     sensors.typed("x1", 2.0)
     assert sensors.place.observer == Pose2(2.0, 0.0, 0.0)
     assert sensors.place.observed is None
-    assert sensors.unplaced == "Say where robot 2 stood in map 2: under “Where the robots stood”."
+    assert sensors.unplaced == "Give where robot 2 stood in map 2: under “Where the robots stood”."
     sensors.typed("y2", 3.0)
     assert sensors.unplaced == ""
 

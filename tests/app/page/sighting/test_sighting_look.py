@@ -30,6 +30,8 @@ def everywhere(chance_from: float) -> DetectorModel:
         np.zeros((1, SHAPE.length), np.float32),
         np.array([chance_from], np.float32),
         np.array([[1.0, 0.0]], np.float32),
+        np.zeros((1, SHAPE.length), np.float32),
+        np.zeros(1, np.float32),
     )
 
 
