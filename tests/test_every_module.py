@@ -299,6 +299,14 @@ EXERCISED_BY = {
     "app/page/test_cancellable_task.py": {
         "app.system.cancellation",
     },
+    "app/page/editing/test_names_controller.py": {
+        "app.page.editing.names_panel",
+    },
+    "app/page/export/test_export_controller.py": {
+        "app.drawing.scene.frame_symbols",
+        "app.page.export.export_panel",
+        "app.page.export.frame_panel",
+    },
     "app/page/undo/test_undo_history.py": {
         "app.page.undo.history_panel",
         "app.page.undo.page_snapshot",
@@ -340,10 +348,10 @@ EXERCISED_BY = {
         "app.page.lesson.museum_panel",
         "app.page.notices",
         "app.page.page",
+        "app.drawing.scene.tab_views",
         "app.page.page_display",
         "app.page.panel_set",
         "app.page.panels.chart_widgets",
-        "app.page.panels.export_panel",
         "app.page.panels.run_panel",
         "app.page.research.sweep_panel",
         "app.page.zoom_controller",

@@ -8,7 +8,7 @@
 //   wide, high         px
 //   dark               light ink on a dark ground
 const mapmeldInk = (() => {
-  const ORDER = ["floor", "window", "aug", "box", "trail", "swarm", "rival", "sight", "lesson", "robots", "best", "axes", "readout", "grip", "drag"];
+  const ORDER = ["floor", "window", "aug", "box", "trail", "swarm", "rival", "sight", "lesson", "robots", "best", "frame", "axes", "readout", "grip", "drag"];
   const LIGHTER = { "#0072b2": "#56b4e9", "#009e73": "#34d399", "#d55e00": "#fb923c" }; // words on dark ground
   const lerp = (a, b, u) => a + (b - a) * u;
   const smooth = (u) => u * u * (3 - 2 * u);

@@ -102,6 +102,12 @@ class MergeInputs:
         aside = tuple(one for one in known if one not in taken)
         return replace(self, observations=seen, priors=priors, choice=choice, aside=aside)
 
+    def named_as(self, before: MergeInputs) -> MergeInputs:
+        """The same under the names that there were, as long as a map of theirs stays, or none had come."""
+        pairs = zip(self.maps, before.maps, strict=True)
+        stays = not before.grids or any(now.grid is not None and now.grid is old.grid for now, old in pairs)
+        return replace(self, names=before.names) if stays and self.names == UNNAMED else self
+
     def read_from(self, file: SourceFile) -> MergeInputs:
         """The same, where that file is what all that is known was read from."""
         return replace(self, read=(file, frozenset(self.pool)))

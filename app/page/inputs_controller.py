@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from algorithms.common.errors import MapMergeError
+from algorithms.common.pose import Pose2
 from algorithms.methods.registry import METHODS
 from app.drawing.scene_layout import lay_out
 from app.model.merge_inputs import MergeInputs
@@ -31,6 +34,7 @@ class InputsController:
         self._runs.thread.stop()
         with self._state.locks.action:
             mode, before = self._modes.close(), self._state.inputs
+            inputs = inputs.named_as(before)
             with self._state.locks.drawing:
                 if self.show(inputs):
                     self._state.update(fleet=None)
@@ -69,4 +73,7 @@ class InputsController:
     def forget_results(self, inputs: MergeInputs, **more: object) -> None:
         """These are the inputs now; what was found with others no longer counts."""
         gone = dict.fromkeys(("result", "result_config", "contradictions", "search", "goal"))
+        export = self._state.export
+        if isinstance(export.frame, Pose2) and inputs.ref is not self._state.inputs.ref:
+            more["export"] = replace(export, frame="ref")  # it was one of the other map
         self._state.update(inputs=inputs, run=RunState(), **gone, **more)

@@ -7,14 +7,17 @@ from pathlib import Path
 
 import viser
 
+from app.drawing.scene.tab_views import Views
 from app.jobs.worker_pool import COMMON
 from app.model.merge_inputs import MergeInputs
 from app.model.view_modes import OPERATOR, RESEARCH
 from app.page.cancellable_task import DownloadTask
 from app.page.editing.knowledge_controller import KnowledgeController
 from app.page.editing.map_drag_controller import MapDragController
+from app.page.editing.names_controller import NamesController
 from app.page.editing.placement_controller import PlacementController
 from app.page.editing.suggestion_controller import SuggestionController
+from app.page.export.export_controller import ExportController
 from app.page.fleet.fleet_controller import FleetController
 from app.page.inputs_controller import InputsController
 from app.page.lesson.lesson_controller import LessonController
@@ -22,7 +25,7 @@ from app.page.lesson.lesson_texts import lesson_folder
 from app.page.lesson.museum_controller import MuseumController
 from app.page.modes import ModeSwitch
 from app.page.notices import Notices
-from app.page.page_display import PageDisplay, Views
+from app.page.page_display import PageDisplay
 from app.page.page_state import PageState
 from app.page.panel_set import Panels
 from app.page.research.comparison_controller import ComparisonController
@@ -80,6 +83,8 @@ class Page:
         zoom = ZoomController(events, messages, views.map.ground, state.locks)
         drag = MapDragController(tab, undo, runs)
         SuggestionController(tab, drag)
+        names = NamesController(tab, undo)
+        ExportController(tab)
         robots = PlacementController(tab, undo, runs, inputs)
         KnowledgeController(tab, undo, runs, inputs, robots.begin)
         seeing = SightingController(tab, runs, inputs)
@@ -92,7 +97,19 @@ class Page:
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
         self._sweep = SweepController(state, panels.sweep, messages, events, runs, deliver)
         research = self._comparison, self._sweep
-        self._parts = inputs, events, teaching, museum, drag, *research, seeing, zoom, fleet, runs.thread
+        self._parts = (
+            inputs,
+            events,
+            teaching,
+            museum,
+            drag,
+            names,
+            *research,
+            seeing,
+            zoom,
+            fleet,
+            runs.thread,
+        )
         uploads.connect(client.client_id, Recipient(partial(panels.run.stoppable, "sending"), notices.report))
         events.on("unsend", stop_upload)
         # the dock of the charts gets its width when another, beside which it came, is gone

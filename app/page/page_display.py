@@ -16,12 +16,8 @@ from algorithms.verdict.contradictions import Contradictions
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.legend import fleet_legend, in_hand, legend
 from app.drawing.palette import LIGHT
-from app.drawing.scene.fleet_view import FleetView
-from app.drawing.scene.height_view import HeightsView
-from app.drawing.scene.map_comparison import MapComparison
-from app.drawing.scene.map_view import MapView
-from app.drawing.scene.run_view import RunView
-from app.drawing.scene.swarm_view import SwarmView
+from app.drawing.scene import frame_symbols
+from app.drawing.scene.tab_views import Views
 from app.drawing.scene_layout import Rect, SceneLayout
 from app.model import status_text, verdict_text
 from app.model.view_modes import HEIGHTS, MAP, SWARM
@@ -31,20 +27,9 @@ from app.page.panels.html_widgets import box
 from app.page.panels.result_panel import result_html
 from app.page.panels.suggestions_html import SuggestionPictures
 from app.report.result_files import ResultFiles
+from app.report.ros_transform import parent_of
 
 LARGE = 2_000_000  # cells of a map that takes a while to draw
-
-
-class Views:
-    """The pictures of a tab."""
-
-    def __init__(self, client: viser.ClientHandle, messages: BrowserMessages) -> None:
-        self.map = MapView(client, messages)
-        self.run = RunView(self.map, messages)
-        self.heights = HeightsView(client, messages)
-        self.swarm = SwarmView(messages)
-        self.comparison = MapComparison(messages, self.map)
-        self.fleet = FleetView(client.scene, messages)
 
 
 class PageDisplay:
@@ -141,7 +126,7 @@ class PageDisplay:
         state, panels = self._state, self._panels
         panels.charts.show(state.run, follow=True)
         panels.charts.tell(html)
-        panels.export.offer(ResultFiles(result, state.inputs, state.result_config))
+        panels.export.offer(ResultFiles(result, state.inputs, state.result_config, state.export))
         panels.what_if.offer(result, state.inputs.names)
         self.draw(live=live)
         self.views.comparison.offer(state.contradictions, state.palette)
@@ -186,6 +171,7 @@ class PageDisplay:
     def withdraw_result(self) -> None:
         """The maps no longer lie as they were found: nothing of the result can be taken."""
         self.show_result_text(self._state.result, faded=True)
+        self.messages.layer("frame", None)
         self._panels.export.offer(None)
         self._panels.what_if.offer(None)
 
@@ -209,8 +195,18 @@ class PageDisplay:
             self.views.heights.show(state.run.get(AugmentDetail), state.palette, look)
         else:
             self.views.swarm.show(state.run, state.palette, look)
+        self.show_frame()
         self.messages.hud(pressed=self._pressed())
         self.show_legend()
+
+    def show_frame(self) -> None:
+        """The axes of the frame that the merged map is given away in, where it is not map 1's."""
+        state, result = self._state, self._state.run.get(MergeResult)
+        items = None
+        if state.view == MAP and result is not None and state.export.frame != "ref":
+            T, name = state.export.in_ref(result.T_ref_mov), parent_of(state.export, state.inputs.names)
+            items = frame_symbols.axes(T, self.views.map.layout, state.palette, name)
+        self.messages.layer("frame", items)
 
     def show_view(self, draw_map: Callable[[], None] | None = None, extent: Rect | None = None) -> None:
         """The chosen view of the newest state.

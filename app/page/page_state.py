@@ -19,8 +19,9 @@ from app.model.run_state import RunState
 from app.model.view_modes import MAP
 from app.page.research.other_result import OtherResult
 from app.page.undo.page_snapshot import PageSnapshot
+from app.report.export_frame import AS_MERGED, ExportFrame
 
-Topic = Literal["setup", "result", "other", "palette", "fleet"]
+Topic = Literal["setup", "result", "other", "palette", "fleet", "export"]
 """What can be subscribed to: inputs or settings; the result; what is looked at in its place; and so on."""
 
 TOPICS: dict[str, Topic] = {
@@ -32,6 +33,7 @@ TOPICS: dict[str, Topic] = {
     "other": "other",
     "palette": "palette",
     "fleet": "fleet",
+    "export": "export",
 }
 
 
@@ -59,6 +61,7 @@ class PageState:
     hand          : T_ref_mov of map 2 while a person holds it
     other         : another method's result that is looked at
     fleet         : the fleet that the page shows, or of which it shows a pair; None: there is none
+    export        : in which frame and cells the merged map is given away
     research      : settings, stages and comparisons are shown, and not only what operators need
     closed        : the tab is gone
     """
@@ -77,6 +80,7 @@ class PageState:
     hand: Pose2 | None = None
     other: OtherResult | None = None
     fleet: FleetState | None = None
+    export: ExportFrame = AS_MERGED
     view: str = MAP
     research: bool = False
     palette: Palette = LIGHT
@@ -113,6 +117,7 @@ class PageState:
             self.goal,
             self.hand,
             fleet=self.fleet,
+            export=self.export,
         )
 
     def job(self, **how: Any) -> MergeJob | None:

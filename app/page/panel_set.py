@@ -11,13 +11,14 @@ import viser
 from app.drawing.browser_messages import BrowserMessages
 from app.page.cancellable_task import CancellableTask
 from app.page.editing.knowledge_panel import KnowledgePanel
+from app.page.editing.names_panel import NamesPanel
 from app.page.editing.transform_panel import TransformPanel
+from app.page.export.export_panel import ExportPanel
 from app.page.fleet.fleet_panel import FleetPanel
 from app.page.lesson.lesson_panel import LessonPanel
 from app.page.lesson.museum_panel import MuseumPanel
 from app.page.page_state import PageState
 from app.page.panels.charts_panel import ChartsPanel
-from app.page.panels.export_panel import ExportPanel
 from app.page.panels.files_panel import FilesPanel
 from app.page.panels.run_panel import RunPanel
 from app.page.panels.settings_panel import SettingsPanel
@@ -49,6 +50,7 @@ class Panels:
         self.send = partial(DOWNLOADS.send, client)
         self.files = FilesPanel(gui, sample, self.send, state.locks.action, self.task)
         self.fleet = FleetPanel(gui)
+        self.names = NamesPanel(gui)
         self.knowledge = KnowledgePanel(gui)
         self.sensors = SensorsPanel(gui)
         self.settings = SettingsPanel(gui, state.locks.action)

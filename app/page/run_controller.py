@@ -270,6 +270,8 @@ class RunController:
             if cause.hint:
                 state.run.add(Step("explain", result, 0.0))
                 state.update(result=result)
-                self._panels.export.offer(ResultFiles(result, state.inputs, state.result_config))
+                self._panels.export.offer(
+                    ResultFiles(result, state.inputs, state.result_config, state.export)
+                )
                 self._history.amend(state.run)
             self._messages.flush()

@@ -54,6 +54,12 @@ class ExportFrame:
         return owners.get(str(self.frame), "the frame that was chosen")
 
     @property
+    def how(self) -> str:
+        """All of it: "map 2's frame, without yaw, in cells of 0.1 m"."""
+        cells = [] if self.resolution is None else [f"in cells of {self.resolution:g} m"]
+        return ", ".join([self.said, *["without yaw"] * (not self.yaw), *cells])
+
+    @property
     def as_merged(self) -> bool:
         """Whether its cells are those of the merge."""
         return self.yaw and self.resolution is None
@@ -64,6 +70,9 @@ class ExportFrame:
         if self.frame != "ref":
             merged = replace(merged, origin=T_ref_frame.inverse() @ merged.origin)
         return ExportedMap(self, T_ref_frame, resampled(merged, self.resolution, self.yaw))
+
+
+AS_MERGED = ExportFrame()
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,16 +86,8 @@ class ExportedMap:
     @property
     def said(self) -> str:
         """In which frame it is, and what was done to its cells: a sentence on map 1 and map 2."""
-        return f"The merged map is in {self.frame.said}{self.resampled}."
-
-    @property
-    def resampled(self) -> str:
-        """What was done to its cells, the end of a sentence; empty where they are as they were merged."""
-        if self.frame.as_merged:
-            return ""
-        how = ["", *["without yaw"] * (not self.frame.yaw)]
-        how += [f"in cells of {self.cells.grid.resolution:g} m"] * (self.frame.resolution is not None)
-        return f"{', '.join(how)}: {changes_text(self.cells)}"
+        changes = "" if self.frame.as_merged else f": {changes_text(self.cells)}"
+        return f"The merged map is in {self.frame.how}{changes}."
 
 
 def changes_text(told: Resampled) -> str:

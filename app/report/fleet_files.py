@@ -14,11 +14,11 @@ from algorithms.files.yaml_fields import number_text, quoted
 from algorithms.fleets.fleet_merge import FleetResult
 from algorithms.fleets.island import Island
 from algorithms.observations.fleet import Fleet
-from app.report.export_frame import ExportedMap, ExportFrame
+from app.report.export_frame import AS_MERGED, ExportedMap, ExportFrame
 from app.report.fleet_report import fleet_page
 from app.report.json_report import plain, report_json
 from app.report.result_files import MERGED, PAGE_FILE, REPORT_FILE
-from app.report.ros_transform import OF_REF, frame_names, publish_command
+from app.report.ros_transform import frame_names, publish_command
 from app.system.clock import made_at
 from app.system.version import versions
 
@@ -31,7 +31,7 @@ def island_name(number: int) -> str:
     return MERGED if number == 1 else f"{MERGED}_island{number}"
 
 
-def exported_maps(result: FleetResult, frame: ExportFrame = OF_REF) -> dict[str, ExportedMap]:
+def exported_maps(result: FleetResult, frame: ExportFrame = AS_MERGED) -> dict[str, ExportedMap]:
     """The maps of the islands as they are given away, by their names: each in the frame of its island's root.
 
     raises : SettingError, TooLargeError

@@ -25,9 +25,9 @@ from app.model.objective_label import measure_of
 from app.model.settings import Setting, settings_of, text_for, value_at
 from app.model.status_text import typeset
 from app.report import report_figures as outcome
-from app.report.export_frame import ExportedMap
+from app.report.export_frame import AS_MERGED, ExportedMap
 from app.report.result_rows import STAGES, numbers
-from app.report.ros_transform import OF_REF, publish_commands
+from app.report.ros_transform import publish_commands
 from app.system.cancellation import Check, never_cancelled
 from app.system.data_paths import asset
 
@@ -222,7 +222,7 @@ def _setting(setting: Setting, standard: Any) -> Row:
 def _use(result: MergeResult, names: RobotNames, exported: ExportedMap | None) -> list[str]:
     if not result.verdict.accepted:
         return ["<p>Refused: there is nothing to publish. See what would help, at the top.</p>"]
-    frame = OF_REF if exported is None else exported.frame
+    frame = AS_MERGED if exported is None else exported.frame
     lies = {
         "ref": "map 2's frame lies in map 1's",
         "mov": "map 1's frame lies in map 2's",

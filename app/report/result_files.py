@@ -20,10 +20,10 @@ from algorithms.methods.suggestions import are_wanted
 from app.drawing import grid_pixels as render
 from app.drawing.palette import LIGHT
 from app.model.merge_inputs import MergeInputs
-from app.report.export_frame import ExportedMap, ExportFrame
+from app.report.export_frame import AS_MERGED, ExportedMap, ExportFrame
 from app.report.html_report import report_page
 from app.report.json_report import report_json, report_of
-from app.report.ros_transform import OF_REF, transform_yaml
+from app.report.ros_transform import transform_yaml
 from app.report.suggestion_files import suggestion_files
 from app.system.cancellation import Check, never_cancelled
 
@@ -96,7 +96,7 @@ class ResultFiles:
     result: MergeResult
     inputs: MergeInputs
     config: Any
-    frame: ExportFrame = OF_REF
+    frame: ExportFrame = AS_MERGED
     _made: dict[str, bytes] = field(default_factory=dict, init=False)
 
     @cached_property

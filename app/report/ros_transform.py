@@ -9,10 +9,9 @@ from algorithms.common.pose import Pose2
 from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.files.yaml_fields import number_text, quoted
 from algorithms.methods.merge_result import MergeResult
-from app.report.export_frame import ExportFrame
+from app.report.export_frame import AS_MERGED, ExportFrame
 
 CHOSEN = "map"  # what ROS calls a frame that is neither robot's: the one that Nav2 plans in
-OF_REF = ExportFrame()
 
 
 def frames_of(names: RobotNames) -> tuple[str, str]:
@@ -43,14 +42,14 @@ def parent_of(frame: ExportFrame, names: RobotNames) -> str:
     return {"ref": ref, "mov": mov}.get(str(frame.frame), CHOSEN)
 
 
-def publish_commands(T_ref_mov: Pose2, names: RobotNames, frame: ExportFrame = OF_REF) -> list[str]:
+def publish_commands(T_ref_mov: Pose2, names: RobotNames, frame: ExportFrame = AS_MERGED) -> list[str]:
     """The commands that hang the frames of both maps below that of the merged one; it may be one of them."""
     parent, T_frame_ref = parent_of(frame, names), frame.in_ref(T_ref_mov).inverse()
     below = zip(frames_of(names), (T_frame_ref, T_frame_ref @ T_ref_mov), strict=True)
     return [publish_command(T, parent, child) for child, T in below if child != parent]
 
 
-def transform_yaml(result: MergeResult, names: RobotNames = UNNAMED, frame: ExportFrame = OF_REF) -> bytes:
+def transform_yaml(result: MergeResult, names: RobotNames = UNNAMED, frame: ExportFrame = AS_MERGED) -> bytes:
     """The content of transform.yaml; the numbers read back as they are."""
     T, told = result.T_ref_mov, names.told
     points = told("Takes points of map 2's frame to map 1's; m, m, rad.")

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import re
 import zipfile
 
 import pytest
-from driver import READY, Tab, settle
+from driver import READY, SAID, Tab, of_two, settle
 
-from algorithms.common.robot_names import WORDS
 from algorithms.files.case_folder import read_case
 from algorithms.files.fleet_archive import fleet_to_files
 from algorithms.files.fleet_file import read_fleet
@@ -133,18 +131,6 @@ def test_robots_are_renamed_hidden_made_the_anchor_and_removed_and_undo_goes_bac
     for _ in range(3):
         island.page.get_by_role("button", name="Undo").click()
     settle(lambda: "r2" in robots(island), "the old name")
-
-
-SAID = """() => [
-    document.body.innerText, JSON.stringify(mapmeld.layers), JSON.stringify(mapmeld.hud),
-    ...[...document.querySelectorAll("[title], [aria-label]")].flatMap((e) => [e.title, e.ariaLabel || ""]),
-    ...[...document.querySelectorAll("svg text")].map((e) => e.textContent)].join("\\n")"""
-FILES = re.compile(r"Map [12]: (YAML|image)")  # the buttons that load two other maps
-
-
-def of_two(tab: Tab) -> list[str]:
-    """What the page calls robot 1 or 2, map 1 or 2."""
-    return [found[0] for found in WORDS.finditer(FILES.sub("", tab.page.evaluate(SAID)))]
 
 
 def test_an_opened_pair_is_told_by_its_robots_names_and_two_maps_without_names_as_ever(open_tab, tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable
 from pathlib import Path
 from time import monotonic, sleep
@@ -11,6 +12,8 @@ from typing import Any
 import numpy as np
 from PIL import Image
 from playwright.sync_api import Browser, Page
+
+from algorithms.common.robot_names import WORDS
 
 PATIENCE = 120.0  # seconds; a shared machine may be several times as slow as one of its own
 
@@ -179,3 +182,15 @@ class Tab:
 def field(tab: Tab, label: str) -> float:
     """The number that stands in a field."""
     return float(tab.page.get_by_label(label, exact=True).input_value())
+
+
+SAID = """() => [
+    document.body.innerText, JSON.stringify(mapmeld.layers), JSON.stringify(mapmeld.hud),
+    ...[...document.querySelectorAll("[title], [aria-label]")].flatMap((e) => [e.title, e.ariaLabel || ""]),
+    ...[...document.querySelectorAll("svg text")].map((e) => e.textContent)].join("\\n")"""
+FIELDS = re.compile(r"Map [12]: (YAML|image)|Robot [12] is called")  # that load other maps, and give names
+
+
+def of_two(tab: Tab) -> list[str]:
+    """What the page calls robot 1 or 2, map 1 or 2."""
+    return [found[0] for found in WORDS.finditer(FIELDS.sub("", tab.page.evaluate(SAID)))]

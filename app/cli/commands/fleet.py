@@ -24,6 +24,7 @@ from app.cli.progress_bar import bar
 from app.evaluation.table_files import aligned
 from app.jobs.fleet_pairs import run_pairs
 from app.model import verdict_text
+from app.report.export_frame import changes_text
 from app.report.fleet_files import exported_maps, fleet_files
 from app.report.fleet_report import summary
 from app.report.result_files import REPORT_FILE
@@ -94,7 +95,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     else:
         print(summary(result, len(fleet.maps)), *_robots(result), *_left_out(fleet, result), sep="\n")
         if not frame.as_merged:
-            print(*(f"{stem}.yaml{each.resampled}" for stem, each in exported.items()), sep="\n")
+            print(*(f"{stem}.yaml: {changes_text(each.cells)}" for stem, each in exported.items()), sep="\n")
         print(f"written to {args.out}: {', '.join(files)}")
     return 0 if result.whole else 1
 

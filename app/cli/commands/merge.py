@@ -30,7 +30,7 @@ from app.evaluation.table_files import aligned
 from app.model import verdict_text
 from app.model.merge_inputs import MergeInputs
 from app.model.objective_label import measure_of
-from app.report.export_frame import ExportFrame
+from app.report.export_frame import AS_MERGED
 from app.report.json_report import report_json, report_of, report_of_no_answer
 from app.report.result_files import (
     MERGED_FILES,
@@ -139,7 +139,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         report = report_of(result, config, load_s, named, pair, exported)
         files = result_files(result, pair, config, report, exported)
         lines, status = _summary(result, config), 0 if accepted else 1
-        if exported is not None and frame != ExportFrame():
+        if exported is not None and frame != AS_MERGED:
             lines.append(exported.said)
         if not accepted:
             lines += _suggestions(result) if are_wanted(result) else []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from html import escape
 from math import degrees, radians
 from typing import Any
 
@@ -15,7 +14,7 @@ from app.drawing.palette import LIGHT, QUIET
 from app.model.knowledge import CHOICES, Choice, numbers_of
 from app.model.merge_inputs import TO_PLACE, MergeInputs
 from app.page.editing.observation_panel import ObservationPanel
-from app.page.panels.html_widgets import Action, box, on_choice, on_press, put
+from app.page.panels.html_widgets import Action, box, on_choice, on_press, put, small
 
 TITLES = {choice: title.capitalize() for choice, title in CHOICES.items()}
 TELLS: dict[Choice, str] = {
@@ -46,7 +45,6 @@ FIELDS: dict[str, tuple[str, str, float, float, float]] = {
     "radius": ("radius (m)", "How far apart the two may be.", *SIGMAS_XY, 0.01),
 }
 ANGLES = {"yaw", "s_yaw"}
-SMALL = "margin:2px 12px 6px;font-size:12px;line-height:1.45;opacity:.85"
 
 
 class KnowledgePanel:
@@ -113,7 +111,7 @@ class KnowledgePanel:
         put(self._choice, options=titles, value=TITLES[choice])
         told = inputs.names.told
         missing = box(told(TO_PLACE[choice]), "plain") if both and not inputs.complete and not moving else ""
-        put(self._html, content=(_small(told(TELLS[choice])) if TELLS[choice] else "") + missing)
+        put(self._html, content=small(told(TELLS[choice])) + missing)
         self.observation.show(inputs)
         numbers = {} if prior is None else numbers_of(prior)
         for name, handle in self._numbers.items():
@@ -138,7 +136,3 @@ class KnowledgePanel:
     def tell(self, trouble: str) -> None:
         """What was wrong with the last number."""
         put(self._html, content=box(trouble, "refused"))
-
-
-def _small(text: str) -> str:
-    return f'<p style="{SMALL}">{escape(text, quote=False)}</p>'

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from html import escape
 from math import degrees, isfinite, radians
 from typing import Any
 
@@ -15,7 +14,7 @@ from algorithms.methods.merge_result import MergeResult
 from app.drawing.palette import LIGHT, QUIET
 from app.model import verdict_text as words
 from app.model.objective_label import measure_of
-from app.page.panels.html_widgets import Action, box, on_press, put, table
+from app.page.panels.html_widgets import Action, box, on_press, put, small, table
 from app.report.result_rows import named
 
 HOW = (
@@ -29,7 +28,6 @@ HINTS = (
     "Up, in map 1.",
     "Counter-clockwise, about the knob's foot: robot 2, or the middle of map 2.",
 )
-SMALL = "margin:2px 12px 6px;font-size:12px;line-height:1.45;opacity:.85"
 FAR = 1e5  # metres
 BUTTONS = (
     ("Refine from here", QUIET, "The method's own search, in its box around this place."),
@@ -105,7 +103,7 @@ class TransformPanel:
 
 
 def how_html(names: RobotNames) -> str:
-    return f'<p style="{SMALL}">{escape(names.told(HOW), quote=False)}</p>'
+    return small(names.told(HOW))
 
 
 def weighed_html(result: MergeResult, config: Any, method: Pose2 | None, names: RobotNames = UNNAMED) -> str:

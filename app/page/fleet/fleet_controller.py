@@ -26,7 +26,6 @@ from app.report.fleet_files import fleet_files
 from app.report.result_files import zip_bytes
 from app.web.cell_quota import CellQuota
 
-ROBOTS = "robot 1", "robot 2"  # the names of two maps that become a fleet
 MAKING = "Making the fleet's files."
 
 
@@ -98,8 +97,8 @@ class FleetController:
             i = self._state.inputs
             if i.ref is None or i.mov is None:
                 return
-            fleet = Fleet(dict(zip(ROBOTS, (i.ref, i.mov), strict=True)))
-            opened = FleetState(fleet, i.name).open(PairOrder(*ROBOTS, ()))
+            fleet = Fleet({i.names.ref: i.ref, i.names.mov: i.mov})
+            opened = FleetState(fleet, i.name).open(PairOrder(i.names.ref, i.names.mov, ()))
             self._modes.leave()
             self._go(opened.closed(i.known, self._found_there(opened)), "make it a fleet")
 

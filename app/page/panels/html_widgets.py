@@ -48,6 +48,12 @@ def box(text: str, mood: str, note: str = "", faded: bool = False) -> str:
     )
 
 
+def small(text: str) -> str:
+    """HTML of a remark in small letters; empty for none."""
+    style = "margin:2px 12px 6px;font-size:12px;line-height:1.45;opacity:.85"
+    return f'<p style="{style}">{escape(text, quote=False)}</p>' if text else ""
+
+
 def says_html(words: str, share: float | None = None) -> str:
     """HTML of a line with a bar below it; both keep their place while there is nothing to say."""
     done = "" if share is None else f' style="width:{100 * share:.0f}%"'

@@ -16,6 +16,7 @@ from app.model.merge_job import Goal
 from app.model.run_state import RunState
 from app.model.settings import settings_of, text_for, value_at
 from app.page.research.other_result import OtherResult
+from app.report.export_frame import AS_MERGED, ExportFrame
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +30,7 @@ class PageSnapshot:
     outcome : of the run that came to its end with all this; None before
     other   : another method's answer that is looked at in its place
     fleet   : the fleet that is shown, or of which a pair is
+    export  : in which frame and cells the merged map is given away
     """
 
     inputs: MergeInputs
@@ -41,6 +43,7 @@ class PageSnapshot:
     outcome: RunState | None = field(default=None, repr=False)
     other: OtherResult | None = None
     fleet: FleetState | None = None
+    export: ExportFrame = AS_MERGED
 
     @property
     def held(self) -> bool:
@@ -80,6 +83,8 @@ def change(before: PageSnapshot, after: PageSnapshot) -> tuple[str, Hashable]:
         return "another fleet" if after.fleet is not None else f"load {new.name}", None
     if old is not new:
         if old.grids == new.grids:
+            if old.names != new.names:
+                return f"names: {new.names.ref}, {new.names.mov}", "names"
             if old.choice != new.choice:
                 return f"known: {CHOICES[new.choice]}", None
             if old.observations == new.observations:
@@ -96,6 +101,8 @@ def change(before: PageSnapshot, after: PageSnapshot) -> tuple[str, Hashable]:
         return f"seed {before.seed} → {after.seed}", "seed"
     if before.hand != after.hand:
         return (new.names.told("map 2 by hand") if after.hand is not None else "not by hand"), "hand"
+    if before.export != after.export:
+        return new.names.told(f"export: {after.export.how}"), "export"
     if before.other is not after.other:
         return (f"look at {after.other.title}" if after.other is not None else "back to one's own"), None
     return "", None

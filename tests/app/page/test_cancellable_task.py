@@ -17,7 +17,7 @@ from algorithms.files.map_file import map_from_bytes
 from app.drawing.browser_messages import BrowserMessages
 from app.model.merge_inputs import Upload
 from app.page.cancellable_task import CancellableTask
-from app.page.panels.export_panel import ReplayButton
+from app.page.export.export_panel import ReplayButton
 from app.system.cancellation import CancellableReader, Cancelled
 from app.web.download import DOWNLOADS
 

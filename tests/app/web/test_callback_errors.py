@@ -167,7 +167,7 @@ def test_files_that_cannot_be_made_are_told_of_and_can_be_asked_for_again(tab, m
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patch:
-        patch.setattr("app.page.panels.export_panel.zip_bytes", full)
+        patch.setattr("app.page.export.export_panel.zip_bytes", full)
         tab.press("Download everything")
         until(lambda: tab.notices("This did not work"), "a word of it")
     assert not tab.files

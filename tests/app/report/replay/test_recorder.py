@@ -27,7 +27,7 @@ from app.drawing.png import data_uri
 from app.model import status_text as words
 from app.model.merge_inputs import MergeInputs
 from app.model.run_state import RunState
-from app.page.panels.export_panel import file_name
+from app.page.export.export_panel import file_name
 from app.report.replay.chart_recorder import thinned
 from app.report.replay.html_page import ReplayMetadata, as_script, replay_html
 from app.report.replay.recorder import PICTURE, record

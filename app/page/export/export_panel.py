@@ -14,9 +14,10 @@ import viser
 
 from app.drawing.palette import LIGHT, QUIET
 from app.page.cancellable_task import CancellableTask, DownloadTask
-from app.page.panels.html_widgets import box, on_press
+from app.page.export.frame_panel import FramePanel
+from app.page.panels.html_widgets import Action, box, on_press
 from app.report.result_files import ACTED_UPON, ALONE, ARCHIVE, ResultFiles, zip_bytes
-from app.report.ros_transform import frames_of, publish_command
+from app.report.ros_transform import publish_commands
 from app.system.cancellation import Check
 
 _NOTHING = box("After a merge it can be taken away from here: map, transform, report.", "plain")
@@ -28,7 +29,8 @@ class ExportPanel:
 
     def __init__(self, client: viser.ClientHandle, task: CancellableTask) -> None:
         self._client, self._deliver = client, DownloadTask(client, task)
-        self._harvest: ResultFiles | None = None
+        self.harvest: ResultFiles | None = None
+        self.offered: Action = lambda: None  # called once a result is there to be taken
         gui = client.gui
         with gui.add_folder("Export", order=70):
             hint = "A zip: merged map for Nav2, transform, report to read and print, picture, observation."
@@ -42,6 +44,7 @@ class ExportPanel:
             )
             self.replay = ReplayButton(client, task)
             self.replay.visible(False)
+            self.frame = FramePanel(gui)
             self._line = gui.add_html("")
             self._note = gui.add_html(_NOTHING)  # last, so that nothing moves when it comes
 
@@ -50,17 +53,25 @@ class ExportPanel:
         self._show(harvest, there=harvest is not None)
         self._note.content = "" if harvest is not None else _NOTHING
         self._line.content = "" if harvest is None else line_html(harvest)
+        if harvest is not None:
+            self.offered()
+
+    def reframe(self, harvest: ResultFiles) -> None:
+        """The same result, whose merged map is given away in another frame or other cells."""
+        self.harvest = harvest
+        self._line.content = line_html(harvest)
 
     def outdate(self, why: str = _OUTDATED) -> None:
         """The result is out of date, or not what is seen: it is greyed, and nothing of it can be taken."""
-        last = self._harvest
+        last = self.harvest
         if last is not None:
             self._show(None, there=True)
             self._note.content = box(why, "plain", faded=True)
             self._line.content = line_html(last, faded=True)
 
     def _show(self, harvest: ResultFiles | None, there: bool) -> None:
-        self._harvest = harvest
+        self.harvest = harvest
+        self.frame.offer(there, enabled=harvest is not None)
         self.replay.offer(None)
         self.replay.visible(there)
         for widget in (self._all, self._one, self._alone):
@@ -68,7 +79,7 @@ class ExportPanel:
 
     def _ask(self, name: str) -> None:
         """Send a file of the result, or all of them; of a refused one only harmless ones at once."""
-        harvest = self._harvest
+        harvest = self.harvest
         if harvest is None:
             return
         verdict = harvest.result.verdict
@@ -100,11 +111,14 @@ def line_html(harvest: ResultFiles, faded: bool = False) -> str:
     """HTML of the line that publishes the transform, with a button that copies it: see measure_tool.js."""
     if not harvest.result.verdict.accepted:
         return box("Refused: there is no transform to publish.", "refused", faded=faded)
-    command = escape(publish_command(harvest.result.T_ref_mov, *frames_of(harvest.inputs.names)))
+    commands = publish_commands(harvest.result.T_ref_mov, harvest.inputs.names, harvest.frame)
     dim, off = (' style="opacity:.4"', " disabled") if faded else ("", "")
+    what, copy = ("transform", "line") if len(commands) == 1 else ("transforms", "lines")
+    shown = "".join(f"<code>{escape(command)}</code>" for command in commands)
+    lines = escape("\n".join(commands))
     return (
-        f'<div class="mm-publish"{dim}><p>Publish the transform in ROS 2:</p><code>{command}</code>'
-        f'<button type="button" data-mm-copy="{command}"{off}>Copy the line</button></div>'
+        f'<div class="mm-publish"{dim}><p>Publish the {what} in ROS 2:</p>{shown}'
+        f'<button type="button" data-mm-copy="{lines}"{off}>Copy the {copy}</button></div>'
     )
 
 
