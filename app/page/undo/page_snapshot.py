@@ -80,6 +80,9 @@ def change(before: PageSnapshot, after: PageSnapshot) -> tuple[str, Hashable]:
         return "another fleet" if after.fleet is not None else f"load {new.name}", None
     if old is not new:
         if old.grids == new.grids:
+            read = new.files.get("observation")
+            if read and read != old.files.get("observation"):
+                return f"what is known from {read[0].name}", None
             if old.choice != new.choice:
                 return f"known: {CHOICES[new.choice]}", None
             if old.observations == new.observations:
