@@ -64,16 +64,22 @@ class Contradictions:
         return sum(place.wall for place in self.places) + self.small_parts
 
 
+def near_walls(fusion: Fusion) -> tuple[BoolArray, BoolArray]:
+    """(H, W) each: where a wall would be another drawing of one of map 1, and of one of map 2."""
+    cells = SAME_WALL / fusion.merged.resolution
+    disc = distances(ceil(cells)) <= cells
+    by_ref, by_mov = (is_near_wall(layer >= OCCUPIED_FROM, disc) for layer in fusion.layers)
+    return by_ref, by_mov
+
+
 def find_conflicts(fusion: Fusion, gap: float = GAP) -> Contradictions:
     """Gather the contradictions of a merge into places.
 
     gap : metres between two contradictions from which on they are two places
     """
     (ref_walls, ref_free), (mov_walls, mov_free) = map(_walls_and_floor, fusion.layers)
-    cell = fusion.merged.resolution
-    disc = distances(ceil(SAME_WALL / cell)) <= SAME_WALL / cell
-    ref_only = ref_walls & mov_free & ~is_near_wall(mov_walls, disc)
-    mov_only = mov_walls & ref_free & ~is_near_wall(ref_walls, disc)
+    by_ref, by_mov = near_walls(fusion)
+    ref_only, mov_only = ref_walls & mov_free & ~by_mov, mov_walls & ref_free & ~by_ref
     seen = surface(ref_only, ref_free), surface(mov_only, mov_free)
     return Contradictions(ref_only, mov_only, *_places(fusion, ref_only | mov_only, seen, gap))
 

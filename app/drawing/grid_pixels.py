@@ -159,7 +159,7 @@ def wall_masks(
         (ref, palette.ref),
         (mov, palette.mov),
         ((ref & by_mov) | (mov & by_ref), palette.agreed),
-        ((ref & mov_free) | (mov & ref_free), palette.conflict),
+        ((ref & mov_free & ~by_mov) | (mov & ref_free & ~by_ref), palette.conflict),
     )
 
 
@@ -171,15 +171,22 @@ def merged_floor(
 
 
 def merged_walls(
-    fusion: Fusion, palette: Palette, most: int = MOST_PIXELS, part: CellRegion = WHOLE
+    fusion: Fusion,
+    near: tuple[BoolArray, BoolArray],
+    palette: Palette,
+    most: int = MOST_PIXELS,
+    part: CellRegion = WHOLE,
 ) -> GridPixels:
-    """Whose wall it is, where both agree on a wall, and where they contradict; the rest transparent."""
-    factor = pooling(fusion.merged.cells[part].shape, most)
-    ref, mov = pool(fusion.ref_cells[part], factor), pool(fusion.mov_cells[part], factor)
+    """Whose wall it is, where both agree on a wall, and where they contradict; the rest transparent.
+
+    near : ``contradictions.near_walls``: what is shown as contradicting is what counts as that
+    """
+    ref, mov = fusion.ref_cells[part], fusion.mov_cells[part]
+    factor = pooling(ref.shape, most)
     walls, free = (ref >= OCCUPIED_FROM, mov >= OCCUPIED_FROM), (is_free(ref), is_free(mov))
-    pixels = _tinted(walls[0] | walls[1], palette.margin)
-    for mask, colour in wall_masks(walls, free, palette):
-        pixels[mask, :3] = colour
+    pixels = _tinted(np.maximum(pool(ref, factor), pool(mov, factor)) >= OCCUPIED_FROM, palette.margin)
+    for mask, colour in wall_masks(walls, free, palette, (near[0][part], near[1][part])):
+        pixels[pool(mask.astype(np.int8), factor) > 0, :3] = colour
     return GridPixels(pixels, factor)
 
 

@@ -187,6 +187,7 @@
     .mm-step{flex:1;padding:4px 0;border:0;border-radius:4px;background:#E2E8F0;color:#111827;font:600 13px/1.4 system-ui,"Segoe UI",sans-serif;cursor:pointer}
     .mm-step:hover:enabled{background:#CBD5E1} .mm-step:disabled{opacity:.45;cursor:default}
     [data-mantine-color-scheme=dark] .mm-step{background:#374151;color:#F9FAFB} [data-mantine-color-scheme=dark] .mm-step:hover:enabled{background:#4B5563}
+    @media (pointer:coarse){.mm-step{min-height:40px}}
     .mm-step:focus-visible{outline:2px solid #0072B2;outline-offset:1px}
     .mm-history{max-height:230px;overflow:auto;margin:2px 10px 8px;border:1px solid #9CA3AF55;border-radius:6px}
     .mm-suggestions{display:grid;grid-template-columns:1fr 1fr;gap:6px;margin:0 10px 10px;font-size:12px;line-height:1.35}

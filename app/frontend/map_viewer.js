@@ -210,7 +210,7 @@
     [data-mantine-color-scheme=light] .mantine-Button-root[data-variant=outline]:not([aria-pressed=true]){--button-color:#005A8C!important;--button-bd:1px solid #0072B2!important}
     .mm-said{position:absolute;width:1px;height:1px;overflow:hidden;clip-path:inset(50%)}
     @media (pointer:coarse){ /* fingers */
-      .mantine-Button-root,.mantine-Input-input,.mm-tools button,.mm-step{min-height:40px!important;min-width:40px}
+      .mantine-Button-root,.mantine-Input-input,.mm-tools button{min-height:40px!important;min-width:40px}
       .mantine-Slider-root,.mantine-Checkbox-body{min-height:40px;display:flex;align-items:center}
     }
     .mantine-Notifications-root{top:auto!important;bottom:84px!important}

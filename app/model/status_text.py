@@ -179,7 +179,7 @@ _SAYS: dict[type, Callable[[Any, RunState], str]] = {
     steps.WeighedDetail: _weighing,
     Fusion: lambda _, __: "Merging the cells: what agrees, what contradicts.",
     steps.TriedDetail: lambda detail, _: (
-        f"Refused. Why? {detail.index + 1} of {detail.total}: {detail.clause}?"
+        f"Refused. Looking for the cause, {detail.index + 1} of {detail.total}: {detail.clause}?"
     ),
     MergeResult: lambda detail, _: typeset(detail.verdict.reason),
 }

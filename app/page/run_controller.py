@@ -254,7 +254,7 @@ class RunController:
         result = self._state.result
         if tried is None or result is None:
             return
-        trying = f"Why? {tried.index + 1} of {tried.total}: {tried.clause}?"
+        trying = f"Looking for the cause, {tried.index + 1} of {tried.total}: {tried.clause}?"
         with self._display.together():
             self._display.show_result_text(result.with_hint(trying))
             self._messages.flush()

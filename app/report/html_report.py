@@ -117,12 +117,12 @@ def _pictures(result: MergeResult, inputs: MergeInputs, found: Contradictions, c
         figures.append(_figure(drawn, said))
     check(0.45)
     said = told(
-        "Map 2 on map 1 under the transform. A contradiction is a wall of one map on the other's free floor; "
-        "a cell's breadth of it along a wall means nothing."
+        "Map 2 on map 1 under the transform. A contradiction is a wall of one map on the other's free floor, "
+        "with no wall of that map near by."
     )
     figures.append(_figure(outcome.overlay(result, inputs.observations, inputs.names), said))
     check(0.65)
-    said = "Only what contradicts by more than the breadth of a wall. The numbers are those of the table."
+    said = "Only what contradicts. The numbers are those of the table."
     figures.append(_figure(outcome.difference(result, found, inputs.names), said))
     check(0.85)
     return _section("Pictures", *figures)

@@ -16,7 +16,7 @@ from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
 from algorithms.observations.observation import Encounter, Observation
 from algorithms.optimisation.branch_and_bound import ProofState
-from algorithms.verdict.contradictions import Contradictions
+from algorithms.verdict.contradictions import Contradictions, near_walls
 from app.drawing.grid_pixels import is_free, wall_masks
 from app.drawing.palette import LIGHT, Rgb
 from app.drawing.scene_layout import Rect, known_corners, rect_of
@@ -72,7 +72,7 @@ def overlay(result: MergeResult, seen: Sequence[Observation], names: RobotNames)
     """Both maps under the transform: whose wall it is, where they agree, where they contradict."""
     ref, mov = result.fusion.ref_cells, result.fusion.mov_cells
     walls, free = (ref >= OCCUPIED_FROM, mov >= OCCUPIED_FROM), (is_free(ref), is_free(mov))
-    plot = _merged_plot(result.fusion, *wall_masks(walls, free, LIGHT))
+    plot = _merged_plot(result.fusion, *wall_masks(walls, free, LIGHT, near_walls(result.fusion)))
     for o in seen[:1]:
         robot(plot, o.observer.xy, o.observer.theta, LIGHT.ref)
         there = result.T_ref_mov.apply(result.pivot)

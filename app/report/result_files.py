@@ -17,6 +17,7 @@ from algorithms.files.observation_file import OBSERVATION_FILE, known_to_bytes
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.suggestions import are_wanted
+from algorithms.verdict.contradictions import near_walls
 from app.drawing import grid_pixels as render
 from app.drawing.palette import LIGHT
 from app.model.merge_inputs import MergeInputs
@@ -48,7 +49,7 @@ def overlay(fusion: Fusion, most: int = render.MOST_PIXELS) -> render.Pixels:
     floor = render.merged_floor(fusion, LIGHT, most).pixels
     picture = np.empty((*floor.shape[:2], 3), dtype=np.uint8)
     picture[:] = LIGHT.unknown
-    for layer in (floor, render.merged_walls(fusion, LIGHT, most).pixels):
+    for layer in (floor, render.merged_walls(fusion, near_walls(fusion), LIGHT, most).pixels):
         cv2.copyTo(cv2.cvtColor(layer, cv2.COLOR_RGBA2RGB), np.ascontiguousarray(layer[..., 3]), picture)
     return render.upright(picture)
 

@@ -14,7 +14,7 @@ from algorithms.maps.grid_map import GridMap
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.steps import AugmentDetail
 from algorithms.verdict.cell_agreement import CellAgreement, WallLookup
-from algorithms.verdict.contradictions import Contradictions
+from algorithms.verdict.contradictions import Contradictions, near_walls
 from app.drawing import grid_pixels as render
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import Palette
@@ -113,8 +113,11 @@ class MapLayers:
                 self._conflicts = None  # they were of the other one
             self._fused = fusion
             floor, walls = self._merged
-            for image, draw in ((floor, render.merged_floor), (walls, render.merged_walls)):
-                image.show(partial(draw, fusion, self._palette), fusion.merged, self._layout.anchor_ref)
+            for image, draw in (
+                (floor, partial(render.merged_floor, fusion, self._palette)),
+                (walls, partial(render.merged_walls, fusion, near_walls(fusion), self._palette)),
+            ):
+                image.show(draw, fusion.merged, self._layout.anchor_ref)
         self.show("merged")
 
     def compare(self, mode: Mode, conflicts: Contradictions | None) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -123,7 +124,8 @@ def read_step(path: Path, pictures: Mapping[str, Picture], numbers: Collection[s
         for found in PLACEHOLDER.findall(text):
             if found not in numbers:
                 wrong = f"holds {{{found}}}, which is no number of the lesson"
-                raise InputFileError(path, wrong, f"known are {', '.join(numbers)}")
+                near = get_close_matches(found, list(numbers), n=5, cutoff=0.0)
+                raise InputFileError(path, wrong, f"nearest are {', '.join(near)}")
     grouped = tuple(tuple(group) if isinstance(group, list) else (group,) for group in groups)
     return StepText(str(path), title, picture, grouped, trials, body)
 

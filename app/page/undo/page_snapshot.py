@@ -85,6 +85,9 @@ def change(before: PageSnapshot, after: PageSnapshot) -> tuple[str, Hashable]:
         if old.grids == new.grids:
             if old.names != new.names:
                 return f"names: {new.names.ref}, {new.names.mov}", "names"
+            read = new.files.get("observation")
+            if read and read != old.files.get("observation"):
+                return f"what is known from {read[0].name}", None
             if old.choice != new.choice:
                 return f"known: {CHOICES[new.choice]}", None
             if old.observations == new.observations:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.maps.map_fusion import fuse
 from algorithms.spectra.augmented_map import augment
+from algorithms.verdict.contradictions import find_conflicts, near_walls
 from app.drawing import grid_pixels as render
 from app.drawing.palette import DARK, LIGHT, VIRIDIS
 
@@ -72,16 +75,32 @@ def test_levels_are_brightest_at_the_meeting_place_and_far_walls_stay_faint():
 def test_a_merged_map_shows_agreement_and_contradiction_in_their_own_colours():
     left, right = l_shaped(), l_shaped()
     changed = right.cells.copy()
-    changed[0, 5] = FREE  # one map's wall, the other's free cell
-    picture = render.merged_walls(fuse((left, GridMap(changed, 0.1)), (Pose2(), Pose2())), LIGHT).pixels
+    changed[0, 2:11] = FREE  # one map's wall, the other's free floor
+    merged = fuse((left, GridMap(changed, 0.1)), (Pose2(), Pose2()))
+    picture = render.merged_walls(merged, near_walls(merged), LIGHT).pixels
     assert tuple(picture[0, 10]) == (*LIGHT.agreed, 255)
-    assert tuple(picture[0, 5]) == (*LIGHT.conflict, 255)
+    assert tuple(picture[0, 6]) == (*LIGHT.conflict, 255)
     assert picture[5, 5, 3] == 0
 
 
 def test_walls_that_one_map_alone_knows_keep_that_maps_colour():
     left = l_shaped()
     beside = fuse((left, left), (Pose2(), Pose2(5.0, 0.0, 0.0)))
-    picture = render.merged_walls(beside, LIGHT).pixels
+    picture = render.merged_walls(beside, near_walls(beside), LIGHT).pixels
     assert tuple(picture[0, 3, :3]) == LIGHT.ref
     assert tuple(picture[0, -3, :3]) == LIGHT.mov
+
+
+@given(st.integers(0, 5), st.integers(-3, 3), st.floats(-0.2, 0.2))
+def test_what_is_drawn_as_contradicting_is_what_is_counted_cell_for_cell(seed, shift, turn):
+    rng = np.random.default_rng(seed)  # few walls: most would be near one of the other map
+    one, other = (
+        GridMap(rng.choice([UNKNOWN, FREE, OCCUPIED], (40, 50), p=[0.2, 0.78, 0.02]).astype(np.int8), 0.1)
+        for _ in range(2)
+    )
+    fusion = fuse((one, other), (Pose2(), Pose2(0.1 * shift, 0.1, turn)))
+    counted = find_conflicts(fusion)
+    picture = render.merged_walls(fusion, near_walls(fusion), LIGHT).pixels
+    drawn = (picture[..., :3] == LIGHT.conflict).all(axis=2) & (picture[..., 3] > 0)
+    assert drawn.any()
+    assert np.array_equal(drawn, counted.ref_only | counted.mov_only)

@@ -10,6 +10,7 @@ from PIL import Image
 from algorithms.common.pose import Pose2
 from algorithms.files.map_file import read_map
 from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN
+from algorithms.verdict.contradictions import near_walls
 from app.drawing.palette import LIGHT
 from app.model.merge_inputs import MergeInputs
 from app.report import result_files as report
@@ -23,11 +24,13 @@ def test_the_overlay_shows_the_merged_map_upright_in_the_colours_of_the_legend(r
     assert pixels.shape[:2] == fusion.merged.cells.shape
     upright = pixels[::-1]  # row 0 at the bottom again
     ref_wall, mov_wall = fusion.ref_cells >= OCCUPIED_FROM, fusion.mov_cells >= OCCUPIED_FROM
+    by_ref, by_mov = near_walls(fusion)
     unseen = fusion.mov_cells == UNKNOWN
     assert (upright[ref_wall & mov_wall] == LIGHT.agreed).all()
-    assert (upright[ref_wall & unseen] == LIGHT.ref).all()
-    assert (upright[mov_wall & (fusion.ref_cells == UNKNOWN)] == LIGHT.mov).all()
-    assert (upright[mov_wall & (fusion.ref_cells == 0)] == LIGHT.conflict).all()
+    assert (upright[(ref_wall & by_mov) | (mov_wall & by_ref)] == LIGHT.agreed).all()
+    assert (upright[ref_wall & unseen & ~by_mov] == LIGHT.ref).all()
+    assert (upright[mov_wall & (fusion.ref_cells == UNKNOWN) & ~by_ref] == LIGHT.mov).all()
+    assert (upright[mov_wall & (fusion.ref_cells == 0) & ~by_ref] == LIGHT.conflict).all()
     assert (upright[unseen & (fusion.ref_cells == UNKNOWN)] == LIGHT.unknown).all()
 
 

@@ -17,7 +17,7 @@ from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.maps.map_fusion import fuse
 from algorithms.spectra.augmented_map import augment
 from algorithms.verdict.cell_agreement import WallLookup
-from algorithms.verdict.contradictions import find_conflicts
+from algorithms.verdict.contradictions import find_conflicts, near_walls
 from app.drawing import grid_pixels as render
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import LIGHT
@@ -86,7 +86,7 @@ def drawings():
         "levels": (partial(render.levels, lifted, LIGHT), whole),
         "touches": (partial(render.touches, walls[0], told, LIGHT), whole),
         "merged floor": (partial(render.merged_floor, fusion, LIGHT), merged),
-        "merged walls": (partial(render.merged_walls, fusion, LIGHT), merged),
+        "merged walls": (partial(render.merged_walls, fusion, near_walls(fusion), LIGHT), merged),
         "denied": (partial(render.denied_walls, fusion, find_conflicts(fusion), LIGHT), merged),
     }
 

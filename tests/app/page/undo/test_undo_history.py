@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from algorithms.common.pose import Pose2
+from algorithms.common.source_file import SourceFile
 from algorithms.maps.grid_map import FREE, GridMap
 from algorithms.maps.map_fusion import fuse
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
@@ -154,6 +155,8 @@ def test_every_wish_has_a_name():
     assert change(START, seeded(3))[0] == "seed 0 → 3"
     assert change(START, replace(START, method="spectra-swarm"))[0].startswith("method: ")
     assert change(START, replace(START, inputs=other))[0] == "2 observations by hand"
+    from_file = other.read_from(SourceFile.of("seen.yaml", b"x"))
+    assert change(START, replace(START, inputs=from_file))[0] == "what is known from seen.yaml"
     assert change(START, replace(START, inputs=MergeInputs.pair(grid, ROOM, (), "b")))[0] == "load b"
     assert change(START, replace(START, inputs=MergeInputs()))[0] == "forget the files"
     assert change(START, replace(START, hand=Pose2(1, 2, 3)))[0] == "map 2 by hand"
