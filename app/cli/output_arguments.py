@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from contextlib import suppress
 from math import isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from app.cli.argument_parser import Parser
 
@@ -15,25 +15,23 @@ if TYPE_CHECKING:
 OWNERS = ("ref", "mov")
 
 
-def add_output(parser: Parser) -> argparse._ArgumentGroup:
-    """Add ``--no-yaw`` and ``--merged-resolution`` to a group, which is given back."""
+def add_output(parser: Parser, **frame: Any) -> None:
+    """Add ``--frame``, as ``frame`` describes it, ``--no-yaw`` and ``--merged-resolution``."""
     group = parser.add_argument_group("the merged map", "As it was merged, unless told otherwise.")
+    group.add_argument("--frame", **frame)
     about = "resample it so that its origin has no yaw, as Nav2's costmap wants it"
     group.add_argument("--no-yaw", action="store_true", help=f"{about}; how many cells changed is told")
     about = "resample it to cells of M metres; no wall is lost, and how many cells changed is told"
     group.add_argument("--merged-resolution", type=_size, metavar="M", help=about)
-    return group
 
 
 def add_frame(parser: Parser) -> None:
-    """Add the same and ``--frame``, of two maps."""
+    """The same for the map merged of two."""
     about = (
         "whose frame it is in: map 1's (ref, the default), map 2's (mov), or one whose origin lies at X, Y "
         "in map 1's and whose x-axis is turned by YAW there; metres, radians"
     )
-    add_output(parser).add_argument(
-        "--frame", type=_frame, default="ref", metavar="ref|mov|X,Y,YAW", help=about
-    )
+    add_output(parser, type=_frame, default="ref", metavar="ref|mov|X,Y,YAW", help=about)
 
 
 def frame_of(args: argparse.Namespace) -> ExportFrame:

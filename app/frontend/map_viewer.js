@@ -186,7 +186,7 @@
     hud.dataset.theme = S.dark ? "dark" : "light";
     document.body.dataset.mmMode = h.research ? "research" : "operator";
     put(".mm-case", h.case); put(".mm-state span", h.state);
-    if (["accepted", "bent", "refused", "failed"].includes(h.mood)) put(".mm-said", h.state); // for screen readers: steps would be too many
+    put(".mm-said", ["accepted", "bent", "refused", "failed"].includes(h.mood) && h.state); // for screen readers: steps would be too many
     hud.querySelector(".mm-state").dataset.mood = h.mood || "idle";
     hud.querySelector(".mm-state").classList.toggle("mm-long", (h.state || "").length > 110);
     const bar = hud.querySelector(".mm-bar");

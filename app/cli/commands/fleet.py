@@ -70,7 +70,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("--force", action="store_true", help="place robots however unlikely that is")
     parser.add_argument("--json", action="store_true", help="print report.json and nothing else")
     about = "the robot whose frame the merged map is in, in place of the file's anchor"
-    add_output(parser).add_argument("--frame", dest="anchor", metavar="ROBOT", help=about)
+    add_output(parser, dest="anchor", metavar="ROBOT", help=about)
     add_workers(parser, None)
 
 
