@@ -12,10 +12,9 @@ import numpy as np
 from rosbags.rosbag1 import Writer as Writer1
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from algorithms.common.pose import Pose2
-from algorithms.files.bags.bag_reader import FURTHER_TYPES
+from algorithms.files.bags.message_types import MessageReader
 from algorithms.maps.grid_map import GridMap
 from algorithms.sensors.camera import Camera
 from algorithms.sensors.laser_scan import LaserScan
@@ -39,10 +38,7 @@ class Recorded:
 def write_bag(folder: Path, name: str, kind: str, messages: Iterable[Recorded]) -> Path:
     """A recording of one of KINDS, with these messages; its file or its folder."""
     ros1 = kind.startswith("ros1")
-    types = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
-    for each, text in FURTHER_TYPES.items():
-        if each not in types.fielddefs:
-            types.register(get_types_from_msg(text, each))
+    types = MessageReader(ros1).types
     path = folder / (f"{name}.bag" if ros1 else name)
     if ros1:
         writer: Any = Writer1(path)
@@ -60,10 +56,15 @@ def write_bag(folder: Path, name: str, kind: str, messages: Iterable[Recorded]) 
         for each in messages:
             if each.topic not in connections:
                 connections[each.topic] = writer.add_connection(each.topic, each.type, typestore=types)
-            message = _filled(types, each.type, each.fields, ros1)
-            data = (types.serialize_ros1 if ros1 else types.serialize_cdr)(message, each.type)
-            writer.write(connections[each.topic], BEGIN + round(each.at * SECOND), bytes(data))
+            writer.write(connections[each.topic], BEGIN + round(each.at * SECOND), message_bytes(each, ros1))
     return path
+
+
+def message_bytes(message: Recorded, ros1: bool = False) -> bytes:
+    """A message as ROS 1 or ROS 2 sends it."""
+    types = MessageReader(ros1).types
+    filled = _filled(types, message.type, message.fields, ros1)
+    return bytes((types.serialize_ros1 if ros1 else types.serialize_cdr)(filled, message.type))
 
 
 def _filled(types: Any, name: str, fields: dict[str, Any], ros1: bool) -> Any:

@@ -11,21 +11,11 @@ from typing import Any
 from rosbags.interfaces import Connection
 from rosbags.rosbag1 import Reader as Reader1
 from rosbags.rosbag2 import Reader as Reader2
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-from rosbags.typesys.store import Typestore
 
 from algorithms.common.errors import InputFileError, unreadable
 from algorithms.files.bags.bag_path import NANO, bag_kind, is_ros1
+from algorithms.files.bags.message_types import MessageReader
 
-GRID = "nav_msgs/msg/OccupancyGrid"
-GRID_UPDATE = "map_msgs/msg/OccupancyGridUpdate"
-TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
-# Message types that are read. Their definitions have been the same for as long as there are bags, so those
-# that a recording brings with it are not needed, and not trusted.
-FURTHER_TYPES = {
-    GRID_UPDATE: "std_msgs/Header header\nint32 x\nint32 y\nuint32 width\nuint32 height\nint8[] data",
-    **dict.fromkeys(TRANSFORMS, "geometry_msgs/TransformStamped[] transforms"),
-}
 ROS2_SUFFIXES = (".db3", ".mcap")  # by which the library knows them
 FIRST_SPAN = 2 * NANO  # that is looked through for a topic's last message, then WIDER times as much before it
 WIDER = 8
@@ -51,7 +41,7 @@ class BagReader:
         self.path = path
         self.is_ros1 = isinstance(reader, Reader1)
         self._reader = reader
-        self._types = _types(Stores.ROS1_NOETIC if self.is_ros1 else Stores.ROS2_HUMBLE)
+        self._read = MessageReader(self.is_ros1).read
         self.begin, self.end = reader.start_time, reader.end_time  # the end lies after the last message
         self.message_count = reader.message_count
 
@@ -110,11 +100,7 @@ class BagReader:
                 yield from self._reader.messages(chosen, start, stop)
 
     def _message(self, topic: BagTopic, data: bytes) -> Any:
-        read = self._types.deserialize_ros1 if self.is_ros1 else self._types.deserialize_cdr
-        try:
-            return read(data, topic.type)
-        except Exception as error:  # what a damaged message leads to is known to nobody
-            raise InputFileError(self.path, f"has a message on {topic.name} that is damaged", MEND) from error
+        return self._read(f"{self.path}#{topic.name}", topic.type, data)
 
 
 @contextmanager
@@ -145,11 +131,3 @@ def _reading(path: Path) -> Iterator[None]:
         raise InputFileError(
             path, f"is {bag_kind(path)}, and damaged, cut off, or a file of it is missing", MEND
         ) from error
-
-
-def _types(store: Stores) -> Typestore:
-    types = get_typestore(store)
-    for name, text in FURTHER_TYPES.items():
-        if name not in types.fielddefs:
-            types.register(get_types_from_msg(text, name))
-    return types

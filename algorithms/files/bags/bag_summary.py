@@ -11,10 +11,10 @@ from typing import Any
 from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError
 from algorithms.files.bags.bag_path import NANO, bag_kind
-from algorithms.files.bags.bag_reader import GRID, GRID_UPDATE, TRANSFORMS, BagReader, BagTopic, open_bag
+from algorithms.files.bags.bag_reader import BagReader, BagTopic, open_bag
 from algorithms.files.bags.frame_tree import STATIC, FrameTree
 from algorithms.files.bags.map_messages import shortest
-from algorithms.files.bags.sensor_messages import CAMERA_INFO, IMAGES, SCAN
+from algorithms.files.bags.message_types import CAMERA_INFO, GRID, GRID_UPDATE, IMAGES, SCAN, TRANSFORMS
 
 MOST_READ = 500  # messages of transforms that are looked at for frames
 

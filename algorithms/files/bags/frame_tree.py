@@ -13,7 +13,8 @@ from scipy.spatial.transform import Rotation, Slerp
 from algorithms.common.errors import InputFileError
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.files.bags.bag_path import NANO
-from algorithms.files.bags.bag_reader import TRANSFORMS, BagReader, BagTopic
+from algorithms.files.bags.bag_reader import BagReader, BagTopic
+from algorithms.files.bags.message_types import TRANSFORMS
 
 STATIC = "static"  # in the name of the topic of transforms that hold for good
 LONGEST_GAP = NANO  # nanoseconds between two transforms that a pose is taken from; slower is no SLAM

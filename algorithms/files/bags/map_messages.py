@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from math import atan2, hypot, isfinite
 from typing import Any
 
@@ -12,7 +14,8 @@ from algorithms.common.errors import InputFileError
 from algorithms.common.pose import Pose2
 from algorithms.common.source_file import SourceFile
 from algorithms.files.bags.bag_path import BagPath, nanoseconds
-from algorithms.files.bags.bag_reader import GRID, GRID_UPDATE, BagReader, BagTopic, open_bag
+from algorithms.files.bags.bag_reader import BagReader, BagTopic, open_bag
+from algorithms.files.bags.message_types import GRID, GRID_UPDATE
 from algorithms.maps.grid_map import FARTHEST, OCCUPIED, UNKNOWN, CellArray, GridMap, check_size
 
 UPDATES = "_updates"  # what the topic of a map's updates ends in
@@ -39,20 +42,26 @@ def read_bag_map(asked: BagPath) -> GridMap:
             )
         time, message = found
         name = f"{asked.path}#{topic.name}"
-        cells = _cells(name, message)
-        updates = [each for each in bag.of_type(GRID_UPDATE) if each.name == topic.name + UPDATES]
-        for _, _, update in bag.messages(updates, time, until + 1):
-            _update(name, cells, update)
         label = asked.path.stem if topic.name == USUAL else f"{asked.path.stem} {topic.name}"
-        source = SourceFile.of(asked.path.name, cells.tobytes())
-        return GridMap(
-            cells,
-            shortest(message.info.resolution),
-            _origin(name, message.info.origin),
-            show_hidden(label),
-            remarks,
-            (SourceFile(f"{source.name}#{show_hidden(topic.name)}", source.sha256),),
-        )
+        further = [each for each in bag.of_type(GRID_UPDATE) if each.name == topic.name + UPDATES]
+        updates = (update for _, _, update in bag.messages(further, time, until + 1))
+        grid = grid_of(name, label, message, updates)
+        return replace(grid, remarks=remarks)
+
+
+def grid_of(name: str, label: str, message: Any, updates: Iterable[Any] = ()) -> GridMap:
+    """The map of a message, with what was sent afterwards to bring it up to date.
+
+    name   : of where it comes from, for errors
+    label  : what to call the map before a person
+    raises : InputFileError, TooLargeError; SettingError for a resolution that is none
+    """
+    cells = _cells(name, message)
+    for update in updates:
+        _update(name, cells, update)
+    source = SourceFile.of(name, cells.tobytes())
+    origin = _origin(name, message.info.origin)
+    return GridMap(cells, shortest(message.info.resolution), origin, show_hidden(label), files=(source,))
 
 
 def map_topics(bag: BagReader) -> tuple[BagTopic, ...]:

@@ -16,15 +16,13 @@ from algorithms.common.pose import FloatArray, Pose2
 from algorithms.files.bags.bag_path import NANO
 from algorithms.files.bags.bag_reader import BagReader, BagTopic
 from algorithms.files.bags.frame_tree import frames_around, stamp_of
+from algorithms.files.bags.message_types import CAMERA_INFO, IMAGES, SCAN
 from algorithms.files.camera_file import camera_from_bytes
 from algorithms.files.camera_picture import PictureArray, picture_from_bytes
 from algorithms.files.scan_file import scan_from_bytes
 from algorithms.sensors.camera import Camera, check_image_size
 from algorithms.sensors.laser_scan import LaserScan
 
-IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
-CAMERA_INFO = "sensor_msgs/msg/CameraInfo"
-SCAN = "sensor_msgs/msg/LaserScan"
 LONGEST_WAIT = NANO // 2  # nanoseconds from the time that is asked for to a message
 MOST_TILT = 5.0  # degrees, of a camera or a laser on its robot
 
@@ -103,18 +101,18 @@ def sensor_view(bag: BagReader, at: int, choice: SensorChoice) -> SensorView:
         on_robot = choice.camera_mounting
         if on_robot is None:
             on_robot = _of_camera(bag, frames.transform(choice.base_frame, info.header.frame_id, time))
-        camera = replace(_camera(f"{bag.path}#{info_topic.name}", info), mounting=on_robot)
+        camera = replace(camera_of(f"{bag.path}#{info_topic.name}", info), mounting=on_robot)
     scan_topic = _topic(bag, choice.scan, (SCAN,), "laser scans")
     if scan_topic is not None:
         message = _nearest(bag, scan_topic, at)
-        scan = _scan(f"{bag.path}#{scan_topic.name}", message)
+        scan = scan_of(f"{bag.path}#{scan_topic.name}", message)
         if choice.laser_mounting is None:
             measured, frame = stamp_of(message.header), message.header.frame_id
             scan = _mounted(bag, scan, frames.transform(choice.base_frame, frame, measured))
         else:
             scan = replace(scan, mounting=choice.laser_mounting)
     robot = frames.pose(choice.map_frame, choice.base_frame, time)
-    return SensorView(name, time, _picture(name, image), camera, scan, robot)
+    return SensorView(name, time, picture_of(name, image), camera, scan, robot)
 
 
 def _image_topic(bag: BagReader, name: str) -> BagTopic:
@@ -168,7 +166,7 @@ def _nearest(bag: BagReader, topic: BagTopic, at: int) -> Any:
     )
 
 
-def _picture(name: str, message: Any) -> PictureArray:
+def picture_of(name: str, message: Any) -> PictureArray:
     """(H, W, 3) uint8 red, green, blue; row 0 at the top."""
     data = np.asarray(message.data, dtype=np.uint8)
     if hasattr(message, "format"):
@@ -202,7 +200,7 @@ def _rows(name: str, data: PictureArray, height: int, step: int, used: int) -> P
     return np.ascontiguousarray(data[: height * step].reshape(height, step)[:, :used])
 
 
-def _camera(name: str, info: Any) -> Camera:
+def camera_of(name: str, info: Any) -> Camera:
     """A calibration without its mounting, by the checks that files have."""
     k, d = (getattr(info, key, None) if hasattr(info, key) else getattr(info, key.upper()) for key in "kd")
     text = (
@@ -213,7 +211,7 @@ def _camera(name: str, info: Any) -> Camera:
     return camera_from_bytes(name, text.encode())
 
 
-def _scan(name: str, message: Any) -> LaserScan:
+def scan_of(name: str, message: Any) -> LaserScan:
     """A scan without its mounting, by the checks that files have."""
     keys = ("angle_min", "angle_max", "angle_increment", "range_min", "range_max")
     lines = [f"{key}: {float(getattr(message, key))!r}" for key in keys]
