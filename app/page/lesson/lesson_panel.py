@@ -12,6 +12,7 @@ from app.drawing.palette import QUIET
 from app.page.lesson.equations import equations_html
 from app.page.lesson.figures.figure_registry import FigureSlider, place_of, shown
 from app.page.lesson.lesson_texts import Exercise
+from app.page.lesson.symbols import symbols_html
 from app.page.panels.html_widgets import Action, box, on_choice, on_press, put
 
 BACK, NEXT, LEAVE = "◀ Back", "Next ▶", "Leave"
@@ -102,7 +103,7 @@ class LessonPanel:
     def beside(self, words: str, equations: Sequence[str]) -> None:
         """Show what stands beside a picture: Markdown, and equations by their names."""
         put(self._body, content=words)
-        put(self._equations, content=equations_html(equations))
+        put(self._equations, content=equations_html(equations) + symbols_html(equations))
 
     def broken(self, index: int, title: str, what: str) -> None:
         """Tell what is wrong with the text of a step."""
