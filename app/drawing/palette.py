@@ -99,8 +99,8 @@ def css(colour: Rgb, alpha: float = 1.0) -> str:
 
 
 def level_colours(share: NDArray[np.floating], dark: bool) -> NDArray[np.uint8]:
-    """Colours (…, 3) of walls by their levels in 0 … 1: the half of viridis that stands out from the floor of the
-    light or the dark page, the more so the higher the level.
+    """Colours (…, 3) of walls by their levels in 0 … 1: the half of viridis that stands out from the floor,
+    the more so the higher the level.
     """
     level = np.clip(np.nan_to_num(share), 0, 1)
     return viridis(LEAST_SEEN[dark] + (dark - LEAST_SEEN[dark]) * level)

@@ -44,7 +44,7 @@ class HeightsView:
         self._looked = False  # whether the camera was put before these maps
 
     def show(self, detail: AugmentDetail | None, palette: Palette, look: bool) -> None:
-        """Draw the heights; ``look`` puts the camera before them, and so does the first time that there are any."""
+        """Draw the heights; ``look`` puts the camera before them, and so do the first ones of these maps."""
         if detail is None:
             self._clear()
             return

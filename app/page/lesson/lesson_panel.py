@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from functools import partial
 from html import escape
@@ -19,6 +20,11 @@ BACK, NEXT, LEAVE = "◀ Back", "Next ▶", "Leave"
 ANSWER, HIDE, PUT_BACK = "Show the answer", "Hide the answer", "Put it back"
 WIDTH = 424
 MOST_TRIALS, MOST_DIALS = 3, 2
+
+
+def emphasised(text: str) -> str:
+    """HTML of words, those between asterisks in italics."""
+    return re.sub(r"\*(\S[^*]*)\*", r"<em>\1</em>", escape(text))
 
 
 class LessonPanel:
@@ -145,8 +151,8 @@ class LessonPanel:
         for k, (ask, button) in enumerate(zip(self._asks, self._buttons, strict=True)):
             there = k < len(trials)
             if there:
-                answer = f'<div class="mm-answer">{escape(answers[k])}</div>' if answers[k] else ""
-                put(ask, content=f'<div class="mm-try"><b>Try</b> {escape(trials[k].ask)}{answer}</div>')
+                answer = f'<div class="mm-answer">{emphasised(answers[k])}</div>' if answers[k] else ""
+                put(ask, content=f'<div class="mm-try"><b>Try</b> {emphasised(trials[k].ask)}{answer}</div>')
                 on, off = (trials[k].button, PUT_BACK) if trials[k].button else (ANSWER, HIDE)
                 put(button, label=off if answers[k] else on)
             put(ask, visible=there)

@@ -24,8 +24,8 @@ from algorithms.spectra.hough_spectra import hough_transform
 from app.model.merge_inputs import MergeInputs
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
-from app.page.lesson.side_runs import SideRun, SideRuns
 from app.model.status_text import typeset
+from app.page.lesson.side_runs import SideRun, SideRuns
 from app.page.lesson.sighting_look import SIGHTING, SightingLook
 from app.report.result_rows import numbers, sighting_rows
 
@@ -99,7 +99,7 @@ class LessonRun:
 
     @cached_property
     def rows(self) -> dict[str, str]:
-        """The page's numbers of the sighting, and of the result where there is one, by what stands before them."""
+        """The page's numbers of the sighting, and of the result where there is one, by their labels."""
         i = replace(self.inputs, names=UNNAMED)
         told = sighting_rows(i.observations[0], i.encounters[0])
         if self.reached(MergeResult):

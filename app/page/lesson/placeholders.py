@@ -1,4 +1,4 @@
-"""The numbers of this pair that a text may hold: {range_m} in a file becomes 2.97 on the page."""
+"""The numbers of this pair that a text may hold: {walls1} in a file becomes 2,718 on the page."""
 
 from __future__ import annotations
 
@@ -190,7 +190,7 @@ NUMBERS: dict[str, Number] = {
     "rigid_contradiction": (_RESULT, _row("contradicted, as the maps are")),
     "shared_wall": (_RESULT, _row("wall in view of both")),
     "across": (_RESULT, _row("agreeing wall across the others")),
-    "unbent": (_RESULT, lambda s: values(_verdict(s))["unbent"]),
+    "unbent": (_RESULT, lambda s: values(_verdict(s)).get("unbent", "–")),
     "off_sighting": (_RESULT, _row("robot 2 off its sighting")),
     "named_says": (_RESULT, lambda s: evidence_says(s.get(MergeResult).weighed[0].evidence)),
     "answers_weighed": (_RESULT, lambda s: str(len(s.get(MergeResult).weighed))),

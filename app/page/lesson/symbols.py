@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from html import escape
-from collections.abc import Iterable
 
 from app.page.lesson.equations import folder, read_equation
 
@@ -76,4 +76,7 @@ def symbols_html(equations: Iterable[str]) -> str:
     rows = "".join(
         f"<dt>{symbol.html}</dt><dd>{escape(symbol.means)}</dd>" for symbol in symbols() if symbol in found
     )
-    return f'<details class="mm-symbols"><summary>What the symbols mean</summary><dl>{rows}</dl></details>' if rows else ""
+    if not rows:
+        return ""
+    head = '<details class="mm-symbols"><summary>What the symbols mean</summary>'
+    return f"{head}<dl>{rows}</dl></details>"

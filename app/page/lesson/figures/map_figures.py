@@ -164,9 +164,10 @@ def _class(cells: CellArray) -> np.ndarray:
 
 
 def merged(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
-    """The merged map around the meeting, and what became of every cell."""
+    """The merged map around the meeting, what each map says of every cell, and what the merged one does."""
     fusion, result = lesson.get(Fusion), lesson.get(MergeResult)
     first, second = _class(fusion.ref_cells), _class(fusion.mov_cells)
+    merged_class = _class(fusion.merged.cells)
     counts = np.bincount((3 * first + second).ravel(), minlength=9).reshape(3, 3)
     sheet = SvgCanvas(218)
     view = view_of(result.encounters[0].x_ref, 2.0 * lesson.config.augment.spread, HALF, HALF)
@@ -193,6 +194,9 @@ def merged(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
             ink = "#111827" if light else "#fff" if colour else INK
             share = "–" if (r, c) == (2, 2) else f"{counts[r, c]:,}"
             sheet.text(left + wide / 2, top + high / 2 + 4, share, 10, "middle", ink)
+            if colours.get((r, c)) == palette.conflict and counts[r, c]:
+                becomes = names[np.bincount(merged_class[(first == r) & (second == c)], minlength=3).argmax()]
+                sheet.text(left + wide / 2, top + high - 6, f"→ {becomes}", 9, "middle", ink)
     for line, name in enumerate(("Δθ", "Δx", "Δy")):
         sheet.text(x - 44, y + 3 * high + 14 + 14 * line, f"{name} = {lesson.rows[f'T: {name}']}", 11)
     return sheet.svg("The merged map, and the cells by what each map says of them")

@@ -19,7 +19,9 @@ MOST_ANSWERS = 5
 
 
 def verdict(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
-    return bars(lesson.get(MergeResult).verdict, palette)
+    """What speaks for the merge and what against it, and from which probability on it is accepted."""
+    least = f"accepted from {lesson.config.verdict.accept_from:.1%} on"
+    return bars(lesson.get(MergeResult).verdict, palette, remark=least)
 
 
 def evidence_says(found: Evidence) -> str:

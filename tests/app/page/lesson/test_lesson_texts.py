@@ -25,7 +25,7 @@ try:
     set: {augment.intensity: 1}
     answer: Nothing changes.
 ---
-The range is {range_m} m.
+The range is {range} m.
 """
 
 
@@ -73,14 +73,14 @@ def test_a_step_is_read_with_its_trials(tmp_path):
     assert (read.title, read.picture, read.equations) == ("A step", "hough", (("line",),))
     (trial,) = read.trials
     assert trial.settings == ((("augment", "intensity"), 1.0),)
-    assert filled(read.body, {"range_m": "2.97"}) == "The range is 2.97 m."
+    assert filled(read.body, {"range": "2.97"}) == "The range is 2.97 m."
     assert filled(read.body, {}) == "The range is … m."
 
 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("{range_m}", "{rnage_m}", r"holds \{rnage_m\}, which is no number"),
+        ("{range}", "{rnage}", r"holds \{rnage\}, which is no number"),
         ("Nothing changes.", "It is {nonsense} now.", r"holds \{nonsense\}"),
         ("picture: hough", "picture: hoof", "picture is 'hoof'; known are hough, sighting"),
         ("[line]", "[lime]", "equations holds 'lime'; known are"),
@@ -99,7 +99,7 @@ def test_a_step_is_read_with_its_trials(tmp_path):
         ("    set: {", "    show: mean\n    set: {", "try 1: show is 'mean'"),
         ("title: A step", "title: [", "front matter of a text"),
         ("---\ntitle", "title", "no front matter"),
-        ("The range is {range_m} m.", "", "no text below"),
+        ("The range is {range} m.", "", "no text below"),
     ],
 )
 def test_what_is_wrong_with_a_step_is_told_with_its_file(tmp_path, old, new, said):

@@ -122,7 +122,7 @@ def test_every_number_is_known_at_the_end_of_a_run_and_none_before_its_stage(les
     assert set(numbers) == set(NUMBERS)
     assert not [words for words in numbers.values() if "nan" in words]
     early = numbers_of(LessonRun(MergeInputs.of(small_case), CONFIG))
-    assert "range_m" in early
+    assert "range" in early
     assert "camera_bearing" not in early
     assert "verdict" not in early
 
