@@ -180,7 +180,7 @@ NUMBERS: dict[str, Number] = {
     "shift_x": (_RESULT, _row("T: Δx")),
     "shift_y": (_RESULT, _row("T: Δy")),
     "merged_turn": (_RESULT, _row("T: Δθ")),
-    "value": (_RESULT, lambda s: _row(measure_of(s.config).row)(s)),
+    "value": (_RESULT, lambda s: f"{_row(measure_of(s.config).row)(s)} {measure_of(s.config).unit}".strip()),
     "overlap_cells": (_FUSED, lambda s: f"{s.get(Fusion).overlap:,}"),
     "conflicting_cells": (_FUSED, lambda s: f"{s.get(Fusion).conflicting:,}"),
     "acceptance": (_RESULT, _row("acceptance index")),

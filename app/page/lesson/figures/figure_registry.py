@@ -145,7 +145,7 @@ def _lines(lesson: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> 
 
 
 def _moves(lesson: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
-    """Every particle's last step, and the three pulls on the chosen one, end to end."""
+    """Every particle's last step, and the three pulls on the chosen one."""
     states, j = lesson.few, min(at[1], FEW - 1)
     k = min(at[0] + 1, len(states) - 1)
     before, after = states[max(0, k - 1)], states[k]
@@ -154,10 +154,9 @@ def _moves(lesson: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> 
         for start, end in zip(before.poses[:, :2], after.poses[:, :2], strict=True)
     ]
     if after.pulls is not None:
-        ends = before.poses[j] + np.concatenate([np.zeros((1, 3)), np.cumsum(after.pulls[:, j], axis=0)])
-        ends = ends[:, :2] - layout.anchor_ref
-        pulls = enumerate((palette.ref, palette.best, palette.particle))
-        items += [path(ends[n : n + 2], colour, w=3.5, halo=True) for n, colour in pulls]
+        here = before.poses[j, :2] - layout.anchor_ref
+        pulls = zip(after.pulls[:, j, :2], (palette.ref, palette.best, palette.particle), strict=True)
+        items += [path(np.array([here, here + pull]), colour, w=3.5, halo=True) for pull, colour in pulls]
     return items
 
 

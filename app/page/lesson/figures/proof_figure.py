@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import skimage  # its parts are loaded where they are first used
 
 from algorithms.common.pose import FloatArray, Pose2
 from algorithms.methods.steps import AugmentDetail, ProofDetail, ProvenDetail
-from algorithms.optimisation.objective import PAD
+from algorithms.optimisation.objective import PAD, Lookup
 from app.drawing.grid_pixels import upright
 from app.drawing.palette import Palette, css, viridis
 from app.drawing.svg.svg_canvas import SvgCanvas, SvgPlot, draw_chart, ticks
@@ -63,7 +64,7 @@ def proof(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
 
 
 def between_the_lattice(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
-    """What is maximised along x through the proven best: at the places that are tried, and between them."""
+    """What is maximised, along x through the proven best: as the proof reads it, and smoothly."""
     proven, measure, sheet = lesson.get(ProvenDetail), measure_of(lesson.config), SvgCanvas(250)
     state, objective, window = proven.state, lesson.gamma, lesson.get(ProofDetail).window
     if lesson.config.refine.objective == "agreement":
@@ -74,12 +75,13 @@ def between_the_lattice(lesson: LessonRun, at: Sequence[int], palette: Palette) 
     cell, (x, y, turn) = objective.cell, state.best.tolist()
     pivot, (goes_x, goes_y) = window.pivot, Pose2(x, y, turn).apply(window.pivot).tolist()
 
-    def along(steps: FloatArray) -> FloatArray:
-        return objective(transforms(goes_x + steps, np.full(len(steps), goes_y), turn, pivot))
+    def along(steps: FloatArray, lookup: Lookup) -> FloatArray:
+        places = transforms(goes_x + steps, np.full(len(steps), goes_y), turn, pivot)
+        return replace(objective, lookup=lookup)(places)
 
     fine, coarse = np.linspace(-CELLS * cell, CELLS * cell, 301), np.arange(-CELLS, CELLS + 1) * cell
-    curve, tried = along(fine), along(coarse)
-    low, high = float(curve.min()), max(float(curve.max()), proven.peak.value)
+    curve, tried = along(fine, Lookup.BILINEAR), along(coarse, Lookup.NEAREST)
+    low, high = float(curve.min()), max(float(curve.max()), float(tried.max()), proven.peak.value)
     room = 0.12 * max(high - low, 1e-12)
     across = -100 * CELLS * cell, 100 * CELLS * cell
     plot = SvgPlot(sheet, 42, 24, 324, 110, across, (low - room, high + room))
@@ -91,13 +93,13 @@ def between_the_lattice(lesson: LessonRun, at: Sequence[int], palette: Palette) 
     if abs(peak) <= CELLS * cell:
         sheet.star(*plot.one(100 * peak, proven.peak.value), 8, palette.answer, palette.rim)
     plot.axes("off the best of the lattice (cm)", "", None, ticks(low, high, 4))
-    after = sheet.chip(42, 178, palette.particle, "tried: a cell apart", "dot")
-    after = sheet.chip(after, 178, palette.margin, "between", "line")
-    sheet.chip(after, 178, palette.answer, "climbed to: turn and y, too", "dot")
+    after = sheet.chip(42, 178, palette.particle, "places of the lattice", "dot")
+    after = sheet.chip(after, 178, palette.margin, "read smoothly", "line")
+    sheet.chip(after, 178, palette.answer, "climbed to", "dot")
     off = (value for label, value in lesson.rows.items() if label.endswith("error to the truth"))
     rows = (
         ("proven: no place of the lattice is better than", measure.text(state.best_value)),
-        ("not proven: how high it gets between; it was climbed to", measure.text(proven.peak.value)),
+        ("not proven: what is best between them; it was climbed to", measure.text(proven.peak.value)),
         ("not proven: that it is the truth, which is off by", next(off, "who knows")),
     )
     for row, (label, words) in enumerate(rows):

@@ -20,7 +20,8 @@ from app.page.lesson.lesson_run import FEW, LessonRun
 
 SIDE = 61  # samples of a landscape along each axis
 TURN_STEPS, TURN_STEP = 41, 0.5  # of the slider; degrees
-NEAR = 3  # cells of map 1 to both sides of the best, from near by
+NEAR = 1  # cell of map 1 to both sides of the best, from near by
+LEAST_NEAR = 0.85  # of the best, the foot of that picture
 PALED = (17, 24, 39)  # a landscape is darkened with it, so that marks over it stand out
 PLACES = "where x̂₂ goes, x (m)"
 
@@ -64,7 +65,7 @@ def objective(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     below = SvgPlot(sheet, 42, 226, 196, 68, (-180, 180), (-0.35, 1.1))
     sheet.text(0, 219, "over the turn", 11, bold=True)
     reach = NEAR * lesson.inputs.ref.resolution
-    beside = SvgPlot(sheet, 274, 226, 92, 68, (-100 * reach, 100 * reach), (-0.35, 1.1))
+    beside = SvgPlot(sheet, 274, 226, 92, 68, (-100 * reach, 100 * reach), (LEAST_NEAR, 1.01))
     sheet.text(262, 219, "near the star, in x", 11, bold=True)
     steps = np.linspace(-reach, reach, 241)
     near = transforms(place[0] + steps, np.full(len(steps), place[1]), turn, coupled.pivot)
@@ -92,7 +93,7 @@ def objective(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     sheet.text(0, 200, "Dark: nothing fits, or more is denied than agrees.", 10, alpha=0.8)
     below.upright((degrees(turn) + 180) % 360 - 180, INK, 1, "3 3")
     below.axes("turn Δθ (°)", "", (-180, -90, 0, 90, 180), (0, 0.5, 1), grid=True)
-    beside.axes("x (cm)", "", (round(-100 * reach), 0, round(100 * reach)), (0, 1), grid=True)
+    beside.axes("x (cm)", "", (round(-100 * reach), 0, round(100 * reach)), (LEAST_NEAR, 1), grid=True)
     after = sheet.chip(96, 219, palette.best, "Γ", "line")
     sheet.chip(after, 219, palette.particle, "A, each of its highest", "line")
     return sheet.svg("Landscapes of both objectives")
@@ -173,11 +174,11 @@ def swarm(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
 
 
 def _pulls(sheet: SvgCanvas, before: SearchState, after: SearchState, j: int, palette: Palette) -> None:
-    """The three terms of eq. (21) on one particle, end to end, and the step they add up to."""
+    """The three terms of eq. (21) from where the particle is, and the step that they add up to."""
     here, there = before.poses[j], after.poses[j]
     terms = after.pulls[:, j]
-    ends = here + np.concatenate([[np.zeros(3)], np.cumsum(terms, axis=0)])
-    places = np.array([*ends, there, before.best, before.own_poses[j]])[:, :2]
+    ends = here + np.array([*terms, terms.sum(axis=0)])
+    places = np.array([here, *ends, there, before.best, before.own_poses[j]])[:, :2]
     low, high = places.min(axis=0), places.max(axis=0)
     half = max(0.004, 0.62 * float((high - low).max()))
     cx, cy = ((low + high) / 2).tolist()
@@ -189,11 +190,11 @@ def _pulls(sheet: SvgCanvas, before: SearchState, after: SearchState, j: int, pa
     sheet.star(*plot.one(*before.own_poses[j, :2].tolist()), 6, palette.particle, palette.rim)
     names = ("ω · own motion", "ω κτ · to the swarm's best", "ω κτ · to its own best")
     colours = (palette.ref, palette.best, palette.particle)
-    corners = plot.at(ends[:, :2])
-    for n, colour in enumerate(colours):
-        sheet.arrow(corners[n].tolist(), corners[n + 1].tolist(), colour, 2.4)
-    sheet.arrow(corners[0].tolist(), corners[3].tolist(), palette.text, 1.6, dash="4 3")
-    sheet.dot(*corners[0].tolist(), 4, palette.text, "#fff", width=1)
+    start, *tips = plot.at([here[:2], *ends[:, :2]]).tolist()
+    sheet.arrow(start, tips[3], palette.text, 1.6, dash="4 3")
+    for tip, colour in zip(tips, colours, strict=False):
+        sheet.arrow(start, tip, colour, 2.4)
+    sheet.dot(*start, 4, palette.text, "#fff", width=1)
     sheet.dot(*plot.one(*there[:2].tolist()), 5, None, palette.text, width=1.8)
     sheet.text(374, 190, f"{_length(2 * half)} across", 10, "end", alpha=0.8)
     for n, (name, colour) in enumerate(zip(names, colours, strict=True)):

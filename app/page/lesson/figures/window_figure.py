@@ -61,17 +61,30 @@ def origins(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     corners, sheet = rectangle(paper.low, paper.high), SvgCanvas(236)
     plot = _over_map_1(lesson, sheet, corners, "where map 2's origin may go", palette)
     sheet.path(plot.at(corners), palette.conflict, 1.4, dash="6 4", close=True)
-    for each in np.linspace(0, tau, 4 * TURNS, endpoint=False):
-        ring = ellipse(x_hat - rotation(each) @ lever, disc, coupled.k)
-        sheet.path(plot.at(ring), None, 0, palette.best, close=True, fill_alpha=0.16)
-    sheet.path(plot.at(ellipse(origin, disc, coupled.k)), palette.best, 2.2, palette.best, close=True)
+    around = np.linspace(0, tau, 361)
+    ring = x_hat - np.stack([rotation(each) @ lever for each in around])
+    sheet.path(plot.at(ring), palette.best, 3, alpha=0.45, close=True)
     sheet.path(plot.at([x_hat, origin]), palette.text, 1.4, dash="4 3")
     sheet.dot(*plot.one(*x_hat.tolist()), 4, None, palette.conflict, width=2)
-    inset = _near_by(lesson, sheet, palette, in_use=True)
-    sheet.text(inset.x, 190, f"turn Δθ = {turn_label(turn)}", 11, bold=True)
-    sheet.text(inset.x, 205, f"‖x̂₂‖ = {hypot(*lever.tolist()):.2f} m", 11)
-    sheet.chip(inset.x, 224, palette.best, "all turns: a ring", "line")
+    sheet.dot(*plot.one(*origin.tolist()), 4.5, palette.best, "#fff", width=1)
+    half = 1.6 * coupled.disc
+    view = view_of(origin, half, SMALL, SMALL)
+    inset = map_panel(sheet, 222, SMALL, SMALL, view, view.blank(palette), "the ring, near by")
+    near = turn + np.linspace(-2, 2, 41) * half / max(hypot(*lever.tolist()), half)
+    for each in near:
+        spot = inset.at(ellipse(x_hat - rotation(each) @ lever, disc, coupled.k))
+        sheet.path(np.clip(spot, *_inside(inset)), None, 0, palette.best, close=True, fill_alpha=0.08)
+    sheet.path(inset.at(ellipse(origin, disc, coupled.k)), palette.best, 2.2, close=True)
+    sheet.dot(*inset.one(*origin.tolist()), 4.5, palette.best, "#fff", width=1)
+    sheet.text(222, 190, f"turn Δθ = {turn_label(turn)}", 11, bold=True)
+    sheet.text(222, 205, f"‖x̂₂‖ = {hypot(*lever.tolist()):.2f} m", 11)
+    sheet.chip(222, 224, palette.best, "of all turns; one of them", "line")
     return sheet.svg("The ring of places where map 2's origin may go, and the disc of one turn on it")
+
+
+def _inside(plot: SvgPlot) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Upper left and lower right corner of a plot; pixels."""
+    return (plot.x, plot.y), (plot.x + plot.wide, plot.y + plot.high)
 
 
 def _over_map_1(
