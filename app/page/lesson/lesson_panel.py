@@ -10,10 +10,9 @@ from html import escape
 import viser
 
 from app.drawing.palette import QUIET
-from app.page.lesson.equations import equations_html
+from app.page.lesson.equations import equations_html, symbols_html
 from app.page.lesson.figures.figure_registry import FigureSlider, place_of, shown
 from app.page.lesson.lesson_texts import Exercise
-from app.page.lesson.symbols import symbols_html
 from app.page.panels.html_widgets import Action, box, on_choice, on_press, put
 
 BACK, NEXT, LEAVE = "◀ Back", "Next ▶", "Leave"
