@@ -253,7 +253,8 @@ PICTURES: dict[str, LessonFigure] = {
         compares=knowledge_figure.runs_of,
     ),
     chain_figure.NAME: LessonFigure(
-        (MergeResult,), chain_figure.chain, _up_to(MergeResult), compares=chain_figure.runs_of
+        (MergeResult,), chain_figure.chain, _up_to(MergeResult), compares=chain_figure.runs_of,
+        ways={"second": OtherWay(chain_figure.second_sighting, ())},
     ),
 }  # fmt: skip
 
