@@ -333,10 +333,6 @@ EXERCISED_BY = {
         "app.drawing.svg.verdict_bars",
         "app.report.report_figures",
     },
-    "app/page/lesson/test_lesson_texts.py": {
-        "app.page.lesson.equations",
-        "app.page.lesson.placeholders",
-    },
     "app/page/lesson/test_lesson_display.py": {
         "app.page.lesson.lesson_run",
     },
