@@ -75,7 +75,7 @@ def paired(texts: Sequence[Upload], images: Sequence[Upload]) -> list[MapFiles]:
     take(lambda k, image: image.folder == texts[k].folder and _same_stem(texts[k], image), again=False)
     lone = [k for k in range(len(texts)) if k not in of]
     left = [image for image in images if image not in of.values()]
-    if len(lone) == len(left) == 1:
+    if len(lone) == len(left) == 1 and _waits_for(MapFiles(texts[lone[0]]), MapFiles(None, left[0])):
         of[lone[0]] = left.pop()
     maps = [MapFiles(text, of.get(k)) for k, text in enumerate(texts)]
     return [*maps, *(MapFiles(None, image) for image in left)]
@@ -135,12 +135,10 @@ def _same_stem(text: Upload, image: Upload) -> bool:
     return PurePath(text.name).stem == PurePath(image.name).stem
 
 
-def _belong(text: Upload, image: Upload) -> bool:
-    return _last(image_path(text)) == image.name or _same_stem(text, image)
-
-
 def _waits_for(there: MapFiles, files: MapFiles) -> bool:
-    """Whether a map that is there lacks just what this is."""
+    """Whether a map that is there lacks just what this is, and nothing speaks against it."""
+    if None not in (there.number, files.number) and there.number != files.number:
+        return False
     if files.text is None:
         return there.image is None
     return files.image is None and there.text is None
@@ -156,6 +154,8 @@ def _fits(there: MapFiles, files: MapFiles) -> bool:
             there.image.name == files.image.name if there.image else _same_stem(there.text, files.image)
         )
     if files.text is not None and files.image is None and there.image is not None:
-        again = there.text is None or there.text.by_form or there.text.name == files.text.name
-        return again and _belong(files.text, there.image)
+        named = _last(image_path(files.text)) == there.image.name
+        if there.text is None or there.text.by_form:
+            return named or _same_stem(files.text, there.image)
+        return named and there.text.name == files.text.name
     return False

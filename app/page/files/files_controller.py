@@ -65,7 +65,8 @@ class FilesController:
         with self._lock:
             size = sum(len(upload.content) for upload in self._arrived if upload is not None)
             room = size + len(file.content) <= MAX_UPLOADS and len(self._arrived) < MOST_FILES
-            self._arrived.append(upload_at(file.name, file.content) if room else None)
+            if len(self._arrived) <= MOST_FILES:
+                self._arrived.append(upload_at(file.name, file.content) if room else None)
 
     def _sent(self, button: str, count: int, whole: bool) -> None:
         """All that was chosen at once has been sent, of which so many files arrived; not ``whole``: it was

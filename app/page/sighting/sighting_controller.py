@@ -63,8 +63,8 @@ class SightingController:
         tab.events.on("box", self._choose, n=int)
         tab.state.subscribe("setup", self._setup_changed)
         tab.state.subscribe("palette", self._show)
-        self.sensors.changed = self.sensors_changed
-        self.sensors_changed()
+        self.sensors.changed = self._sensors_changed
+        self._sensors_changed()
 
     def close(self) -> None:
         self._work.stop()
