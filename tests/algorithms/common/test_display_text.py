@@ -16,8 +16,8 @@ from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError, NoAnswerError, OutputError, SettingError, TooLargeError
 from algorithms.files.map_file import map_from_bytes, map_to_bytes
 from algorithms.maps.grid_map import GridMap
-from app.model.merge_inputs import Upload
 from app.model.files.map_slots import inputs_of
+from app.model.merge_inputs import Upload
 
 ODD = "\ud800\udfff\u202e\u2067\u200f\x00\x1b\x85\u2028\n\r"
 strange = st.text(st.one_of(st.characters(exclude_categories=()), st.sampled_from(ODD)), max_size=30)

@@ -21,8 +21,8 @@ from app.jobs import worker_pool as workers
 from app.model import status_text as words_of_the_page
 from app.model.run_state import RunState
 from app.page.application import make_server
-from app.page.page_state import PageState
 from app.page.files.files_controller import read_case as real_read_case
+from app.page.page_state import PageState
 from app.system.logging_setup import JsonFormatter, facts
 from app.web.callback_errors import OUT_OF_MEMORY, words
 

@@ -13,8 +13,9 @@ from wire import WireFile, WireTab, until
 
 from algorithms.files.case_folder import Case
 from algorithms.files.map_file import map_to_bytes
+from app.model.files.file_reader import upload_at
+from app.model.merge_inputs import Upload
 from app.page.application import make_server
-from app.page.files.files_controller import FilesController
 from app.web.security.access_control import Access
 from app.web.upload import LEAST, MAX_UPLOAD, MAX_UPLOADS, MOST, Recipient
 from app.web.viser_server import guarded_server
@@ -54,13 +55,12 @@ def kept(server: viser.ViserServer) -> list[int]:
 def came(monkeypatch) -> dict[str, bytes]:
     """Every file that has arrived, by its name."""
     files: dict[str, bytes] = {}
-    take = FilesController._gather
 
-    def note(controller: FilesController, file: viser.UploadedFile) -> None:
-        files[file.name] = file.content
-        take(controller, file)
+    def note(path: str, content: bytes) -> Upload:
+        files[path] = content
+        return upload_at(path, content)
 
-    monkeypatch.setattr(FilesController, "_gather", note)
+    monkeypatch.setattr("app.page.files.files_controller.upload_at", note)
     return files
 
 

@@ -252,7 +252,7 @@ def test_while_a_fleet_is_shown_maps_become_robots_and_a_pair_with_what_is_known
     page = Page(fleet=True)
     assert page.open({"r3.yaml": ROBOT_3["r3.yaml"]}).robots == ()
     assert page.others == {"r3.yaml": "a robot: its image is missing"}
-    opened = page.open({"r3.pgm": ROBOT_3["r3.pgm"], **MAP_1, **{"truth.yaml": b"expected: refuse\n"}})
+    opened = page.open({"r3.pgm": ROBOT_3["r3.pgm"], **MAP_1, "truth.yaml": b"expected: refuse\n"})
     assert [name for name, _ in opened.robots] == ["map1", "r3"]
     assert page.others["r3.pgm"] == "robot r3"
     assert page.open(KNOWN).inputs is None

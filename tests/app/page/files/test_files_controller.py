@@ -1,4 +1,4 @@
-"""Files that come to a tab: taken together once all of a choice are there, listed, swapped, removed, undone."""
+"""Files that come to a tab: taken together once all of a choice are there, listed, swapped, removed."""
 
 from __future__ import annotations
 
