@@ -88,13 +88,14 @@
     .mm-given{margin:2px 12px 8px;font-size:12.5px;line-height:1.4}
     .mm-given p{margin:2px 0 4px;font-size:12px;opacity:.8}
     .mm-given ul{list-style:none;margin:0;padding:0;max-height:264px;overflow-y:auto}
-    .mm-given li{display:flex;gap:6px;align-items:baseline;padding:1px 0} .mm-given i{flex:none;width:1em;font-style:normal;color:#6B7280}
-    .mm-given li span{flex:1;min-width:0;overflow-wrap:anywhere} .mm-given b{font-weight:550}
+    .mm-given li{display:flex;flex-wrap:wrap;gap:2px 6px;align-items:baseline;padding:1px 0} .mm-given i{flex:none;width:1em;font-style:normal;color:#6B7280}
+    .mm-given li span{flex:1 1 150px;min-width:0;overflow-wrap:anywhere} .mm-given b{font-weight:550}
     .mm-given [data-state=used] i{color:#009E73} .mm-given [data-state=refused] i,.mm-given [data-state=refused] span{color:#C04A00}
     [data-mantine-color-scheme=dark] .mm-given [data-state=refused] :is(i,span){color:#F0A070}
     .mm-given button{flex:none;font:inherit;font-size:12px;line-height:18px;padding:1px 7px;border:1px solid #9CA3AF;border-radius:5px;background:none;color:inherit;cursor:pointer}
     .mm-given button[data-mm-file=remove]{border-color:transparent}
     .mm-given button:hover{background:#6B728022} .mm-given button:focus-visible{outline:2px solid #0072B2;outline-offset:1px}
+    .mm-given li>div{display:flex;gap:4px;margin-left:auto} .mm-given ul:focus-visible{outline:2px solid #0072B2}
     .mm-given>div{display:flex;flex-wrap:wrap;gap:6px;margin-top:4px}
     @media (pointer:coarse){.mm-given button{min-height:40px;min-width:40px}}
     .mm-veil{position:fixed;inset:0;z-index:1000;pointer-events:none;display:flex;align-items:center;justify-content:center;border:4px dashed #0072B2;background:rgba(0,114,178,.16)}

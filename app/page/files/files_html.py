@@ -12,9 +12,10 @@ from app.model.files.map_slots import KNOWN, PAIR, short_name
 from app.model.merge_inputs import Files, OtherFile
 
 MOST_ROWS = 40  # of files that are not of the pair
+SEEN_AT_ONCE = 6  # lines; what is below is reached by keys, too
 HINT = (
-    "Or drop them anywhere on the page, in any order: a map's YAML file and image, what is known, a "
-    "fleet.yaml with its maps, a zip or a folder of all that."
+    "Or drop them anywhere: each map's YAML file and image, what is known, a fleet.yaml with its maps; or a "
+    "zip or folder of them."
 )
 ORDER = ("yaml1", "image1", "yaml2", "image2", KNOWN)
 ROLES = dict(zip(ORDER, ("map 1", "image of map 1", "map 2", "image of map 2", "what is known"), strict=True))
@@ -80,7 +81,7 @@ def files_html(files: Files, names: RobotNames) -> str:
         number += bool(row.does)
         items += (
             f'<li data-state="{row.state}"><i aria-hidden="true">{SIGNS.get(row.state, "·")}</i>'
-            f"<span><b>{escape(row.name)}</b> {escape(told)}</span>{buttons}</li>"
+            f"<span><b>{escape(row.name)}</b> {escape(told)}</span><div>{buttons}</div></li>"
         )
     if len(files.others) > MOST_ROWS:
         items += f"<li><i>·</i><span>and {len(files.others) - MOST_ROWS:,} more</span></li>"
@@ -88,5 +89,6 @@ def files_html(files: Files, names: RobotNames) -> str:
     swap = '<button type="button" data-mm-file="swap" data-n="0">Swap the maps</button>'
     below = swap if len(numbers) == len(PAIR) else ""
     below += '<button type="button" data-mm-folder>Open a folder…</button>'
-    shown = f'<ul aria-label="Files">{items}</ul>' if items else f"<p>{escape(HINT)}</p>"
+    scrolls = ' tabindex="0"' if items.count("<li") > SEEN_AT_ONCE else ""
+    shown = f'<ul aria-label="Files"{scrolls}>{items}</ul>' if items else f"<p>{escape(HINT)}</p>"
     return f'<div class="mm-given">{shown}<div>{below}</div></div>'

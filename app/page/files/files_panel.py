@@ -11,7 +11,7 @@ import viser
 
 from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.files.map_file import READABLE_SUFFIXES, YAML_SUFFIXES, GreyImage
-from app.drawing.palette import LIGHT, QUIET
+from app.drawing.palette import QUIET
 from app.model.merge_inputs import Files, Upload
 from app.page.files.files_html import files_html
 from app.page.files.image_form import ImageForm
@@ -43,7 +43,7 @@ class FilesPanel:
             kinds, icon = ",".join(SUFFIXES), viser.Icon.UPLOAD
             hint = "All at once or one after another; each is known by what it holds."
             self._open = gui.add_upload_button(
-                "Open files…", mime_type=kinds, color=LIGHT.ref, hint=hint, icon=icon
+                "Open files…", mime_type=kinds, color=QUIET, hint=hint, icon=icon
             )
             self._list = gui.add_html(files_html(self.files, self._names))
             self._forms = {
