@@ -25,7 +25,6 @@
   function send(file, button) {
     const one = { file, button, socket: new WebSocket(address()), sent: 0, arrived: 0, least: 0, most: 0, ahead: 0, pumping: false };
     F.going.add(one);
-    note = "";
     clock ||= setInterval(show, 250);
     one.socket.onopen = () => one.socket.send(JSON.stringify({ button, name: pathOf(file), kind: file.type, size: file.size }));
     one.socket.onmessage = (e) => {
@@ -49,7 +48,7 @@
     for (let size; F.going.has(one) && one.sent < one.file.size && (size = room(one)); ) {
       const part = await one.file.slice(one.sent, one.sent + size).arrayBuffer().catch(() => null);
       if (!F.going.has(one)) return;
-      if (!part?.byteLength) { done(one, false); say(`${one.file.name} cannot be read any more. Choose it again.`); return; }
+      if (!part?.byteLength) { say(`${one.file.name} cannot be read any more. Choose it again.`); done(one, false); return; }
       one.socket.send(part);
       one.sent += part.byteLength;
     }
@@ -71,6 +70,7 @@
     choice.rest.push(...files);
     if (choices.has(button)) return;
     choices.set(button, choice);
+    note = "";
     send(choice.rest.shift(), button);
   };
   function done(one, arrived) { // the next one

@@ -42,14 +42,13 @@ def test_files_and_folders_are_opened_by_keys_and_buttons_are_dark_in_the_dark(t
     head, place = page.get_by_role("button", name="Names", exact=True), page.get_by_text("Robot 1 is called")
     settle(lambda: head.get_attribute("aria-expanded") == "false", "the head of the folder")
     page.get_by_label("Sample", exact=True).first.focus()
-    keys.press("Tab")
-    with page.expect_file_chooser() as chooser:
-        keys.press("Enter")
-    assert chooser.value.is_multiple()
-    keys.press("Tab")
-    with page.expect_file_chooser() as chooser:
-        keys.press("Enter")
-    assert chooser.value.element.evaluate("(input) => input.webkitdirectory")
+    for name, picker in (("Open files…", "multiple"), ("Open a folder…", "webkitdirectory")):
+        keys.press("Tab")
+        button = page.get_by_role("button", name=name)
+        settle(lambda button=button: button.evaluate("(it) => it === document.activeElement"), name)
+        with page.expect_file_chooser() as chooser:
+            keys.press("Enter")
+        assert chooser.value.element.evaluate(f"(input) => input.{picker}")
     head.focus()
     keys.press("Enter")
     settle(lambda: head.get_attribute("aria-expanded") == "true" and place.is_visible(), "what is in it")
