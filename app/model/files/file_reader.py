@@ -202,8 +202,8 @@ class FileReader:
 def _kinds(
     uploads: Sequence[Upload], check: Check
 ) -> tuple[list[GivenFile], list[OtherFile], list[MapMergeError]]:
-    """Files with their kinds, those of zips and maps of recordings among them; what is told of the others, and
-    what is wrong.
+    """Files with their kinds, those of zips and recordings among them; what is told of the others, and what
+    is wrong.
 
     What is no file of ours is wrong where it was given by itself; beside others in a folder it may well lie.
     """
