@@ -77,7 +77,7 @@ def test_bars_are_shares_of_the_peak_at_their_walls_and_no_more_than_are_wanted(
 
 def test_where_hardly_any_wall_stands_out_the_others_are_drawn_flat(view, scene):
     low = lifted(REF, AT.x_ref, 0.3)
-    where, share = bars(low)
+    _, share = bars(low)
     assert (share >= VISIBLE).sum() <= FEW < len(share) == len(low.levels)
     view.show(AugmentDetail(low, low), LIGHT, look=True)
     heights = stems(scene)[0][:, 1, 1]
