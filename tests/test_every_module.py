@@ -14,6 +14,13 @@ from repository import ROOT
 
 # test file below tests/ -> what it exercises beside the module that it is named after
 EXERCISED_BY = {
+    "algorithms/files/bags/test_map_messages.py": {
+        "algorithms.files.bags.message_types",
+    },
+    "app/cli/commands/test_bag.py": {
+        "algorithms.files.bags.bag_summary",
+        "app.cli.bag_arguments",
+    },
     "algorithms/detection/test_svm_training.py": {
         "algorithms.detection.hog_grid",
         "algorithms.detection.svm_detector",
@@ -332,10 +339,6 @@ EXERCISED_BY = {
         "app.drawing.svg.map_plot",
         "app.drawing.svg.verdict_bars",
         "app.report.report_figures",
-    },
-    "app/page/lesson/test_lesson_texts.py": {
-        "app.page.lesson.equations",
-        "app.page.lesson.placeholders",
     },
     "app/page/lesson/test_lesson_display.py": {
         "app.page.lesson.lesson_run",

@@ -10,8 +10,7 @@ from algorithms.common.errors import InputFileError
 
 HEAD = 65536  # bytes that are looked at
 BAG_FOLDER = b"rosbag2_bagfile_information"  # in metadata.yaml
-PLAY_1 = "play it (rosbag play) and save its map (rosrun map_server map_saver -f map)"
-PLAY_2 = "play it (ros2 bag play) and save its map (ros2 run nav2_map_server map_saver_cli -f map)"
+SAVE_MAP = "save its map with: mapmeld bag map BAG --out map.yaml"
 GRID_OF_RTAB = "export its grid map (File, Export 2D map in rtabmap-databaseViewer)"
 PROJECT = "project it to a grid map first, and save that"
 UNPACK = "unpack it, and give the map's YAML file"
@@ -26,8 +25,8 @@ class ForeignFile:
 
 
 KINDS = {
-    b"#ROSBAG V": ForeignFile("is a recording of ROS 1 (a bag), not a map", PLAY_1),
-    b"\x89MCAP0\r\n": ForeignFile("is a recording (an MCAP bag), not a map", PLAY_2),
+    b"#ROSBAG V": ForeignFile("is a recording of ROS 1 (a bag), not a map", SAVE_MAP),
+    b"\x89MCAP0\r\n": ForeignFile("is a recording (an MCAP bag), not a map", SAVE_MAP),
     b"\xdb\x01\xf5\x5b\x7b\x1f\x1d\x7b": ForeignFile(
         "is a state of Cartographer (pbstream), not a map",
         "make one of it with cartographer_pbstream_to_ros_map",
@@ -46,12 +45,12 @@ POSE_GRAPH = ForeignFile(
     "is a pose graph of slam_toolbox, not a map", "load it there and save the map (its service save_map)"
 )
 SQLITE = b"SQLite format 3\0"
-ROSBAG2 = ForeignFile("is a recording of ROS 2 (a rosbag2 database), not a map", PLAY_2)
-ROSBAG2_FOLDER = ForeignFile("is a recording of ROS 2 (a rosbag2 folder), not a map", PLAY_2)
-OF_ROSBAG2 = ForeignFile("belongs to a recording of ROS 2 (a rosbag2 folder), not to a map", PLAY_2)
+ROSBAG2 = ForeignFile("is a recording of ROS 2 (a rosbag2 database), not a map", SAVE_MAP)
+ROSBAG2_FOLDER = ForeignFile("is a recording of ROS 2 (a rosbag2 folder), not a map", SAVE_MAP)
+OF_ROSBAG2 = ForeignFile("belongs to a recording of ROS 2 (a rosbag2 folder), not to a map", SAVE_MAP)
 RTAB = ForeignFile("is a database of RTAB-Map, not a map", GRID_OF_RTAB)
 SOME_DATABASE = ForeignFile(
-    "is a SQLite database, not a map", f"if RTAB-Map's, {GRID_OF_RTAB}; if a rosbag2 recording, {PLAY_2}"
+    "is a SQLite database, not a map", f"if RTAB-Map's, {GRID_OF_RTAB}; if a rosbag2 recording, {SAVE_MAP}"
 )
 
 
@@ -91,10 +90,16 @@ def _recognised(source: str, head: bytes) -> ForeignFile | None:
     return next((foreign for first, foreign in KINDS.items() if head.startswith(first)), None)
 
 
-def _database(source: str, head: bytes) -> ForeignFile:
-    """Whose it is, by the tables that its first page names; else by its name."""
-    if b"CREATE TABLE topics" in head or b"CREATE TABLE messages" in head:
-        return ROSBAG2
+def is_rosbag2_database(source: str, head: bytes) -> bool:
+    """Whether a SQLite database is a recording, by the tables that its first page names; else by its name."""
     if b"CREATE TABLE Node" in head:
-        return RTAB
-    return {".db3": ROSBAG2, ".db": RTAB}.get(Path(source).suffix.lower(), SOME_DATABASE)
+        return False
+    tables = b"CREATE TABLE topics" in head or b"CREATE TABLE messages" in head
+    return tables or Path(source).suffix.lower() == ".db3"
+
+
+def _database(source: str, head: bytes) -> ForeignFile:
+    if is_rosbag2_database(source, head):
+        return ROSBAG2
+    rtab = b"CREATE TABLE Node" in head or Path(source).suffix.lower() == ".db"
+    return RTAB if rtab else SOME_DATABASE

@@ -18,6 +18,7 @@ from algorithms.common.pose import Pose2
 from algorithms.common.source_file import SourceFile
 from algorithms.files import yaml_fields as fields
 from algorithms.files.atomic_write import write_files
+from algorithms.files.bags.bag_path import bag_path
 from algorithms.files.foreign_files import check_foreign_folder
 from algorithms.files.images.grey_levels import corrected, count_greys, remarks
 from algorithms.files.images.image_decoder import read_pixels
@@ -74,10 +75,16 @@ class GreyImage:
 def read_map(path: Path | str, unknown_grey: int | None = None) -> GridMap:
     """Read a map from disk. What is odd about its greys is told in ``GridMap.remarks``.
 
-    path         : its YAML file; or its image, where a YAML file of the same stem lies beside it
+    path         : its YAML file; or its image, where a YAML file of the same stem lies beside it; or a
+                   recording, ``BAG[#/topic][@TIME]``
     unknown_grey : 0 … 255, a grey that stands for unknown, whatever its thresholds say
     raises       : InputFileError, TooLargeError
     """
+    recording = bag_path(path)
+    if recording is not None:
+        from algorithms.files.bags.map_messages import read_bag_map  # few read one, and its library is large
+
+        return read_bag_map(recording)
     path = Path(path)
     if path.suffix.lower() in IMAGE_SUFFIXES:
         yaml_path = _yaml_beside(path)

@@ -36,7 +36,7 @@ class WindowConfig(CheckedConfig):
     """What the sighting's own deviations do not tell: how well each robot knew where it stood, and how
     well its map fits there. The paper's window is wider by it on every side; in the coupled window it is
     one more standard deviation."""
-    deviations: Annotated[float, Bounds(0, 10, 0.5, "σ", "k", "sighting deviations")] = 3.0
+    deviations: Annotated[float, Bounds(0, 10, 0.5, "σ", "k_σ", "sighting deviations")] = 3.0
     """How many standard deviations of range and bearing the window reaches."""
 
 

@@ -24,7 +24,7 @@ class AugmentConfig(CheckedConfig):
 
     intensity: Annotated[float, Bounds(1, 1000, 1, "", "I_aug", "intensity")] = 100.0
     """Scales every level, and Γ with its square. It cannot move the best transform."""
-    spread: Annotated[float, Bounds(0.2, 20, 0.1, "m", "Σ_aug", "spread")] = 3.0
+    spread: Annotated[float, Bounds(0.2, 20, 0.1, "m", "σ_aug", "spread")] = 3.0
     """Standard deviation of the Gaussian around the seen robot. Small: only the walls beside the
     encounter count. Large: the whole of both maps counts."""
     aspect: Annotated[float, Bounds(0.2, 5, 0.1, "", "Σ_aug", "aspect")] = 1.0

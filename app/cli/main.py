@@ -34,6 +34,7 @@ COMMANDS = {
     "evaluate": "run a method on every case in a folder and count what came out right",
     "compare": "run several methods on the same cases: a table, and the merged maps side by side",
     "sweep": "run a method again and again while a setting changes: curves, heat maps, tables",
+    "bag": "look into a recording of ROS, or write the map that is in it",
     "observe": "find a robot in a camera image and a laser scan: the sighting that merge takes",
     "detect": "train a detector on your own robot",
     "samples": "simulate pairs of maps with known truth",

@@ -100,11 +100,14 @@ def footprint_of(args: argparse.Namespace) -> Footprint:
     return Footprint() if args.robot_size is None else Footprint(*args.robot_size)
 
 
-def camera_of(args: argparse.Namespace, picture: Picture, name: object, fallback: Path | None) -> Camera:
+def camera_of(
+    args: argparse.Namespace, picture: Picture, name: object, fallback: Path | None, recorded: Camera | None
+) -> Camera:
     """The camera that made a picture; raises InputFileError, SettingError.
 
     name     : of the picture's file
     fallback : a calibration that is taken where none is named
+    recorded : the camera of a recording, taken likewise
     """
     height, width = picture.shape[:2]
     file = args.camera or fallback
@@ -112,18 +115,25 @@ def camera_of(args: argparse.Namespace, picture: Picture, name: object, fallback
         if args.camera is not None:
             raise SettingError("--camera and --field-of-view-deg exclude one another: give one of them")
         camera = Camera.counting_pixels(width, height, radians(args.field_of_view_deg), Pose2())
+    elif file is None and recorded is not None:
+        camera = _fitting(recorded, picture, name, "the calibration")
     elif file is None:
         raise SettingError("no camera is given: give --camera FILE, or --field-of-view-deg DEGREES")
     else:
-        camera = read_camera(file)
-        if (camera.width, camera.height) != (width, height):
-            raise InputFileError(
-                name,
-                f"is {width} × {height} pixels, and {file} is for {camera.width} × {camera.height}",
-                "give the calibration of this camera at this size",
-            )
+        camera = _fitting(read_camera(file), picture, name, file)
     mounting = args.camera_mounting
     return camera if mounting is None else replace(camera, mounting=Pose2.from_array(mounting))
+
+
+def _fitting(camera: Camera, picture: Picture, name: object, source: object) -> Camera:
+    height, width = picture.shape[:2]
+    if (camera.width, camera.height) != (width, height):
+        raise InputFileError(
+            name,
+            f"is {width} × {height} pixels, and {source} is for {camera.width} × {camera.height}",
+            "give the calibration of this camera at this size",
+        )
+    return camera
 
 
 def scan_of(args: argparse.Namespace, file: Path) -> LaserScan:

@@ -16,7 +16,7 @@ from algorithms.maps.map_fusion import Fusion
 from algorithms.spectra.augmented_map import AugmentedMap
 from algorithms.verdict.cell_agreement import AGREES, CONTRADICTS, CellAgreement, WallLookup
 from algorithms.verdict.contradictions import Contradictions
-from app.drawing.palette import Palette, Rgb, viridis
+from app.drawing.palette import Palette, Rgb, level_colours
 
 Pixels = NDArray[np.uint8]
 Places = NDArray[np.intp]
@@ -132,7 +132,7 @@ def levels(
         share = np.zeros(pixels.shape[:2])
         np.maximum.at(share, (rows // factor, cols // factor), augmented.levels[within] / augmented.peak)
         rows, cols = np.nonzero(share > 0.004)  # one step of the colour scale
-        pixels[rows, cols, :3] = viridis(share[rows, cols])
+        pixels[rows, cols, :3] = level_colours(share[rows, cols], palette.dark)
         pixels[rows, cols, 3] = 255
     return GridPixels(pixels, factor)
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods import steps
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.steps import AugmentDetail, CandidatesDetail, ProvenDetail
-from app.drawing.palette import ROBOTS, VIRIDIS, Palette, Rgb, css, robot_colour
+from app.drawing.palette import ROBOTS, Palette, Rgb, css, level_colours, robot_colour
 from app.model.run_state import RunState
 
 Entry = dict[str, Any]
@@ -24,10 +26,16 @@ def _maps(palette: Palette) -> list[Entry]:
     return [_chip("square", colour, f"map {number}") for number, colour in enumerate(palette.maps, 1)]
 
 
-def level_scale(detail: AugmentDetail) -> Entry:
+def peak_level(detail: AugmentDetail) -> str:
+    """The level that a wall at the meeting place would have; I_aug per m²."""
+    return f"{detail.ref.peak:.3g}"
+
+
+def level_scale(detail: AugmentDetail, palette: Palette) -> Entry:
     """The colour scale of the levels, from nothing to the peak."""
-    stops = [css(tuple(int(part) for part in VIRIDIS[k])) for k in range(0, 256, 51)]  # type: ignore[arg-type]
-    return {"s": "scale", "c": stops, "low": "0", "high": f"{detail.ref.peak:.3g}", "t": "level, eq. (4)"}
+    colours = level_colours(np.linspace(0, 1, 6), palette.dark).tolist()
+    stops = [css((red, green, blue)) for red, green, blue in colours]
+    return {"s": "scale", "c": stops, "low": "0", "high": peak_level(detail), "t": "level, eq. (4)"}
 
 
 def fleet_legend(palette: Palette, robots: Sequence[str]) -> list[Entry]:
@@ -53,7 +61,7 @@ def legend(
     """
     detail = run.last.detail if run.last else None
     augmented = run.get(AugmentDetail)
-    scale = [level_scale(augmented)] if augmented else []
+    scale = [level_scale(augmented, palette)] if augmented else []
     maps = _maps(palette)
     margin, best, particle = palette.margin, palette.best, palette.particle
     swarm = [_chip("dot", particle, "particle"), _chip("diamond", best, "swarm best")]

@@ -85,6 +85,8 @@ VIRIDIS: NDArray[np.uint8] = np.ascontiguousarray(
     cv2.applyColorMap(np.arange(256, dtype=np.uint8)[:, None], cv2.COLORMAP_VIRIDIS)[:, 0, ::-1]
 )
 
+LEAST_SEEN = (0.5, 0.42)  # where in viridis a wall of no level lies, on a light and on a dark page: 3 to 1
+
 
 def robot_colour(number: int) -> Rgb:
     """Of the walls of a fleet's robot, by its place in the list from 0."""
@@ -94,6 +96,14 @@ def robot_colour(number: int) -> Rgb:
 def css(colour: Rgb, alpha: float = 1.0) -> str:
     red, green, blue = colour
     return f"rgba({red},{green},{blue},{alpha:g})" if alpha < 1 else f"#{red:02x}{green:02x}{blue:02x}"
+
+
+def level_colours(share: NDArray[np.floating], dark: bool) -> NDArray[np.uint8]:
+    """Colours (…, 3) of walls by their levels in 0 … 1: the half of viridis that stands out from the floor,
+    the more so the higher the level.
+    """
+    level = np.clip(np.nan_to_num(share), 0, 1)
+    return viridis(LEAST_SEEN[dark] + (dark - LEAST_SEEN[dark]) * level)
 
 
 def viridis(share: NDArray[np.floating]) -> NDArray[np.uint8]:

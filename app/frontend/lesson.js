@@ -17,6 +17,10 @@
     .mm-eq span{min-width:0;flex:1;text-align:center}
     .mm-eq svg{max-width:100%;height:auto;vertical-align:middle}
     .mm-eq small{opacity:.6;white-space:nowrap;font-size:11px}
+    .mm-symbols{margin:2px 14px 4px;font-size:12.5px;line-height:1.35}
+    .mm-symbols summary{cursor:pointer;opacity:.7}
+    .mm-symbols dl{display:grid;grid-template-columns:max-content 1fr;gap:2px 10px;margin:4px 0 0}
+    .mm-symbols dd{margin:0}
     .mm-frame{margin:8px 14px 4px}
     .mm-picture{display:block;width:100%;height:auto}
     .mm-wait{padding:26px 10px;text-align:center;opacity:.65;border:1px dashed currentColor;border-radius:6px;font-size:13px}

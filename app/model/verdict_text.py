@@ -7,7 +7,7 @@ from math import degrees
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import CHOSEN, MergeResult
-from algorithms.methods.registry import METHODS
+from algorithms.methods.registry import DEFAULT_METHOD, METHODS, PLANE_METHOD
 from algorithms.optimisation.branch_and_bound import ProofState
 from algorithms.verdict.decision import NEXT_TO_NO_WALL, SAME_PLACE, Outcome, Verdict
 from algorithms.verdict.probability_model import OTHERS
@@ -127,6 +127,10 @@ def remedy(result: MergeResult) -> str:
         if result.by_person:
             return "Made by hand: refine from there, or snap to the proven optimum."
         return "This method has missed a better place: take the default one, which proves that it finds it."
+    if result.method in METHODS and result.encounters and result.method not in (DEFAULT_METHOD, PLANE_METHOD):
+        return (
+            "This method follows up a part of what may be: take the default one, which proves what fits best."
+        )
     first = next(iter(verdict.against), "")
     evidence = result.weighed[0].evidence
     if first in ("contradiction", "unbent") and evidence.rigid_contradicting < NEXT_TO_NO_WALL:

@@ -68,7 +68,7 @@ def test_everything_can_be_undone_and_done_again_and_a_reload_loses_nothing(tab)
     settle(lambda: tab.state == "Ready. Press Merge.", "the other maps")
     settle(
         lambda: (
-            entries(tab) == ["* load apartment_r2_r1", "Σ_aug spread 4 → 4.5 m", "merge", "load office_r2_r1"]
+            entries(tab) == ["* load apartment_r2_r1", "σ_aug spread 4 → 4.5 m", "merge", "load office_r2_r1"]
         ),
         "four entries",
     )

@@ -29,11 +29,22 @@ ARGUMENTS = [
     "--use-gl=angle",
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
+    "--disable-gpu-rasterization",
+    "--disable-gpu-compositing",
+    "--webgl-antialiasing-mode=none",
+    "--disable-accelerated-2d-canvas",
 ]
 READY = "() => window.mapmeld?.applied > 0 && document.querySelector('.mm-state span')?.textContent"
 
 REMEMBER = """try {{ localStorage.getItem("mapmeld-mode") || localStorage.setItem("mapmeld-mode", "{}"); }}
 catch {{ /* a page without a place to remember */ }}"""
+
+# Eight pictures a second are enough: the renderer is software, and its time is that of the tests.
+SLOW_FRAMES = """(() => {
+    const draw = window.requestAnimationFrame.bind(window);
+    window.requestAnimationFrame = (then) => window.setTimeout(() => draw(then), 120);
+    window.cancelAnimationFrame = (wait) => window.clearTimeout(wait);
+})()"""
 
 # where two points of the scene are in the window, two frames later
 AFTER_A_FRAME = """() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(
@@ -74,6 +85,7 @@ class Tab:
         )
         if mode:
             self.context.add_init_script(REMEMBER.format(mode))
+        self.context.add_init_script(SLOW_FRAMES)
         self.page: Page = self.context.new_page()
         self.errors: list[str] = []
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))

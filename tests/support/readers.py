@@ -15,6 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from bag_readers import BAG_READERS
 from imagefiles import bmp, exif, interlaced_png, segment
 from mapfiles import encoded
 from PIL import Image
@@ -196,6 +197,7 @@ READERS: dict[str, tuple[Callable[[bytes], object], list[bytes]]] = {
         _encounters_twice,
         [ENCOUNTERS, ENCOUNTERS.replace(b",", b";"), b"\xef\xbb\xbf" + ENCOUNTERS],
     ),
+    **BAG_READERS,
     "picture": (lambda data: picture_from_bytes("p.jpg", data), _pictures()),
     "step": (
         _from_disk(lambda path: read_step(path, PICTURES, NUMBERS)),

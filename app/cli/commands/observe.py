@@ -23,6 +23,7 @@ from algorithms.detection.robot_sighting import (
     sight_by_tags,
 )
 from algorithms.files.atomic_write import check_folder, write_files
+from algorithms.files.bags.sensor_messages import SensorView
 from algorithms.files.camera_file import CAMERA_FILE
 from algorithms.files.camera_picture import picture_to_jpeg, picture_to_png, read_picture
 from algorithms.files.case_folder import FIRST_MAP_FILE
@@ -32,6 +33,7 @@ from algorithms.files.observation_file import known_to_bytes
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.observation import Observation
 from app.cli.argument_parser import Parser, whole_number
+from app.cli.bag_arguments import add_bags, check_bags, recorded_map, recorded_place, recorded_view
 from app.cli.sensor_arguments import (
     PLACE,
     POSE,
@@ -45,8 +47,8 @@ from app.drawing.sighting_picture import sighting_picture
 from app.model.sighting.sighting_text import as_data, box_text, outcome_text
 
 USAGE = (
-    "[TABLE | --image IMAGE --scan SCAN --observer-pose X,Y,YAW --observed-pose X,Y[,YAW]] "
-    "--camera FILE --out FILE [options]"
+    "[TABLE | --image IMAGE --scan SCAN --observer-pose X,Y,YAW --observed-pose X,Y[,YAW] | "
+    "--bag BAG --at TIME --observed-bag BAG] --camera FILE --out FILE [options]"
 )
 DESCRIPTION = f"""\
 Find robot 2 in an image of robot 1's camera, measure it with robot 1's laser, and write the sighting that
@@ -65,6 +67,9 @@ Examples:
                                      a folder with {ENCOUNTER_TABLE} and {CAMERA_FILE}; its
                                      {FIRST_MAP_FILE} counts as --map
 
+  mapmeld observe --bag robot1_bag --at 61.5 --observed-bag robot2_bag --out observation.yaml
+                                     all of it from recordings of ROS 1 or ROS 2
+
 --camera is a calibration as ROS's camera_info, --scan a LaserScan as "ros2 topic echo --once /scan" prints
 it. Poses are metres and radians: robot 1 in map 1, robot 2 in map 2. The standard deviations are those of
 this measurement: the laser's noise, the spacing of its beams, the points on the robot, what is hidden of it.
@@ -82,6 +87,7 @@ class _Encounter:
     scan: Path | None
     observer: Pose2
     observed: tuple[float, ...]
+    recorded: SensorView | None = None
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
@@ -106,6 +112,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     )
     parser.add_argument("--json", action="store_true", help="print what was found as JSON and nothing else")
     add_sensors(parser)
+    add_bags(parser)
 
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
@@ -115,8 +122,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         if file is not None:
             check_folder(file.parent)
     detector = detector_of(args)
-    map_file = args.map or _map_beside(args.table)
-    grid = None if map_file is None else read_map(map_file)
+    grid = _map_of(args)
     files: dict[Path, bytes] = {}
     found: list[Observation] = []
     told: list[dict[str, Any]] = []
@@ -143,8 +149,17 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     return 0 if found else 1
 
 
+def _map_of(args: argparse.Namespace) -> GridMap | None:
+    """Robot 1's map, where it is named or lies in the folder or recording."""
+    file = args.map or _map_beside(args.table)
+    if file is None and args.bag is not None:
+        return recorded_map(args)
+    return None if file is None else read_map(file)
+
+
 def _encounters(args: argparse.Namespace, parser: Parser) -> list[_Encounter]:
-    """What the command line or its table names."""
+    """What the command line, its table or its recording names."""
+    check_bags(args)
     single = {
         name: getattr(args, name.replace("-", "_")) for name in ("image", "observer-pose", "observed-pose")
     }
@@ -153,6 +168,8 @@ def _encounters(args: argparse.Namespace, parser: Parser) -> list[_Encounter]:
             if value is not None:
                 parser.error(f"--{name} is given beside {args.table}, which names its own; leave one out")
         return list(_from_table(args))
+    if args.bag is not None:
+        return [_from_bag(args)]
     missing = [f"--{name}" for name, value in single.items() if value is None]
     if missing:
         parser.error(f"{', '.join(missing)} missing; or give a table of encounters")
@@ -161,6 +178,13 @@ def _encounters(args: argparse.Namespace, parser: Parser) -> list[_Encounter]:
             "--scan is missing; only tags of known size (--tags, --tag-size) tell the distance without"
         )
     return [_Encounter(args.image, args.scan, Pose2.from_array(args.observer_pose), args.observed_pose)]
+
+
+def _from_bag(args: argparse.Namespace) -> _Encounter:
+    seen = recorded_view(args)
+    observer = seen.robot if args.observer_pose is None else Pose2.from_array(args.observer_pose)
+    observed = args.observed_pose or recorded_place(args, seen.time)
+    return _Encounter(args.image or Path(seen.name), args.scan, observer, observed, seen)
 
 
 def _from_table(args: argparse.Namespace) -> Iterator[_Encounter]:
@@ -185,20 +209,24 @@ def _look(
     args: argparse.Namespace, detector: Detector, grid: GridMap | None, at: _Encounter
 ) -> tuple[SightedRobots, Picture | None]:
     """What one image shows, and the picture of it where one is asked for."""
-    picture = read_picture(at.image)
+    told = at.recorded
+    picture = read_picture(at.image) if told is None or args.image is not None else told.picture
     beside = at.image.parent / CAMERA_FILE
-    camera = camera_of(
-        args, picture, at.image, beside if args.table is not None and beside.exists() else None
-    )
+    fallback = beside if args.table is not None and beside.exists() else None
+    camera = camera_of(args, picture, at.image, fallback, None if told is None else told.camera)
     body = footprint_of(args)
     found = detector.detect(picture, camera)
     pick = None if args.box is None else args.box - 1
     if pick is not None and pick >= len(found):
         raise SettingError(f"--box is {args.box}, but there are {len(found)} boxes in {at.image}")
-    if at.scan is None:
+    scan = told.scan if at.scan is None and told is not None else None
+    if at.scan is not None:
+        scan = scan_of(args, at.scan)
+    if scan is None:
+        if not (args.tags and args.tag_size):
+            raise InputFileError(args.bag, "holds no laser scan", "record one, or give --scan FILE")
         seen, view = sight_by_tags(found, camera, body, pick), None
     else:
-        scan = scan_of(args, at.scan)
         walls = None if grid is None else MapWalls(grid, at.observer)
         seen = sight(found, scan, camera, body, walls, pick)
         view = LaserView.of(scan, camera, walls)

@@ -13,7 +13,7 @@ from algorithms.methods.steps import AugmentDetail
 from algorithms.spectra.augmented_map import AugmentedMap
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.draw_items import Item, path
-from app.drawing.palette import Palette, css, viridis
+from app.drawing.palette import Palette, css, level_colours
 
 TALLEST = 0.3  # of the shown radius: height of a wall with the highest level there is
 VISIBLE = 0.01  # of the peak; lower walls are left flat
@@ -40,32 +40,39 @@ class HeightsView:
     def __init__(self, client: viser.ClientHandle, messages: BrowserMessages) -> None:
         self._scene, self._messages = client.scene, messages
         self._handles: list[viser.SceneNodeHandle] = []
-        self._drawn: AugmentDetail | None = None
+        self._drawn: tuple[AugmentDetail, Palette] | None = None
+        self._looked = False  # whether the camera was put before these maps
 
     def show(self, detail: AugmentDetail | None, palette: Palette, look: bool) -> None:
-        """Draw the heights; ``look`` puts the camera before them."""
+        """Draw the heights; ``look`` puts the camera before them, and so do the first ones of these maps."""
         if detail is None:
-            self.hide()
+            self._clear()
             return
         reach = [np.abs(bars(side)[0]).max(initial=0.5) for side in (detail.ref, detail.mov)]
         radius = float(max(reach)) * 1.05
-        if self._drawn is not detail:
-            self.hide()
-            self._drawn = detail
+        if self._drawn != (detail, palette):
+            self._clear()
+            self._drawn = detail, palette
             for name, augmented, side in (("1", detail.ref, -1.0), ("2", detail.mov, 1.0)):
-                self._bars(name, augmented, side * APART * radius, radius)
+                self._bars(name, augmented, side * APART * radius, radius, palette)
         self._messages.layer("floor", _floor(-1, radius, palette, 1) + _floor(1, radius, palette, 2))
-        if look:
+        if look or not self._looked:
+            self._looked = True
             self._messages.look_at("heights", np.array([0.0, 0.12 * radius, 0.0]), 1.62 * radius, 0.92, 0.0)
 
     def hide(self) -> None:
+        """Another view is shown, or there are other maps."""
+        self._clear()
+        self._looked = False
+
+    def _clear(self) -> None:
         for handle in self._handles:
             handle.remove()
         self._handles.clear()
         self._drawn = None
         self._messages.layer("floor", None)
 
-    def _bars(self, name: str, augmented: AugmentedMap, away: float, radius: float) -> None:
+    def _bars(self, name: str, augmented: AugmentedMap, away: float, radius: float, palette: Palette) -> None:
         """Unlit stems: a lit colour would no longer be the one of the scale."""
         where, share = bars(augmented)
         if len(share) == 0:
@@ -73,7 +80,7 @@ class HeightsView:
         foot = np.column_stack([where[:, 0], np.zeros(len(share)), away - where[:, 1]])
         top = foot.copy()
         top[:, 1] = share * TALLEST * 2 * radius
-        colours = linear(viridis(np.stack([0.55 * share, share], axis=1)))
+        colours = linear(level_colours(np.stack([0.55 * share, share], axis=1), palette.dark))
         ends = np.stack([foot, top], axis=1).astype(np.float32)
         how: Any = {"thickness": augmented.grid.resolution, "thickness_units": "world"}
         self._handles.append(self._scene.add_line_segments(f"/world/heights/{name}", ends, colours, **how))

@@ -48,14 +48,19 @@ def windows(
     return items + discs(detail.coupled, layout, colours, strong=coupled)
 
 
+def window_size(w: Window | CoupledWindow) -> str:
+    """Sides of a window as words."""
+    width, height = (w.high - w.low).tolist()
+    return f"{width:.1f} m × {height:.1f} m"
+
+
 def _paper_window(
     w: Window, turn: float, layout: SceneLayout, colours: Palette, view: Rect, strong: bool
 ) -> list[Item]:
     off = rotation(turn) @ (layout.anchor_mov - w.pivot) - layout.anchor_ref
     low, high = w.low + off, w.high + off
-    width, height = (high - low).tolist()
-    size = f"{width:.0f} m × {height:.0f} m" if min(width, height) >= 5 else f"{width:.1f} m × {height:.1f} m"
-    words = f"paper's window, eqs. (6)–(10): {size}"
+    width = float(high[0] - low[0])
+    words = f"paper's window, eqs. (6)–(10): {window_size(w)}"
     x0, y0, x1, y1 = view
     middle = float(np.clip((x0 + x1) / 2, low[0], high[0]))
     # the words stand on an edge that is seen, away from the meeting place, where much is written

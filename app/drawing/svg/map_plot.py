@@ -17,7 +17,7 @@ from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN, BoolArray, GridMap, where
 from algorithms.spectra.augmented_map import AugmentedMap
 from app.drawing.grid_pixels import Pixels
-from app.drawing.palette import Palette, Rgb, viridis
+from app.drawing.palette import Palette, Rgb, level_colours
 from app.drawing.scene_layout import Rect
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number
 
@@ -133,7 +133,7 @@ def draw_levels(view: RasterView, palette: Palette, lifted: AugmentedMap, T: Pos
     row, col, seen = view.pixels_of(lifted.points, T)
     np.maximum.at(share, (row[seen], col[seen]), lifted.levels[seen] / lifted.peak)
     up = share > 0.004
-    pixels[up] = viridis(share[up])
+    pixels[up] = level_colours(share[up], palette.dark)
     return pixels
 
 

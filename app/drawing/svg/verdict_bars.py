@@ -42,14 +42,19 @@ def titles(verdict: Verdict) -> dict[str, str]:
     return {**weighed, OTHERS: "other answers"}
 
 
-def bars(verdict: Verdict, palette: Palette, names: RobotNames = UNNAMED) -> str:
-    """A bar per quantity: by how much it moves the log-odds from those of a typical right merge."""
+def bars(verdict: Verdict, palette: Palette, names: RobotNames = UNNAMED, remark: str = "") -> str:
+    """A bar per quantity: by how much it moves the log-odds from those of a typical right merge.
+
+    remark : words beside the outcome
+    """
     named = titles(verdict)
     sheet = SvgCanvas(TOP + ROW * len(named) + 26)
     head = worded(COLOURS[verdict.outcome], palette)
     sheet.text(0, 13, f"{verdict.outcome.value.capitalize()}: {words.likelihood(verdict.probability)}", 15,
                colour=head, bold=True)  # fmt: skip
     middle = WIDE / 2
+    if remark:
+        sheet.text(WIDE, 13, remark, 10.5, "end", alpha=0.8)
     sheet.text(middle - 6, 33, "◀ speaks against", 10.5, "end", alpha=0.8)
     sheet.text(middle + 6, 33, "speaks for ▶", 10.5, alpha=0.8)
     shown = values(verdict)

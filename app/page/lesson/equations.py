@@ -1,7 +1,10 @@
-"""The equations of the lesson: LaTeX in static/equations/NAME.tex, typeset once into NAME.svg."""
+"""The equations of the lesson: LaTeX in static/equations/NAME.tex, typeset once into NAME.svg; and what their
+symbols mean, a table in static/equations/symbols.md.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
@@ -11,6 +14,9 @@ from pathlib import Path
 
 from algorithms.common.errors import InputFileError
 from app.system import data_paths as paths
+
+ROW = re.compile(r"^\| (?P<name>[^|]+?) \| *(?P<latex>[^|]*?) *\| (?P<means>[^|]+?) \|$", flags=re.M)
+INDEX = r"_(?:[0-9ijkn]|\{[\d,]+\})"  # what _# stands for in the table
 
 
 @dataclass(frozen=True)
@@ -64,3 +70,71 @@ def equations_html(chosen: Iterable[str]) -> str:
         for name in chosen
         for drawn, number in [_drawn(name)]
     )
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """A row of the table.
+
+    name  : as it is written in a text, an index after _, an exponent after ^; several with commas
+    latex : as it is written in an equation; _# is any index of one sign, or of numbers
+    """
+
+    name: str
+    latex: tuple[str, ...]
+    means: str
+
+    @property
+    def html(self) -> str:
+        name = re.sub(r"\*\*(.+?)\*\*", r"<b>\1</b>", escape(self.name))
+        return re.sub(r"([_^])(\w+(?:,\w+)?)", lambda at: _raised(at[1], at[2]), name)
+
+
+def _raised(sign: str, words: str) -> str:
+    kind = "sub" if sign == "_" else "sup"
+    return f"<{kind}>{words}</{kind}>"
+
+
+@cache
+def symbols() -> tuple[Symbol, ...]:
+    """All of the table."""
+    rows = ROW.finditer((folder() / "symbols.md").read_text(encoding="utf-8"))
+    read = [Symbol(row["name"], tuple(re.findall("`(.+?)`", row["latex"])), row["means"]) for row in rows]
+    return tuple(read[1:])  # the first row is the heading
+
+
+@cache
+def _patterns() -> list[tuple[re.Pattern[str], Symbol]]:
+    """What finds each form, the longest first: M_H before M."""
+    forms = [(form, symbol) for symbol in symbols() for form in symbol.latex]
+    forms.sort(key=lambda each: -len(each[0].replace("#", "")))
+    return [(re.compile(_pattern(form)), symbol) for form, symbol in forms]
+
+
+def _pattern(form: str) -> str:
+    """It begins and ends where a form does, not within a command or before another index."""
+    begins = "" if form.startswith("\\") else r"(?<![A-Za-z\\])"
+    return begins + re.escape(form).replace(r"_\#", INDEX) + r"(?![A-Za-z_])"
+
+
+def symbols_in(latex: str) -> tuple[list[Symbol], str]:
+    """The symbols of an equation in the order of the table, and what of its LaTeX is none of them."""
+    rest, found = re.sub(r"([_^])\{(\w|\*)\}", r"\1\2", latex), set()
+    for pattern, symbol in _patterns():
+        rest, count = pattern.subn(" ", rest)
+        if count:
+            found.add(symbol)
+    return [symbol for symbol in symbols() if symbol in found], rest
+
+
+def symbols_html(chosen: Iterable[str]) -> str:
+    """HTML of what the symbols of these equations mean, to be opened; empty where there is no equation."""
+    sources = [read_equation(folder() / f"{name}.tex").latex for name in chosen]
+    found = {symbol for latex in sources for symbol in symbols_in(latex)[0]}
+    rows = "".join(
+        f"<dt>{symbol.html}</dt><dd>{escape(symbol.means)}</dd>" for symbol in symbols() if symbol in found
+    )
+    if not rows:
+        return ""
+    head = '<details class="mm-symbols"><summary>What the symbols mean</summary>'
+    return f"{head}<dl>{rows}</dl></details>"

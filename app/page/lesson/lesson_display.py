@@ -87,11 +87,12 @@ class LessonDisplay:
             self._panel.picture(NOT_HERE if waiting == WAIT and over else waiting)
             self._panel.dials((), ())
             return OnMap(RunState(lesson.config), busy=waiting == WAIT and not over)
-        dials = picture.dials(lesson)
+        way = picture.ways.get(self.way)
+        dials = picture.dials(lesson) if way is None or way.dials is None else way.dials
         places = self._placed(dials)
         self._panel.dials(dials, places)
         self._beside(text, lesson, places)
-        svg = picture.ways.get(self.way, picture).draw(lesson, places, palette)
+        svg = (way or picture).draw(lesson, places, palette)
         self._panel.picture(lesson.inputs.names.told_in_html(svg))
         ink = picture.ink(lesson, places, self._display.views.map.layout, palette)
         turn = picture.turn(lesson, places) if picture.turn else None

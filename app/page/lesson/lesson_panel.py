@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from functools import partial
 from html import escape
@@ -9,7 +10,7 @@ from html import escape
 import viser
 
 from app.drawing.palette import QUIET
-from app.page.lesson.equations import equations_html
+from app.page.lesson.equations import equations_html, symbols_html
 from app.page.lesson.figures.figure_registry import FigureSlider, place_of, shown
 from app.page.lesson.lesson_texts import Exercise
 from app.page.panels.html_widgets import Action, box, on_choice, on_press, put
@@ -18,6 +19,11 @@ BACK, NEXT, LEAVE = "◀ Back", "Next ▶", "Leave"
 ANSWER, HIDE, PUT_BACK = "Show the answer", "Hide the answer", "Put it back"
 WIDTH = 424
 MOST_TRIALS, MOST_DIALS = 3, 2
+
+
+def emphasised(text: str) -> str:
+    """HTML of words, those between asterisks in italics."""
+    return re.sub(r"\*(\S[^*]*)\*", r"<em>\1</em>", escape(text))
 
 
 class LessonPanel:
@@ -102,7 +108,7 @@ class LessonPanel:
     def beside(self, words: str, equations: Sequence[str]) -> None:
         """Show what stands beside a picture: Markdown, and equations by their names."""
         put(self._body, content=words)
-        put(self._equations, content=equations_html(equations))
+        put(self._equations, content=equations_html(equations) + symbols_html(equations))
 
     def broken(self, index: int, title: str, what: str) -> None:
         """Tell what is wrong with the text of a step."""
@@ -144,8 +150,8 @@ class LessonPanel:
         for k, (ask, button) in enumerate(zip(self._asks, self._buttons, strict=True)):
             there = k < len(trials)
             if there:
-                answer = f'<div class="mm-answer">{escape(answers[k])}</div>' if answers[k] else ""
-                put(ask, content=f'<div class="mm-try"><b>Try</b> {escape(trials[k].ask)}{answer}</div>')
+                answer = f'<div class="mm-answer">{emphasised(answers[k])}</div>' if answers[k] else ""
+                put(ask, content=f'<div class="mm-try"><b>Try</b> {emphasised(trials[k].ask)}{answer}</div>')
                 on, off = (trials[k].button, PUT_BACK) if trials[k].button else (ANSWER, HIDE)
                 put(button, label=off if answers[k] else on)
             put(ask, visible=there)

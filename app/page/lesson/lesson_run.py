@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
 from algorithms.common.pose import FloatArray
+from algorithms.common.robot_names import UNNAMED
+from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.spectra_config import PipelineConfig
-from algorithms.methods.spectra_stages import values_in
-from algorithms.methods.steps import AugmentDetail, CandidatesDetail, RefineDetail, Step, WindowDetail
-from algorithms.optimisation.likelihood_field import make_agreement
+from algorithms.methods.spectra_stages import objective_of, values_in
+from algorithms.methods.steps import AugmentDetail, CandidatesDetail, RefineDetail, Step
+from algorithms.observations.pair_problem import PairProblem
 from algorithms.optimisation.monte_carlo import monte_carlo
-from algorithms.optimisation.objective import Objective, make_objective
+from algorithms.optimisation.objective import Objective
 from algorithms.optimisation.optimiser import SearchState
 from algorithms.optimisation.particle_swarm import settled_within, swarm
 from algorithms.optimisation.search_box import SearchBox, box_around
@@ -22,8 +24,10 @@ from algorithms.spectra.hough_spectra import hough_transform
 from app.model.merge_inputs import MergeInputs
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
+from app.model.status_text import typeset
 from app.page.lesson.side_runs import SideRun, SideRuns
 from app.page.lesson.sighting_look import SIGHTING, SightingLook
+from app.report.result_rows import numbers, sighting_rows
 
 D = TypeVar("D")
 
@@ -94,6 +98,15 @@ class LessonRun:
     # --- worked out once --------------------------------------------------------------------------
 
     @cached_property
+    def rows(self) -> dict[str, str]:
+        """The page's numbers of the sighting, and of the result where there is one, by their labels."""
+        i = replace(self.inputs, names=UNNAMED)
+        told = sighting_rows(i.observations[0], i.encounters[0])
+        if self.reached(MergeResult):
+            told += [(label, value) for label, value, *_ in numbers(self.get(MergeResult), i, self.config)]
+        return {label: typeset(value) for label, value, *_ in told}
+
+    @cached_property
     def votes(self) -> tuple[FloatArray, FloatArray, float]:
         """M_H of both maps, (K, R) each as eq. (11) sums it, and the width of a bin of ρ in metres."""
         lifted, directions = self.get(AugmentDetail), self.config.spectra.directions
@@ -104,15 +117,18 @@ class LessonRun:
     @cached_property
     def gamma(self) -> Objective:
         """Γ of eq. (17), whatever the run maximises."""
-        lifted = self.get(AugmentDetail)
-        return make_objective(lifted.ref, lifted.mov, self.config.refine.lookup)
+        return self._objective("gamma")
 
     @cached_property
     def agreement(self) -> Objective:
         """The agreement, whatever the run maximises."""
-        i, config, coupled = self.inputs, self.config, self.get(WindowDetail).coupled
-        lookup = config.refine.lookup
-        return make_agreement(i.ref, i.mov, i.encounters, config.augment, config.agreement, coupled, lookup)
+        return self._objective("agreement")
+
+    def _objective(self, name: Literal["gamma", "agreement"]) -> Objective:
+        i, config = self.inputs, replace(self.config, refine=replace(self.config.refine, objective=name))
+        assert i.ref is not None
+        assert i.mov is not None
+        return objective_of(PairProblem.of(i.ref, i.mov, i.known), self.get(AugmentDetail), config)
 
     @cached_property
     def box(self) -> SearchBox:

@@ -44,10 +44,10 @@ def test_a_database_is_known_by_its_tables_before_its_name(tmp_path, table, said
             check_foreign(name, empty)
 
 
-def test_a_folder_that_is_a_recording_and_its_description_are_told(tmp_path):
+def test_a_folder_that_is_a_damaged_recording_and_its_description_are_told(tmp_path):
     (tmp_path / "metadata.yaml").write_text("rosbag2_bagfile_information:\n  version: 5\n")
     for path in (tmp_path, tmp_path / "metadata.yaml"):
-        with pytest.raises(InputFileError, match=r"rosbag2 folder.* not (to )?a map; play it"):
+        with pytest.raises(InputFileError, match=r"rosbag2 folder, and damaged.*; mend it"):
             read_map(path)
     (tmp_path / "metadata.yaml").write_text("author: me\n")
     with pytest.raises(InputFileError, match="is a folder; give the YAML file of a map"):

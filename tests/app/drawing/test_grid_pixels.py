@@ -13,7 +13,7 @@ from algorithms.maps.map_fusion import fuse
 from algorithms.spectra.augmented_map import augment
 from algorithms.verdict.contradictions import find_conflicts, near_walls
 from app.drawing import grid_pixels as render
-from app.drawing.palette import DARK, LIGHT, VIRIDIS
+from app.drawing.palette import DARK, LIGHT, level_colours
 
 
 def l_shaped(rows: int = 12, cols: int = 20) -> GridMap:
@@ -63,13 +63,26 @@ def test_pooling_lets_walls_win_over_free_and_free_over_unknown():
     assert render.pool(cells, 2).tolist() == [[OCCUPIED]]
 
 
-def test_levels_are_brightest_at_the_meeting_place_and_far_walls_stay_faint():
+@pytest.mark.parametrize("palette", [LIGHT, DARK], ids=["light", "dark"])
+def test_walls_stand_out_from_the_floor_the_more_the_higher_their_level_and_far_ones_stay_faint(palette):
     room = l_shaped(80, 120)
     lifted = augment(room, np.array([0.05, 0.05]), np.eye(2) * 0.3**2, 100.0)
-    picture = render.levels(lifted, LIGHT).pixels
-    assert np.abs(picture[0, 0, :3].astype(int) - VIRIDIS[255]).max() <= 2  # a wall on x̂ has the peak level
+    picture = render.levels(lifted, palette).pixels
     assert picture[0, -1, 3] < 100
     assert picture[40, 60, 3] == 0
+    contrasts = contrast(level_colours(np.linspace(0, 1, 256), palette.dark), palette.free)
+    assert contrasts.min() >= 3
+    assert np.diff(contrasts).min() > -0.1
+    assert contrast(picture[0, 0, :3], palette.free) == pytest.approx(contrasts.max(), rel=0.02)  # on x̂
+
+
+def contrast(colours, floor):
+    """(…,) of (…, 3) colours with another, as WCAG measures it."""
+    first, second = (
+        np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4) @ [0.2126, 0.7152, 0.0722]
+        for c in (np.asarray(colours) / 255, np.asarray(floor) / 255)
+    )
+    return (np.maximum(first, second) + 0.05) / (np.minimum(first, second) + 0.05)
 
 
 def test_a_merged_map_shows_agreement_and_contradiction_in_their_own_colours():

@@ -77,7 +77,7 @@ def test_before_anything_has_run_there_are_two_maps_and_no_more():
 def test_what_the_walls_are_coloured_by_is_told_from_the_levels_on(steps):
     story = until(steps, AugmentDetail)
     (scale,) = legend(LIGHT, "Heights", story)
-    assert scale == level_scale(story.get(AugmentDetail))
+    assert scale == level_scale(story.get(AugmentDetail), LIGHT)
     assert (scale["s"], scale["low"]) == ("scale", "0")
     assert float(scale["high"]) == pytest.approx(story.get(AugmentDetail).ref.peak, rel=0.005)
     assert len(set(scale["c"])) == len(scale["c"]) > 4

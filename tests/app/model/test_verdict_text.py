@@ -100,6 +100,14 @@ def test_maps_that_share_little_and_contradict_nowhere_are_not_said_to_be_of_two
     assert "share more" in words.remedy(refused(little, contributions=contributions))
 
 
+@pytest.mark.parametrize("method", ["spectra-swarm", "spectra-montecarlo", "paper-argmax"])
+def test_a_search_without_a_proof_is_told_to_be_done_by_the_default_method_before_the_maps_are_doubted(
+    result, method
+):
+    contributions = dict.fromkeys(result.verdict.contributions, 1.0) | {"contradiction": -5.0}
+    assert "default one" in words.remedy(replace(refused(result, contributions=contributions), method=method))
+
+
 def test_a_rival_that_nobody_would_believe_in_is_not_told(result):
     likely = {"rival": Pose2(1.0, 2.0, 3.0), "probability": 0.6}
     assert words.rival(refused(result, ambiguity=0.5, **likely)).endswith("turned, 30%")

@@ -200,7 +200,7 @@ def test_the_page_tells_the_files_by_their_hashes_and_what_is_no_default(page, r
     changed = replace(DEFAULTS, augment=replace(DEFAULTS.augment, spread=2.5))
     told = report_page(result, pair, changed, report_of(result, changed, pair=pair)).decode()
     read(told)
-    assert "1 setting differs from the method&#x27;s defaults: Σ_aug spread (m)." in told
+    assert "1 setting differs from the method&#x27;s defaults: σ_aug spread (m)." in told
     image = hashlib.sha256((case_folder / "map2.pgm").read_bytes()).hexdigest()
     assert f"<td>Alice&#x27;s map</td><td>map2.pgm</td><td>{image}</td>" in told
     assert "<h1>flat_1: Bob saw Alice</h1>" in told

@@ -12,10 +12,11 @@ from algorithms.common.pose import FloatArray, Pose2
 from algorithms.fleets.consistent_set import SLACK
 from algorithms.fleets.pair_hypotheses import Hypothesis, PairFinding
 from algorithms.fleets.transform_chain import UncertainTransform
+from algorithms.maps.grid_map import where
 from app.drawing.draw_items import ellipse
 from app.drawing.palette import Palette, Rgb, robot_colour
 from app.drawing.scene_layout import Rect, known_corners, rect_of, union
-from app.drawing.svg.map_plot import RasterView, draw_map, scale_bar, scene
+from app.drawing.svg.map_plot import RasterView, around, draw_map, scale_bar, scene
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot
 from app.model.verdict_text import likelihood
 from app.page.lesson.chain_runs import BETWEEN, OPEN, Chain, chain_of, chain_runs, sample_fleet
@@ -59,6 +60,46 @@ def chain(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
         x = sheet.chip(x, y, robot_colour(number), name)
     sheet.chip(x, y, palette.margin, f"error of a map's middle, 1 σ, {LARGER} times as large", "line")
     return sheet.svg("Three robots: the chain through the third, and the loop that it closes")
+
+
+def second_sighting(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
+    """Both answers of the open pair, and where either puts a place at which r1 could see r2 once more."""
+    found = _chain(runs_of(lesson))
+    if found is None:
+        return chain(lesson, at, palette)
+    fleet, sheet, wide = sample_fleet(), SvgCanvas(TOP + SIDE + 64), SIDE + APART
+    answers = found.findings[-1].hypotheses[:2]
+    grid, pivot = fleet.maps[FAR], found.findings[-1].pivot
+    floor = grid.centres(*where(grid.free))
+    again = floor[int(np.hypot(*(floor - pivot).T).argmax())]  # the farther off, the better it tells
+    places = [(ROOT, Pose2()), *((FAR, answer.T_ref_mov) for answer in answers)]
+    rect = union(*(rect_of(T.apply(known_corners(fleet.maps[name]))) for name, T in places))
+    x0, y0, x1, y1 = rect
+    middle = np.array([x0 + x1, y0 + y1]) / 2
+    half = 0.53 * max(x1 - x0, (y1 - y0) * wide / SIDE)
+    view = RasterView(around(middle, half, wide / SIDE), int(2 * wide), int(2 * SIDE))
+    pixels = view.blank(palette)
+    colours = (_colour(ROOT), _colour(FAR), palette.conflict)
+    for (name, T), colour in reversed(list(zip(places, colours, strict=True))):
+        pixels = draw_map(view, palette, fleet.maps[name], colour, T, pixels)
+    sheet.text(0, 11, f"{ROOT} sees {FAR} once more, at the far end of {FAR}'s map", 11, bold=True)
+    plot = scene(sheet, 0, TOP, wide, SIDE, view)
+    plot.image(pixels)
+    goes_to = [answer.T_ref_mov.apply(again) for answer in answers]
+    for answer, place, colour in zip(answers, goes_to, colours[1:], strict=True):
+        px, py = plot.one(*place.tolist())
+        sheet.dot(px, py, 5, colour, "#fff")
+        sheet.text(px, py - 9, _share(answer), 11, "middle", colour, True, halo=palette.free)
+    sheet.rect(0, TOP, wide, SIDE, None, INK, 0.35)
+    scale_bar(plot)
+    y = TOP + SIDE + 20
+    sheet.text(0, y, "by the first sighting the answers are this likely; by a second one", 10.5, alpha=0.8)
+    sheet.text(0, y + 17, f"{FAR} would stand at one of two places, apart by", 10.5, alpha=0.8)
+    sheet.text(wide, y + 17, f"{float(np.hypot(*(goes_to[0] - goes_to[1]))):.1f} m", 10.5, "end")
+    x = sheet.chip(0, y + 38, _colour(ROOT), ROOT)
+    x = sheet.chip(x, y + 38, _colour(FAR), f"{FAR}, likelier")
+    sheet.chip(x, y + 38, palette.conflict, f"{FAR}, the other answer")
+    return sheet.svg("Two answers, and where a second sighting would be under each")
 
 
 def runs_of(lesson: LessonRun) -> SideRuns:

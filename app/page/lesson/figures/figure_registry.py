@@ -28,8 +28,9 @@ from app.drawing.palette import Palette, css
 from app.drawing.scene_layout import SceneLayout
 from app.drawing.svg.scan_plot import sector
 from app.model.run_state import RunState
-from app.page.lesson.figures import chain_figure, knowledge_figure, verdict_figure
+from app.page.lesson.figures import chain_figure, knowledge_figure, verdict_figure, window_figure
 from app.page.lesson.figures import map_figures as maps
+from app.page.lesson.figures import proof_figure as proofs
 from app.page.lesson.figures import search_figures as search
 from app.page.lesson.figures import sighting_figure as sighting
 from app.page.lesson.figures import spectra_figures as spectra
@@ -63,10 +64,12 @@ class OtherWay:
 
     draw   : as that of the picture
     places : where the dials go, so that it is seen
+    dials  : what can be moved in it; None: the same as in the picture
     """
 
     draw: Callable[[LessonRun, At, Palette], str]
     places: tuple[int, ...]
+    dials: tuple[FigureSlider, ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -118,9 +121,9 @@ def _searching(
 
 
 def _looking(lesson: LessonRun, at: At) -> RunState:
-    """The run up to a look at the proof."""
-    chosen = search.looks(lesson)
-    return lesson.run_until(ProofDetail, chosen[min(at[0], len(chosen) - 1)])
+    """The run up to a look at the proof, to the last one where none is chosen."""
+    chosen = proofs.looks(lesson)
+    return lesson.run_until(ProofDetail, chosen[min(at[0], len(chosen) - 1) if at else -1])
 
 
 def _lines(lesson: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
@@ -142,7 +145,7 @@ def _lines(lesson: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> 
 
 
 def _moves(lesson: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> list[Item]:
-    """Every particle's last step, and the three pulls on the chosen one, end to end."""
+    """Every particle's last step, and the three pulls on the chosen one."""
     states, j = lesson.few, min(at[1], FEW - 1)
     k = min(at[0] + 1, len(states) - 1)
     before, after = states[max(0, k - 1)], states[k]
@@ -151,10 +154,9 @@ def _moves(lesson: LessonRun, at: At, layout: SceneLayout, palette: Palette) -> 
         for start, end in zip(before.poses[:, :2], after.poses[:, :2], strict=True)
     ]
     if after.pulls is not None:
-        ends = before.poses[j] + np.concatenate([np.zeros((1, 3)), np.cumsum(after.pulls[:, j], axis=0)])
-        ends = ends[:, :2] - layout.anchor_ref
-        pulls = enumerate((palette.ref, palette.best, palette.particle))
-        items += [path(ends[n : n + 2], colour, w=3.5, halo=True) for n, colour in pulls]
+        here = before.poses[j, :2] - layout.anchor_ref
+        pulls = zip(after.pulls[:, j, :2], (palette.ref, palette.best, palette.particle), strict=True)
+        items += [path(np.array([here, here + pull]), colour, w=3.5, halo=True) for pull, colour in pulls]
     return items
 
 
@@ -190,6 +192,7 @@ def _seen_by_laser(lesson: LessonRun, at: At, layout: SceneLayout, palette: Pale
     return items
 
 
+_TURN = FigureSlider("off the best turn (°)", window_figure.TURNS, first=0, step=360 / window_figure.TURNS)
 _HALF = search.TURN_STEPS // 2
 _LINE = FigureSlider("line", spectra.LINES)
 _OFF = FigureSlider("off the best (°)", search.TURN_STEPS, _HALF, -_HALF * search.TURN_STEP, search.TURN_STEP)
@@ -223,7 +226,10 @@ PICTURES: dict[str, LessonFigure] = {
         (CandidatesDetail,), spectra.shift, _nth(ShiftDetail),
         lambda lesson: (FigureSlider("candidate", len(lesson.all(ShiftDetail))),),
     ),
-    "window": LessonFigure((CandidatesDetail,), spectra.window, _up_to(CandidatesDetail)),
+    "window": LessonFigure(
+        (CandidatesDetail,), window_figure.window, _up_to(CandidatesDetail),
+        ways={"origins": OtherWay(window_figure.origins, (0,), (_TURN,))},
+    ),
     "objective": LessonFigure(
         (CandidatesDetail,), search.objective, _up_to(CandidatesDetail), lambda _: (_OFF,)
     ),
@@ -235,8 +241,9 @@ PICTURES: dict[str, LessonFigure] = {
         (CandidatesDetail,), search.swarm, _searching(lambda lesson: lesson.few, 1), _swarm_dials, _moves
     ),
     "proof": LessonFigure(
-        (ProvenDetail,), search.proof, _looking,
-        lambda lesson: (FigureSlider("look", (count := len(search.looks(lesson))), count - 1),),
+        (ProvenDetail,), proofs.proof, _looking,
+        lambda lesson: (FigureSlider("look", (count := len(proofs.looks(lesson))), count - 1),),
+        ways={"lattice": OtherWay(proofs.between_the_lattice, (), ())},
     ),
     "answers": LessonFigure((MergeResult,), verdict_figure.answers, _up_to(WeighedDetail)),
     "merged": LessonFigure((MergeResult,), maps.merged, _up_to(Fusion)),
@@ -246,7 +253,8 @@ PICTURES: dict[str, LessonFigure] = {
         compares=knowledge_figure.runs_of,
     ),
     chain_figure.NAME: LessonFigure(
-        (MergeResult,), chain_figure.chain, _up_to(MergeResult), compares=chain_figure.runs_of
+        (MergeResult,), chain_figure.chain, _up_to(MergeResult), compares=chain_figure.runs_of,
+        ways={"second": OtherWay(chain_figure.second_sighting, ())},
     ),
 }  # fmt: skip
 

@@ -15,7 +15,7 @@ from algorithms.methods.steps import AugmentDetail, HoughDetail
 from app.drawing.draw_items import ellipse
 from app.drawing.grid_pixels import is_free, upright, wall_masks
 from app.drawing.grid_pixels import sheet as painted
-from app.drawing.palette import VIRIDIS, Palette, Rgb
+from app.drawing.palette import Palette, Rgb, level_colours
 from app.drawing.svg.map_plot import draw_levels, draw_map, map_panel, robot, under, view_of
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number, turn_label, worded
 from app.page.lesson.figures.search_figures import cut_out
@@ -50,7 +50,7 @@ def observation(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     away = heading + o.bearing - (0.5 if o.bearing < 0 else -0.5) * pi  # the arc's other side
     px, py = plot.one(*(middle + 0.1 * half * np.array([cos(away), sin(away)])).tolist())
     side = "start" if cos(away) > 0 else "end"
-    sheet.text(px, py + 4, f"r = {o.range:.2f} m", 11, side, palette.text, halo=rim)
+    sheet.text(px, py + 4, f"r = {o.range:.3f} m", 11, side, palette.text, halo=rim)
     robot(plot, here, heading, palette.ref)
     sheet.dot(x, y, 6, None, red, width=2)
     sheet.text(x + 9, y + 4, "x̂₁", 12, colour=red, bold=True, halo=rim)
@@ -65,8 +65,10 @@ def observation(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     return sheet.svg("Robot 1 and what it saw in map 1; the same place in map 2")
 
 
-def level_scale(sheet: SvgCanvas, x: float, y: float, wide: float, peak: float, words: str) -> None:
-    sheet.image(np.ascontiguousarray(VIRIDIS[None]), x, y, wide, 9, smooth=True)
+def level_scale(
+    sheet: SvgCanvas, x: float, y: float, wide: float, peak: float, words: str, palette: Palette
+) -> None:
+    sheet.image(level_colours(np.linspace(0, 1, 256), palette.dark)[None], x, y, wide, 9, smooth=True)
     sheet.rect(x, y, wide, 9, None, INK, 0.35)
     for share in (0.0, 0.5, 1.0):
         anchor = {0.0: "start", 1.0: "end"}.get(share, "middle")
@@ -83,14 +85,14 @@ def augmentation(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
         view = view_of(lifted.x_hat, half, HALF, HALF)
         pixels = draw_levels(view, palette, lifted)
         plot = map_panel(sheet, x, HALF, HALF, view, pixels, f"{title}, augmented")
-        for k, name in ((1, "σ"), (2, "2 σ")):
+        for k, name in ((1, "σ_aug"), (2, "2 σ_aug")):
             ring = plot.at(ellipse(lifted.x_hat, config.covariance(), k))
             sheet.path(ring, palette.text, 1.2, dash="4 3", close=True, alpha=0.75)
             x_top, y_top = ring[int(ring[:, 1].argmin())]
             halo = palette.free if k == 1 else None
             sheet.text(x_top, y_top - 3, name, 10, "middle", palette.text, halo=halo)
         sheet.dot(*plot.one(*lifted.x_hat.tolist()), 4, palette.conflict, "#fff")
-    level_scale(sheet, 0, 212, 250, detail.ref.peak, "level (1/m²)")
+    level_scale(sheet, 0, 212, 250, detail.ref.peak, "level (1/m²)", palette)
     return sheet.svg("Both maps, their walls coloured by level around the meeting place")
 
 
@@ -162,9 +164,10 @@ def _class(cells: CellArray) -> np.ndarray:
 
 
 def merged(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
-    """The merged map around the meeting, and what became of every cell."""
+    """The merged map around the meeting, what each map says of every cell, and what the merged one does."""
     fusion, result = lesson.get(Fusion), lesson.get(MergeResult)
     first, second = _class(fusion.ref_cells), _class(fusion.mov_cells)
+    merged_class = _class(fusion.merged.cells)
     counts = np.bincount((3 * first + second).ravel(), minlength=9).reshape(3, 3)
     sheet = SvgCanvas(218)
     view = view_of(result.encounters[0].x_ref, 2.0 * lesson.config.augment.spread, HALF, HALF)
@@ -191,7 +194,9 @@ def merged(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
             ink = "#111827" if light else "#fff" if colour else INK
             share = "–" if (r, c) == (2, 2) else f"{counts[r, c]:,}"
             sheet.text(left + wide / 2, top + high / 2 + 4, share, 10, "middle", ink)
-    T = result.T_ref_mov
-    sheet.text(x - 44, y + 3 * high + 18, f"turned by {turn_label(T.theta)}", 11)
-    sheet.text(x - 44, y + 3 * high + 33, f"shifted by ({T.x:.2f}, {T.y:.2f}) m".replace("-", "−"), 11)
+            if colours.get((r, c)) == palette.conflict and counts[r, c]:
+                becomes = names[np.bincount(merged_class[(first == r) & (second == c)], minlength=3).argmax()]
+                sheet.text(left + wide / 2, top + high - 6, f"→ {becomes}", 9, "middle", ink)
+    for line, name in enumerate(("Δθ", "Δx", "Δy")):
+        sheet.text(x - 44, y + 3 * high + 14 + 14 * line, f"{name} = {lesson.rows[f'T: {name}']}", 11)
     return sheet.svg("The merged map, and the cells by what each map says of them")

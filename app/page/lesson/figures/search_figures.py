@@ -1,4 +1,4 @@
-"""Pictures of the search: the landscape, darts, the swarm and its pulls, the proof."""
+"""Pictures of the search: the landscape, darts, the swarm and its pulls."""
 
 from __future__ import annotations
 
@@ -6,23 +6,22 @@ from collections.abc import Sequence
 from math import degrees, hypot
 
 import numpy as np
-import skimage  # its parts are loaded where they are first used
 
 from algorithms.common.pose import FloatArray, Pose2, wrap_angle
-from algorithms.methods.steps import AugmentDetail, ProofDetail, WindowDetail
-from algorithms.optimisation.objective import PAD, Objective
+from algorithms.methods.steps import WindowDetail
+from algorithms.optimisation.objective import Objective
 from algorithms.optimisation.optimiser import SearchState
 from app.drawing.draw_items import ellipse, rectangle
-from app.drawing.grid_pixels import upright
 from app.drawing.palette import Palette, css, viridis
-from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, draw_chart, ticks, turn_label
-from app.model import chart_data as charts
+from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, ticks, turn_label
+from app.model.chart_data import to_one
 from app.model.objective_label import AGREEMENT, GAMMA, ObjectiveLabel, measure_of
 from app.page.lesson.lesson_run import FEW, LessonRun
 
 SIDE = 61  # samples of a landscape along each axis
 TURN_STEPS, TURN_STEP = 41, 0.5  # of the slider; degrees
-LOOKS = 40  # at a proof
+NEAR = 1  # cell of map 1 to both sides of the best, from near by
+LEAST_NEAR = 0.85  # of the best, the foot of that picture
 PALED = (17, 24, 39)  # a landscape is darkened with it, so that marks over it stand out
 PLACES = "where x̂₂ goes, x (m)"
 
@@ -63,8 +62,13 @@ def objective(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     turns = np.radians(np.arange(0.0, 360.0, 0.5))
     round_ = transforms(np.full(720, place[0]), np.full(720, place[1]), turns, coupled.pivot)
     order = np.argsort(np.mod(np.degrees(turns) + 180, 360))
-    below = SvgPlot(sheet, 42, 226, 324, 68, (-180, 180), (-0.35, 1.1))
-    sheet.text(0, 219, "both over the turn (each of its highest)", 11, bold=True)
+    below = SvgPlot(sheet, 42, 226, 196, 68, (-180, 180), (-0.35, 1.1))
+    sheet.text(0, 219, "over the turn", 11, bold=True)
+    reach = NEAR * lesson.inputs.ref.resolution
+    beside = SvgPlot(sheet, 274, 226, 92, 68, (-100 * reach, 100 * reach), (LEAST_NEAR, 1.01))
+    sheet.text(262, 219, "near the star, in x", 11, bold=True)
+    steps = np.linspace(-reach, reach, 241)
+    near = transforms(place[0] + steps, np.full(len(steps), place[1]), turn, coupled.pivot)
     rows: tuple[tuple[float, Objective, ObjectiveLabel, str], ...] = (
         (42.0, lesson.gamma, GAMMA, css(palette.best)),
         (226.0, lesson.agreement, AGREEMENT, css(palette.particle)),
@@ -72,25 +76,26 @@ def objective(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     for x, value, measure, colour in rows:
         grid = _landscape(value, coupled.x_ref[0], half, turn, coupled.pivot)
         plot = SvgPlot(sheet, x, 18, side, side, (x0 - half, x0 + half), (y0 - half, y0 + half))
-        top = float(value(best.array()[None])[0])
+        top = float(value(transforms(*place[:, None], turn, coupled.pivot))[0])
         highest = max(top, float(grid.max()), 1e-12)
         name = "Γ, eq. (17)" if measure is GAMMA else "A"
-        sheet.text(x, 11, f"{name}: up to {measure.text(float(grid.max()))}", 11, bold=True)
+        sheet.text(x, 11, f"{name}: {measure.text(top)} at the star", 11, bold=True)
         plot.image(viridis(np.clip(grid / highest, 0, 1)))
         ring = plot.at(ellipse(coupled.x_ref[0], coupled.covariances[0], coupled.k))
         sheet.path(ring, "#fff", 1.4, dash="4 3", close=True)
         sheet.star(*plot.one(*place.tolist()), 7, palette.answer, palette.rim)
         plot.axes(PLACES, "y (m)" if x < 100 else "", _few(x0, half), _few(y0, half))
-        curve = value(round_)
-        curve = curve / max(float(curve.max()), 1e-12)
+        curve = to_one(value(round_))
         below.curve(np.mod(np.degrees(turns) + 180, 360)[order] - 180, curve[order], colour, 1.5)
+        beside.curve(100 * steps, to_one(value(near)), colour, 1.5)
     here = f"at Δθ = {turn_label(wrap_angle(turn))}, {turn_label(off)} off the best"
     sheet.text(0, 186, f"{here}. Dashed: the window. Star: the best.", 10)
     sheet.text(0, 200, "Dark: nothing fits, or more is denied than agrees.", 10, alpha=0.8)
     below.upright((degrees(turn) + 180) % 360 - 180, INK, 1, "3 3")
     below.axes("turn Δθ (°)", "", (-180, -90, 0, 90, 180), (0, 0.5, 1), grid=True)
-    after = sheet.chip(250, 219, palette.best, "Γ", "line")
-    sheet.chip(after, 219, palette.particle, "agreement", "line")
+    beside.axes("x (cm)", "", (round(-100 * reach), 0, round(100 * reach)), (LEAST_NEAR, 1), grid=True)
+    after = sheet.chip(96, 219, palette.best, "Γ", "line")
+    sheet.chip(after, 219, palette.particle, "A, each of its highest", "line")
     return sheet.svg("Landscapes of both objectives")
 
 
@@ -169,11 +174,11 @@ def swarm(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
 
 
 def _pulls(sheet: SvgCanvas, before: SearchState, after: SearchState, j: int, palette: Palette) -> None:
-    """The three terms of eq. (21) on one particle, end to end, and the step they add up to."""
+    """The three terms of eq. (21) from where the particle is, and the step that they add up to."""
     here, there = before.poses[j], after.poses[j]
     terms = after.pulls[:, j]
-    ends = here + np.concatenate([[np.zeros(3)], np.cumsum(terms, axis=0)])
-    places = np.array([*ends, there, before.best, before.own_poses[j]])[:, :2]
+    ends = here + np.array([*terms, terms.sum(axis=0)])
+    places = np.array([here, *ends, there, before.best, before.own_poses[j]])[:, :2]
     low, high = places.min(axis=0), places.max(axis=0)
     half = max(0.004, 0.62 * float((high - low).max()))
     cx, cy = ((low + high) / 2).tolist()
@@ -185,11 +190,11 @@ def _pulls(sheet: SvgCanvas, before: SearchState, after: SearchState, j: int, pa
     sheet.star(*plot.one(*before.own_poses[j, :2].tolist()), 6, palette.particle, palette.rim)
     names = ("ω · own motion", "ω κτ · to the swarm's best", "ω κτ · to its own best")
     colours = (palette.ref, palette.best, palette.particle)
-    corners = plot.at(ends[:, :2])
-    for n, colour in enumerate(colours):
-        sheet.arrow(corners[n].tolist(), corners[n + 1].tolist(), colour, 2.4)
-    sheet.arrow(corners[0].tolist(), corners[3].tolist(), palette.text, 1.6, dash="4 3")
-    sheet.dot(*corners[0].tolist(), 4, palette.text, "#fff", width=1)
+    start, *tips = plot.at([here[:2], *ends[:, :2]]).tolist()
+    sheet.arrow(start, tips[3], palette.text, 1.6, dash="4 3")
+    for tip, colour in zip(tips, colours, strict=False):
+        sheet.arrow(start, tip, colour, 2.4)
+    sheet.dot(*start, 4, palette.text, "#fff", width=1)
     sheet.dot(*plot.one(*there[:2].tolist()), 5, None, palette.text, width=1.8)
     sheet.text(374, 190, f"{_length(2 * half)} across", 10, "end", alpha=0.8)
     for n, (name, colour) in enumerate(zip(names, colours, strict=True)):
@@ -210,43 +215,3 @@ def _length(metres: float) -> str:
     if metres >= 0.1:
         return f"{metres:.2f} m"
     return f"{100 * metres:.1f} cm" if metres >= 0.01 else f"{1000 * metres:.1f} mm"
-
-
-def looks(lesson: LessonRun) -> list[int]:
-    """Numbers of the steps of the proof that are looked at, from its beginning to its end."""
-    count = len(lesson.all(ProofDetail))
-    return np.unique(np.linspace(0, count - 1, LOOKS).round().astype(int)).tolist() if count else []
-
-
-def proof(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
-    """Map 1 pooled coarser and coarser, and what is left of every turn."""
-    chosen, sheet = looks(lesson), SvgCanvas(318)
-    state = lesson.all(ProofDetail)[chosen[min(at[0], len(chosen) - 1)]].state
-    table = lesson.gamma.sides[0].table[PAD:-PAD, PAD:-PAD]
-    lifted = lesson.get(AugmentDetail).ref
-    reach = min(64, max(table.shape) // 2)
-    centre = lifted.grid.grid_coordinates(lifted.x_hat) - lesson.gamma.sides[0].corner
-    col, row = centre.astype(int).tolist()
-    part = cut_out(table, (row - reach, col - reach), 2 * reach, np.float32(0))
-    top = max(float(part.max()), 1e-12)
-    sheet.text(0, 11, "map 1's levels; the highest within 1, 4, 8, 16 cells", 11, bold=True)
-    for k, size in enumerate((1, 4, 8, 16)):
-        pooled = skimage.measure.block_reduce(part, (size, size), np.max)
-        sheet.image(upright(viridis(pooled / top)), 96.0 * k, 18, 90, 90)
-        sheet.text(96.0 * k + 45, 121, f"{size} cell{'s' if size > 1 else ''}", 10, "middle")
-    measure = measure_of(lesson.config)
-    chart = charts.proof(state, lesson.run_until(ProofDetail).ceiling, measure)
-    plot = SvgPlot(sheet, 42, 150, 324, 118, (-180, 180), chart.up)
-    left = "proven" if state.proven else f"nothing above {measure.text(state.ceiling)} is left"
-    sheet.text(0, 143, f"{state.nodes:,} blocks looked at: {left}", 11, bold=True)
-    draw_chart(plot, chart, palette)
-    unit = f" ({measure.unit})" if measure.unit else ""
-    plot.axes("turn Δθ (°)", f"best{unit}", (-180, -90, 0, 90, 180), ticks(*chart.up, 4))
-    x, lines, dots = 42.0, (palette.margin, palette.particle), (palette.answer, palette.rival)
-    for colours, names, shape in (
-        (lines, ("ceiling", "best met"), "line"),
-        (dots, ("best", "rivals"), "dot"),
-    ):
-        for colour, name in zip(colours, names, strict=True):
-            x = sheet.chip(x, 313, colour, name, shape)
-    return sheet.svg("Bounds of every turn")

@@ -1,4 +1,4 @@
-"""Pictures of the spectra: votes, sums, correlations, and the window that bounds the shift."""
+"""Pictures of the spectra: votes, sums, and correlations."""
 
 from __future__ import annotations
 
@@ -8,13 +8,11 @@ from math import degrees
 import numpy as np
 import scipy  # its parts are loaded where they are first used
 
-from algorithms.common.pose import FloatArray, rotation, wrap_angle
-from algorithms.methods.steps import AugmentDetail, HoughDetail, ShiftDetail, WindowDetail
-from app.drawing.draw_items import ellipse, rectangle
+from algorithms.common.pose import FloatArray, wrap_angle
+from algorithms.methods.steps import AugmentDetail, HoughDetail, ShiftDetail
 from app.drawing.palette import Palette, viridis
-from app.drawing.scene_layout import known_corners
 from app.drawing.svg.map_plot import draw_map, map_panel, view_of, walls
-from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number, turn_label, worded
+from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, turn_label, worded
 from app.model.chart_data import to_one
 from app.page.lesson.lesson_run import LessonRun
 
@@ -183,44 +181,6 @@ def shift(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
         marks = [round(middle - pad, 1), round(middle, 1), round(middle + pad, 1)]
         plot.axes(f"where x̂₂ goes, {name} (m)", "", marks, (0, 0.5, 1))
     return sheet.svg("X and Y spectra of map 1 and of the turned map 2, and their correlations")
-
-
-def window(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
-    """Both windows to scale over map 1, and the coupled one from near by."""
-    windows, grid = lesson.get(WindowDetail), lesson.inputs.ref
-    found = lesson.all(ShiftDetail)
-    turn = found[0].candidate.T_ref_mov.theta if found else 0.0
-    coupled, paper = windows.coupled, windows.paper
-    off = rotation(turn) @ (coupled.pivot - paper.pivot)
-    low, high = paper.low + off, paper.high + off
-    sheet, side, small = SvgCanvas(236), 206.0, 156.0
-    ends = np.concatenate([[low, high], known_corners(grid)])
-    middle = (ends.min(axis=0) + ends.max(axis=0)) / 2
-    view = view_of(middle, 0.54 * float(np.ptp(ends, axis=0).max()), side, side)
-    pixels = draw_map(view, palette, grid, palette.ref)
-    plot = map_panel(sheet, 0, side, side, view, pixels, "the paper's window")
-    sheet.path(plot.at(rectangle(low, high)), palette.conflict, 2, dash="6 4", close=True)
-    x_hat = coupled.x_ref[0]
-    px, py = plot.one(*x_hat.tolist())
-    sheet.dot(px, py, 7, None, palette.best, width=2)
-    near = max(0.6, 1.5 * float((coupled.high - coupled.low).max()) / 2)
-    view = view_of(x_hat, near, small, small)
-    pixels = draw_map(view, palette, grid, palette.ref)
-    inset = map_panel(sheet, 222, small, small, view, pixels, "the coupled one, near by")
-    for k, name in ((1.0, "1 σ"), (coupled.k, f"{number(coupled.k)} σ")):
-        ring = inset.at(ellipse(x_hat, coupled.covariances[0], k))
-        strong = k == coupled.k
-        sheet.path(ring, palette.best, 2 if strong else 1, dash="" if strong else "3 3", close=True)
-        top = ring[int(ring[:, 1].argmin())]
-        sheet.text(top[0], top[1] - 3, name, 10, "middle", palette.best, True, halo=palette.free)
-    away = lesson.inputs.observations[0].observer.xy - x_hat
-    end = x_hat + away * min(1.0, 0.98 * near / max(float(np.hypot(*away)), 1e-12))
-    sheet.path(inset.at([end, x_hat]), palette.text, 1.5, dash="5 4")
-    sheet.dot(*inset.one(*x_hat.tolist()), 4, None, palette.conflict, width=2)
-    sheet.path([(px + 7, py), (222, 18 + small / 2)], palette.best, 1, dash="2 3")
-    sheet.chip(222, 194, palette.conflict, "eqs. (6)–(10)", "line")
-    sheet.chip(222, 212, palette.best, "eq. (3), turn known", "line")
-    return sheet.svg("The paper's window and the coupled window, to scale")
 
 
 def first_turn(lesson: LessonRun) -> int:

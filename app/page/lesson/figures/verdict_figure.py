@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from algorithms.methods.merge_result import MergeResult
 from algorithms.verdict.probability_model import probability
+from algorithms.verdict.wall_evidence import Evidence
 from app.drawing.palette import Palette
 from app.drawing.svg.svg_canvas import WIDE, SvgCanvas
 from app.drawing.svg.verdict_bars import bars
@@ -18,7 +19,15 @@ MOST_ANSWERS = 5
 
 
 def verdict(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
-    return bars(lesson.get(MergeResult).verdict, palette)
+    """What speaks for the merge and what against it, and from which probability on it is accepted."""
+    least = f"accepted from {lesson.config.verdict.accept_from:.1%} on"
+    return bars(lesson.get(MergeResult).verdict, palette, remark=least)
+
+
+def evidence_says(found: Evidence) -> str:
+    """What the walls of the whole maps say of an answer, patches slipped."""
+    metres = f"{found.agreeing:.0f} m agree, {found.contradicting:.1f} m contradict"
+    return f"{metres}; {found.floor:.0f} m² of floor in common"
 
 
 def answers(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
@@ -38,8 +47,7 @@ def answers(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
         for metres, colour in ((found.agreeing, palette.agreed), (found.contradicting, palette.conflict)):
             sheet.rect(wide, y + 18, WIDE * metres / most, 11, colour)
             wide += WIDE * metres / most
-        says = f"{found.agreeing:.0f} m agree, {found.contradicting:.1f} m contradict; "
-        sheet.text(0, y + 42, f"{says}{found.floor:.0f} m² of floor in common", 10.5, alpha=0.85)
+        sheet.text(0, y + 42, evidence_says(found), 10.5, alpha=0.85)
     y = 30 + ANSWER * len(answers) + 8
     after = sheet.chip(0, y, palette.agreed, "wall that agrees")
     sheet.chip(after, y, palette.conflict, "wall that contradicts")

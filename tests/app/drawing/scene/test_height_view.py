@@ -103,22 +103,30 @@ def test_each_map_stands_in_its_own_half_around_its_meeting_place(view, scene, n
     assert notes.sent["look"]["view"] == "heights"
 
 
-def test_the_camera_stays_where_a_person_has_put_it_unless_it_is_asked_to_look(view, notes):
+def test_the_camera_goes_before_the_first_heights_there_are_and_stays_where_a_person_has_put_it(view, notes):
+    view.show(None, LIGHT, look=True)  # the view was chosen before there was anything to be seen
+    view.show(DETAIL, LIGHT, look=False)
+    notes.flush()
+    assert notes.sent.pop("look")["view"] == "heights"
+    view.show(None, LIGHT, look=False)  # a run of the same maps begins anew
     view.show(DETAIL, LIGHT, look=False)
     notes.flush()
     assert "look" not in notes.sent
     assert "floor" in notes.sent["layers"]
-
-
-def test_the_same_heights_are_drawn_once_and_others_take_their_place(view, scene):
+    view.hide()
     view.show(DETAIL, LIGHT, look=False)
-    view.show(DETAIL, DARK, look=False)
-    assert scene.add_line_segments.call_count == 2
-    drawn = scene.add_line_segments.return_value
-    assert not drawn.remove.called
-    view.show(AugmentDetail(DETAIL.mov, DETAIL.ref), LIGHT, look=False)
-    assert drawn.remove.call_count == 2
-    assert scene.add_line_segments.call_count == 4
+    notes.flush()
+    assert "look" in notes.sent
+
+
+def test_the_same_heights_are_drawn_once_and_others_take_their_place_and_so_do_other_colours(view, scene):
+    for times, (detail, palette) in enumerate(
+        [(DETAIL, LIGHT), (DETAIL, DARK), (AugmentDetail(DETAIL.mov, DETAIL.ref), DARK)], 1
+    ):
+        view.show(detail, palette, look=False)
+        view.show(detail, palette, look=False)
+        assert scene.add_line_segments.call_count == 2 * times
+        assert scene.add_line_segments.return_value.remove.call_count == 2 * (times - 1)
 
 
 @pytest.mark.parametrize("end", [lambda view: view.hide(), lambda view: view.show(None, LIGHT, True)])

@@ -99,7 +99,7 @@ def test_a_picture_is_drawn_once_its_stage_is_there_with_its_dials_where_they_be
 def test_what_stands_beside_a_picture_in_parts_is_that_of_the_part_its_dial_shows(
     display, panel, inputs, until_hough
 ):
-    text = StepText("", "Title", "sighting", (("line",), ("votes",)), (), "A {range_m}.\n***\nB.\n***\nC.")
+    text = StepText("", "Title", "sighting", (("line",), ("votes",)), (), "A {range}.\n***\nB.\n***\nC.")
     lesson = LessonRun(inputs, CONFIG, 0, until_hough)
     for place, words, formulas in (
         (0, "A 3", "line"),

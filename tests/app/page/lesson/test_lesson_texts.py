@@ -1,15 +1,12 @@
-"""The files of the lesson: equations that are typeset and up to date, texts that say what is wrong."""
+"""The texts of the lesson: steps and what there is to try, and what is wrong with a file."""
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
-from xml.etree import ElementTree
 
 import pytest
 
 from algorithms.common.errors import InputFileError
-from app.page.lesson import equations
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_texts import files, filled, first_number, lesson_folder, read_step
 from app.page.lesson.placeholders import NUMBERS
@@ -25,7 +22,7 @@ try:
     set: {augment.intensity: 1}
     answer: Nothing changes.
 ---
-The range is {range_m} m.
+The range is {range} m.
 """
 
 
@@ -35,52 +32,19 @@ def step(folder: Path, text: str = GOOD):
     return read_step(path, {name: PICTURES[name] for name in ("hough", "sighting")}, NUMBERS)
 
 
-@pytest.mark.parametrize("name", equations.names())
-def test_every_equation_is_typeset_from_its_newest_source(name):
-    source = equations.folder() / f"{name}.tex"
-    drawn = source.with_suffix(".svg").read_text(encoding="utf-8")
-    made_from = ElementTree.fromstring(drawn).attrib["data-source"]
-    assert made_from == equations.read_equation(source).digest, "run make equations"
-
-
-def test_no_typeset_equation_has_lost_its_source():
-    assert sorted(path.stem for path in equations.folder().glob("*.svg")) == equations.names()
-
-
-@pytest.mark.parametrize("name", equations.names())
-def test_an_equation_takes_the_colour_and_the_size_of_the_words_around_it(name):
-    drawn = ElementTree.parse(equations.folder() / f"{name}.svg").getroot()
-    colours = {e.attrib[k] for e in drawn.iter() for k in ("fill", "stroke") if k in e.attrib}
-    assert colours <= {"currentColor", "none"}
-    assert drawn.attrib["width"].endswith("em")
-    assert not [e for e in drawn.iter() if "id" in e.attrib]  # they would clash on a page
-
-
-def test_an_equation_stands_with_its_number():
-    page = equations.equations_html(["gaussian", "augmented"])
-    assert re.findall(r"<small>(.*?)</small>", page) == ["(4)", "(5)"]
-
-
-def test_an_equation_without_a_number_is_told(tmp_path):
-    path = tmp_path / "mine.tex"
-    path.write_text("x = y\n")
-    with pytest.raises(InputFileError, match=r"mine\.tex: .*% \(4\)"):
-        equations.read_equation(path)
-
-
 def test_a_step_is_read_with_its_trials(tmp_path):
     read = step(tmp_path)
     assert (read.title, read.picture, read.equations) == ("A step", "hough", (("line",),))
     (trial,) = read.trials
     assert trial.settings == ((("augment", "intensity"), 1.0),)
-    assert filled(read.body, {"range_m": "2.97"}) == "The range is 2.97 m."
+    assert filled(read.body, {"range": "2.97"}) == "The range is 2.97 m."
     assert filled(read.body, {}) == "The range is … m."
 
 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("{range_m}", "{rnage_m}", r"holds \{rnage_m\}, which is no number"),
+        ("{range}", "{rnage}", r"holds \{rnage\}, which is no number"),
         ("Nothing changes.", "It is {nonsense} now.", r"holds \{nonsense\}"),
         ("picture: hough", "picture: hoof", "picture is 'hoof'; known are hough, sighting"),
         ("[line]", "[lime]", "equations holds 'lime'; known are"),
@@ -99,7 +63,7 @@ def test_a_step_is_read_with_its_trials(tmp_path):
         ("    set: {", "    show: mean\n    set: {", "try 1: show is 'mean'"),
         ("title: A step", "title: [", "front matter of a text"),
         ("---\ntitle", "title", "no front matter"),
-        ("The range is {range_m} m.", "", "no text below"),
+        ("The range is {range} m.", "", "no text below"),
     ],
 )
 def test_what_is_wrong_with_a_step_is_told_with_its_file(tmp_path, old, new, said):

@@ -19,6 +19,7 @@ from algorithms.fleets.fleet_merge import merge_fleet
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS, merge
 from app.model.merge_inputs import MergeInputs
+from app.model.verdict_text import remedy
 from app.page.inputs_controller import InputsController
 from app.page.lesson import museum_controller
 from app.page.lesson.exhibit_samples import exhibit_fleet, exhibit_inputs, exhibit_picture
@@ -70,9 +71,11 @@ def exhibit(request) -> Exhibit:
     return read_exhibit(request.param)
 
 
-def test_an_exhibit_fails_as_it_says(exhibit):
-    wrong, _ = failed(exhibit)
+def test_an_exhibit_fails_as_it_says_and_a_search_without_a_proof_is_not_told_to_doubt_the_maps(exhibit):
+    wrong, result = failed(exhibit)
     assert wrong
+    if not result.verdict.accepted and exhibit.method == "spectra-swarm":
+        assert "take the default one" in remedy(result)
 
 
 def test_its_cure_merges_and_is_accepted(exhibit):

@@ -153,7 +153,7 @@ def test_every_wish_has_a_name():
     grid = GridMap(ROOM.cells, 0.2)
     assert change(START, START)[0] == ""
     assert change(START, replace(START, config=config)) == (
-        "Σ_aug spread 4 → 4.5 m",
+        "σ_aug spread 4 → 4.5 m",
         ("augment", "spread"),
     )
     assert change(START, replace(START, config=two))[0] == "2 settings"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import product
 from xml.etree import ElementTree
 
@@ -9,14 +10,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from looks import looked
+from looks import lesson_of
+from svg_shapes import dots, lines
 
 from algorithms.common.pose import Pose2
-from algorithms.files.case_folder import Case
+from algorithms.files.case_folder import read_case
 from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS, run
-from algorithms.methods.steps import HoughDetail, RefineDetail, ShiftDetail, Step
+from algorithms.methods.steps import HoughDetail, RefineDetail, ShiftDetail
 from algorithms.spectra.augmented_map import augment
 from algorithms.spectra.hough_spectra import hough_transform
 from app.drawing.palette import DARK, LIGHT, css
@@ -28,31 +30,14 @@ from app.model.merge_inputs import MergeInputs
 from app.page.lesson import equations
 from app.page.lesson.figures.figure_registry import PICTURES, FigureSlider, place_of, shown
 from app.page.lesson.figures.spectra_figures import strongest
-from app.page.lesson.lesson_run import FEW, LessonRun, keep
-from app.page.lesson.lesson_texts import PLACEHOLDER, files, filled, lesson_folder, read_step
+from app.page.lesson.lesson_run import FEW, LessonRun
+from app.page.lesson.lesson_texts import PLACEHOLDER, files, filled, lesson_folder, read_step, with_settings
 from app.page.lesson.placeholders import NUMBERS, numbers_of
+from app.page.lesson.sighting_look import STAND_IN
+from app.system import data_paths as paths
 
 CONFIG = METHODS["spectra-proven"].defaults
 SVG = "{http://www.w3.org/2000/svg}"
-
-
-def study_of(case: Case) -> LessonRun:
-    steps: list[Step] = []
-    for step in run("spectra-proven", case.ref, case.mov, case.observations, CONFIG):
-        keep(steps, step)
-    inputs = MergeInputs.of(case)
-    return LessonRun(inputs, CONFIG, 0, tuple(steps), {"sighting": looked(inputs, CONFIG)})
-
-
-@pytest.fixture(scope="module")
-def lesson(small_case) -> LessonRun:
-    return study_of(small_case)
-
-
-@pytest.fixture(scope="module")
-def refused(strangers) -> LessonRun:
-    """Maps of two buildings: nothing fits, and every picture has to stand that."""
-    return study_of(strangers)
 
 
 def corners(dials: tuple[FigureSlider, ...]) -> list[tuple[int, ...]]:
@@ -110,6 +95,25 @@ def test_a_picture_in_parts_has_words_and_equations_for_each_part_and_every_othe
     assert {trial.show for trial in step.trials if trial.show} == set(picture.ways)
 
 
+@pytest.mark.parametrize("path", files(lesson_folder()), ids=lambda path: path.stem)
+def test_every_button_changes_the_picture_of_its_step_and_no_number_is_missing_then(path, lesson, small_case):
+    """Here, or on the sample that the page opens with."""
+    step = read_step(path, PICTURES, NUMBERS)
+    for trial in (trial for trial in step.trials if trial.settings):
+        config = with_settings(lesson.config, trial.settings)
+        tried = lesson_of(small_case, config, lesson.sides)
+        if not changed(step.picture, lesson, tried):
+            opened = read_case(paths.samples()[STAND_IN])
+            assert changed(step.picture, *(lesson_of(opened, each, {}) for each in (lesson.config, config)))
+        text = filled(f"{step.body} {trial.answer}", numbers_of(tried))
+        assert not re.search(r"…|–|\b1 (turns|peaks|places|answers|candidates)\b", text), trial.button
+
+
+def changed(name: str, before: LessonRun, after: LessonRun) -> bool:
+    at = tuple(dial.start for dial in PICTURES[name].dials(before))
+    return PICTURES[name].draw(before, at, LIGHT) != PICTURES[name].draw(after, at, LIGHT)
+
+
 def test_every_picture_and_every_equation_is_in_the_lesson():
     steps = [read_step(path, PICTURES, NUMBERS) for path in files(lesson_folder())]
     assert {step.picture for step in steps} == set(PICTURES)
@@ -122,7 +126,7 @@ def test_every_number_is_known_at_the_end_of_a_run_and_none_before_its_stage(les
     assert set(numbers) == set(NUMBERS)
     assert not [words for words in numbers.values() if "nan" in words]
     early = numbers_of(LessonRun(MergeInputs.of(small_case), CONFIG))
-    assert "range_m" in early
+    assert "range" in early
     assert "camera_bearing" not in early
     assert "verdict" not in early
 
@@ -184,6 +188,24 @@ def test_the_swarm_of_the_lesson_is_small_and_tells_its_pulls(lesson):
     assert len(lesson.few[0].poses) == FEW
     assert all(state.pulls is not None for state in lesson.few[1:])
     assert lesson.few[-1].stopped
+
+
+@pytest.mark.parametrize("move", [1, 4])
+def test_what_pulls_at_a_particle_begins_where_it_is_and_goes_no_farther_past_its_star_than_it_may(
+    lesson, move
+):
+    most = lesson.config.swarm.omega * lesson.config.swarm.tau
+    for j in range(FEW):
+        drawn = PICTURES["swarm"].draw(lesson, (move - 1, j), LIGHT)
+        nearby = [path for path in lines(drawn, LIGHT.best) if path[:, 0].min() > 216]
+        (star,) = (path for path in nearby if len(path) == 10)
+        shafts = [path for path in nearby if len(path) == 2]
+        place = next(dot for dot in dots(drawn, LIGHT.text) if dot[0] > 216)
+        for start, end in shafts:
+            assert start == pytest.approx(place, abs=0.2)
+            towards, pull = (star.min(axis=0) + star.max(axis=0)) / 2 - place, end - start
+            assert (np.abs(pull) <= most * np.abs(towards) + 2).all()
+            assert (pull * towards >= -2).all()
 
 
 def test_the_map_shows_the_candidate_that_the_dial_stands_at(lesson):
