@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.common.source_file import SourceFile
 from algorithms.files.case_folder import Case
+from algorithms.files.map_file import MapMeta, parse_meta
 from algorithms.files.truth_file import Truth
 from algorithms.maps.grid_map import GridMap, remarks_on
 from algorithms.observations.observation import Encounter, Observation, encounters_of, name_of
@@ -39,6 +41,11 @@ class Upload:
     @property
     def path(self) -> str:
         return f"{self.folder}/{self.name}" if self.folder else self.name
+
+    @cached_property
+    def meta(self) -> MapMeta:
+        """What it says as a map's YAML file; raises InputFileError."""
+        return parse_meta(self.name, self.content)
 
 
 @dataclass(frozen=True, eq=False)

@@ -47,6 +47,7 @@ HEAD = 65536  # bytes that are looked at
 ZIP, PICKLE = b"PK", b"\x80"
 WIDE = (b"\xff\xfe", b"\xfe\xff")  # UTF-16, as the shell of Windows writes it
 NAME_AT, NAME_LENGTH_AT = 30, 26  # bytes of a zip before the name of its first file, and before its length
+UNKNOWN = "is nothing that is known here"
 GIVE = "give a map's YAML file or image, what is known, a fleet, a recording, a zip, or a sighting's files"
 
 
@@ -91,7 +92,7 @@ def kind_of_file(name: str, content: bytes) -> FileKind:
     for kind, pattern in TEXTS:
         if pattern.search(text):
             return kind
-    raise InputFileError(name, "is nothing that is known here", GIVE)
+    raise InputFileError(name, UNKNOWN, GIVE)
 
 
 def _first_in_zip(content: bytes) -> bytes:

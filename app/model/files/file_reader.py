@@ -12,10 +12,10 @@ from pathlib import PurePath
 from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError, MapMergeError
 from algorithms.files.fleet_archive import MOST_UNPACKED, files_of_zip, fleet_from_files
-from algorithms.files.map_file import GreyImage, grey_image, map_from_bytes, parse_meta
+from algorithms.files.map_file import GreyImage, grey_image, map_from_bytes
 from algorithms.files.observation_file import known_from_bytes
 from algorithms.maps.grid_map import GridMap
-from algorithms.observations.fleet import Fleet
+from algorithms.observations.fleet import MOST_ROBOTS, Fleet
 from app.model.files.bag_maps import maps_of_bag
 from app.model.files.file_kinds import kind_of_file
 from app.model.files.file_roles import GivenFile, pair_roles, robot_roles, sighting_roles, told_of
@@ -33,6 +33,8 @@ from app.model.merge_inputs import Files, MergeInputs, OtherFile, Upload
 from app.system.cancellation import CancellableReader, Check, never_cancelled
 
 LONGEST_FOLDER = 120  # letters
+MOST_TEXTS = MOST_ROBOTS + 16  # YAML files that are read of a choice: a fleet's, and what is known
+TOO_MANY = f"not used: at most {MOST_TEXTS} maps and files of what is known are read at once"
 OF_ITS_FLEET = "waits for its fleet"
 
 Greys = dict[Upload, GreyImage]
@@ -210,13 +212,17 @@ def _kinds(
     given: list[GivenFile] = []
     told: list[OtherFile] = []
     errors: list[MapMergeError] = []
-    waiting = list(uploads)
+    waiting, texts = list(uploads), 0
     while waiting:
         check()
         upload = waiting.pop(0)
         kind = None
         try:
             kind = kind_of_file(upload.name, upload.content)
+            texts += kind in ("map", "known")
+            if texts > MOST_TEXTS and kind in ("map", "known"):
+                told.append(OtherFile(upload.name, TOO_MANY))
+                continue
             if kind == "zip" and not upload.folder:
                 inside = files_of_zip(upload.name, upload.content)
                 stem = PurePath(upload.name).stem
@@ -226,7 +232,7 @@ def _kinds(
                 waiting += maps_of_bag(upload)
                 continue
             if kind == "map":
-                parse_meta(upload.name, upload.content)
+                _ = upload.meta  # may raise
             elif kind == "known":
                 known_from_bytes(upload.name, upload.content)
         except MapMergeError as error:

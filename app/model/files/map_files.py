@@ -8,7 +8,6 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
 
-from algorithms.files.map_file import parse_meta
 from app.model.files.file_kinds import FileKind
 from app.model.files.map_slots import PAIR, Uploads, short_name
 from app.model.merge_inputs import Upload
@@ -123,7 +122,7 @@ def place_for(files: MapFiles, maps: Collection[int]) -> int | None:
 
 def image_path(text: Upload) -> str:
     """The path of the image that a map's YAML file names, as its own stands; raises InputFileError."""
-    image = parse_meta(text.name, text.content).image.replace("\\", "/")
+    image = text.meta.image.replace("\\", "/")
     return posixpath.normpath(posixpath.join(text.folder, image))
 
 

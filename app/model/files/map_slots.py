@@ -7,7 +7,7 @@ from pathlib import PurePath
 
 from algorithms.common.display_text import show_hidden
 from algorithms.common.source_file import SourceFile
-from algorithms.files.map_file import map_from_bytes, parse_meta
+from algorithms.files.map_file import map_from_bytes
 from algorithms.files.observation_file import known_from_bytes
 from algorithms.maps.grid_map import GridMap
 from app.model.merge_inputs import MapSlot, MergeInputs, Upload
@@ -37,7 +37,7 @@ def map_slot(number: int, uploads: Uploads, read: ReadMaps, check: Check = never
     text, image = uploads.get(f"yaml{number}"), uploads.get(f"image{number}")
     if text is None:
         return MapSlot(missing=NO_YAML.format(number) if image is not None else "")
-    named = short_name(parse_meta(text.name, text.content).image)  # what is wrong with it is reported at once
+    named = short_name(text.meta.image)  # what is wrong with it is reported at once
     if image is None:
         return MapSlot(missing=f"Map {number}'s YAML file is here. Load its image, too: {named}.")
     if (text, image) not in read:

@@ -17,12 +17,13 @@ from algorithms.files.encounter_table import EncounterRow, encounters_from_bytes
 from algorithms.files.scan_file import scan_from_bytes
 from algorithms.sensors.camera import Camera
 from algorithms.sensors.laser_scan import LaserScan
-from app.model.files.file_kinds import KINDS, FileKind, kind_of_file
+from app.model.files.file_kinds import KINDS, UNKNOWN, FileKind, kind_of_file
 from app.model.merge_inputs import Upload
 from app.model.sighting.look_settings import LookSettings
 
 T = TypeVar("T")
 
+NONE = "is neither an image, nor a camera's calibration, nor a laser scan"
 GIVE = "give a JPEG or PNG, the camera's camera.yaml, or the laser's scan.yaml"
 # what else it may be here; whose reader tells of zips that are no detector
 ALSO: Mapping[FileKind, FileKind] = {"image": "picture", "zip": "model"}
@@ -139,7 +140,7 @@ def _kind_of(name: str, content: bytes) -> FileKind:
     try:
         kind = kind_of_file(name, content)
     except InputFileError as error:
-        raise InputFileError(name, error.found, GIVE) from error
+        raise InputFileError(name, NONE if error.found == UNKNOWN else error.found, GIVE) from error
     if kind in ("known", "map", "fleet", "truth"):
         raise InputFileError(name, f"is {KINDS[kind]}", "drop it beside this panel, or press Open files…")
     return ALSO.get(kind, kind)

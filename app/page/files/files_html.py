@@ -6,11 +6,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from html import escape
 
+from algorithms.common.display_text import show_hidden
 from algorithms.common.robot_names import RobotNames
 from app.model.files.map_files import image_path
 from app.model.files.map_slots import KNOWN, PAIR, short_name
-from app.model.merge_inputs import Files, OtherFile
+from app.model.merge_inputs import Files, OtherFile, Upload
 
+LONGEST = 60  # letters of a path
 MOST_ROWS = 40  # of files that are not of the pair
 SEEN_AT_ONCE = 6  # lines; what is below is reached by keys, too
 HINT = (
@@ -49,7 +51,8 @@ def rows_of(files: Files) -> Iterator[FileRow]:
         if upload is not None and upload.by_form:
             yield FileRow("the form below", role, "used")
         elif upload is not None:
-            yield FileRow(upload.name, role, "used", REMOVE, key)
+            told = role + (_how_found(text, upload) if text is not None and upload is image else "")
+            yield FileRow(upload.name, told, "used", REMOVE, key)
         elif text is not None:
             yield FileRow(short_name(image_path(text)), f"{role}: missing", "missing")
         elif image is not None:
@@ -57,6 +60,16 @@ def rows_of(files: Files) -> Iterator[FileRow]:
     for k, other in enumerate(files.others[:MOST_ROWS]):
         state = "used" if other.used else "refused" if other.told.startswith("cannot") else "unused"
         yield FileRow(other.name, other.told, state, _does(other), k)
+
+
+def _how_found(text: Upload, image: Upload) -> str:
+    """What a person should know of an image that is not where the YAML file of its map says."""
+    if text.by_form or image_path(text) == image.path:
+        return ""
+    named = show_hidden(text.meta.image)
+    if short_name(named) == image.name:
+        return f", found by its name: it is not at {named[-LONGEST:]}"
+    return f"; but {text.name} names {short_name(named)}"
 
 
 def _does(other: OtherFile) -> Mapping[str, str]:

@@ -308,6 +308,14 @@ def test_the_maps_of_recordings_are_taken_as_files_are(tmp_path, kind):
     assert "holds no map; record a map topic" in str(error)
 
 
+def test_of_very_many_maps_but_so_many_are_read(monkeypatch):
+    monkeypatch.setattr(file_reader, "MOST_TEXTS", 3)
+    page = Page()
+    page.open({f"m{k}.yaml": MAP_1["map1.yaml"] for k in range(5)} | {"map1.pgm": MAP_1["map1.pgm"]})
+    assert page.cells == cells_of(FIRST, FIRST)
+    assert [told for told in page.others.values() if "are read at once" in told] == [file_reader.TOO_MANY] * 2
+
+
 def test_a_zip_in_a_zip_is_told_and_stop_leaves_everything():
     page = Page()
     page.open({"a.zip": zip_bytes({"b.zip": zip_bytes(CASE)})})

@@ -214,6 +214,16 @@ def test_a_button_has_the_number_of_its_line_among_those_with_buttons():
     assert "the form below" in page
 
 
+def test_an_image_that_is_not_where_its_yaml_file_says_is_told_beside_it(desk, case):
+    moved = case["map1.yaml"].replace(b"map1.pgm", b"/home/robot/map1.pgm")
+    desk.open({"map1.yaml": moved, "map1.pgm": case["map1.pgm"]})
+    assert lines(desk.panel.files)[1] == (
+        "map1.pgm: image of map 1, found by its name: it is not at /home/robot/map1.pgm"
+    )
+    desk.open({"map2.yaml": case["map2.yaml"], "floor.pgm": case["map2.pgm"]})
+    assert lines(desk.panel.files)[3] == "floor.pgm: image of map 2; but map2.yaml names map2.pgm"
+
+
 def test_of_very_many_files_a_part_is_listed():
     files = Files("", {}, tuple(OtherFile(f"{k}.txt", "not used") for k in range(MOST_ROWS + 1200)))
     page = files_html(files, UNNAMED)

@@ -104,7 +104,7 @@ def test_a_file_that_is_none_is_told_at_once_and_what_was_there_stays(sensors, t
     send(tab, notes_txt=b"Dear diary")
     text, bad = said(tab)
     assert bad
-    assert text.startswith("notes.txt: is nothing that is known here; give a JPEG or PNG")
+    assert text.startswith("notes.txt: is neither an image, nor")
     (error,) = tab.notices.report.call_args.args
     assert str(error) == text
     assert sensors.order() is not None
