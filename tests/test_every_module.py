@@ -279,7 +279,6 @@ EXERCISED_BY = {
         "app.page.fleet.fleet_display",
         "app.page.fleet.fleet_panel",
         "app.page.fleet.fleet_run_controller",
-        "app.page.fleet.robot_files",
         "app.page.fleet.sample_robots",
     },
     "browser/test_hand.py": {
@@ -288,9 +287,18 @@ EXERCISED_BY = {
     "browser/test_outcomes.py": {
         "app.page.editing.suggestion_controller",
     },
-    "app/page/panels/test_threads.py": {
-        "app.page.panels.files_panel",
+    "app/model/files/test_file_reader.py": {
+        "app.model.files.bag_maps",
+        "app.model.files.file_roles",
+        "app.model.files.map_files",
+        "app.model.files.map_slots",
+    },
+    "app/page/files/test_files_controller.py": {
+        "app.page.files.files_html",
+        "app.page.files.files_panel",
         "app.page.panels.uploaded_file",
+    },
+    "app/page/panels/test_threads.py": {
         "app.page.panels.settings_panel",
         "app.web.tab_messages",
     },

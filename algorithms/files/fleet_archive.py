@@ -1,4 +1,4 @@
-"""A fleet as one file: a zip of its fleet file and its maps."""
+"""Files that came together, as in a zip, and the fleet that they make up."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import io
 import posixpath
 import zipfile
 import zlib
+from collections.abc import Callable, Mapping
 from pathlib import PureWindowsPath
 
 from algorithms.common.errors import InputFileError, TooLargeError
@@ -19,19 +20,21 @@ MOST_CELLS = 200_000_000  # of all maps together: as many as a page holds
 MOST_FILES = 2000
 # what zipfile raises: NotImplementedError is its word for ways to pack that it does not know
 BROKEN = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError, OSError, ValueError)
-WHOLE = f"make a zip of {FLEET_FILE}, the maps' YAML files and their images"
+TOGETHER = "give the fleet's file and all of its maps"
+ANEW = "make the zip anew"
+OF_A_SYSTEM = ("__MACOSX", ".")  # how names begin that nobody has packed by intent
 
 
-def fleet_from_zip(source: str, content: bytes) -> Fleet:
-    """Read a zip that holds a fleet file, in whatever folder, and the maps that it names.
+def files_of_zip(source: str, content: bytes) -> dict[str, bytes]:
+    """What a zip holds, by the paths in it. Nothing is ever written to one of them.
 
     source : what the zip is called before a person
-    raises : InputFileError, TooLargeError
+    raises : InputFileError
     """
     try:
         archive = zipfile.ZipFile(io.BytesIO(content))
     except BROKEN as error:
-        raise InputFileError(source, "is no zip that can be read", WHOLE) from error
+        raise InputFileError(source, "is no zip that can be read", ANEW) from error
     with archive:
         infos = archive.infolist()
         unpacked = sum(info.file_size for info in infos)
@@ -39,43 +42,61 @@ def fleet_from_zip(source: str, content: bytes) -> Fleet:
             found = f"holds {len(infos):,} files of {unpacked / 1e6:,.0f} MB"
             limit = f"give at most {MOST_FILES:,} of {MOST_UNPACKED / 1e6:.0f} MB"
             raise InputFileError(source, found, limit)
-        files = {posixpath.normpath(info.filename): info for info in infos if not info.is_dir()}
-        fleets = [name for name in files if posixpath.basename(name) == FLEET_FILE]
-        fleets.sort(key=lambda name: (name.count("/"), name))
-        if not fleets:
-            raise InputFileError(source, f"holds no {FLEET_FILE}", WHOLE)
-        folder = posixpath.dirname(fleets[0])
-
-        def member(name: str, of: str) -> bytes:
-            info = files.get(posixpath.normpath(posixpath.join(folder, name)))
-            if info is None:
-                raise InputFileError(source, f"{of} names {name}, which is not in it", WHOLE)
+        files = {}
+        for info in infos:
+            path = posixpath.normpath(info.filename.replace("\\", "/"))
+            if path.startswith(("/", "../")) or path == "..":
+                raise InputFileError(source, "names a file outside of itself", ANEW)
+            if info.is_dir() or any(part.startswith(OF_A_SYSTEM) for part in path.split("/")):
+                continue
             try:
                 with archive.open(info) as stream:
-                    return stream.read(info.file_size)
+                    files[path] = stream.read(info.file_size)
             except BROKEN as error:
-                raise InputFileError(
-                    f"{source}: {name}", "cannot be unpacked", "make the zip anew"
-                ) from error
+                raise InputFileError(f"{source}: {path}", "cannot be unpacked", ANEW) from error
+    return files
 
-        cells = 0
 
-        def read(name: str) -> GridMap:
-            """A map; the same image may stand for many robots, and a small one unpack to a large map."""
-            nonlocal cells
-            text = member(name, FLEET_FILE)
-            beside, image = posixpath.dirname(name), parse_meta(f"{source}: {name}", text).image
-            if posixpath.normpath(posixpath.join(folder, beside, image)) not in files:  # of another machine
-                image = PureWindowsPath(image).name
-            image = posixpath.join(beside, image)
-            grid = map_from_bytes(f"{source}: {name}", text, f"{source}: {image}", member(image, name))
-            cells += grid.cells.size
-            if cells > MOST_CELLS:
-                most = f"{MOST_CELLS / 1e6:.0f} million cells"
-                raise TooLargeError(f"{source}: its maps have more than {most} together; make them coarser")
-            return grid
+def fleet_from_files(
+    files: Mapping[str, bytes], fleet: str, check: Callable[[], object] = lambda: None
+) -> Fleet:
+    """Read a fleet file and the maps that it names: by their paths, else by their names alone.
 
-        return fleet_from_bytes(f"{source}: {fleets[0]}", member(FLEET_FILE, source), read)
+    files  : by paths, which are shown to a person, and nothing else
+    fleet  : path of the fleet file
+    check  : is called before every map, and may leave the work by raising
+    raises : InputFileError, TooLargeError
+    """
+
+    def found(name: str, of: str) -> str:
+        """The path of a file that another one names."""
+        path = posixpath.normpath(posixpath.join(posixpath.dirname(of), name))
+        if path in files:
+            return path
+        last = PureWindowsPath(name).name  # of another machine, or given without its folder
+        beside = posixpath.join(posixpath.dirname(of), last)
+        alike = [beside] if beside in files else [each for each in files if posixpath.basename(each) == last]
+        if len(alike) != 1:
+            why = "of which there are several" if alike else "which is not there"
+            raise InputFileError(of, f"names {name}, {why}", TOGETHER)
+        return alike[0]
+
+    cells = 0
+
+    def read(name: str) -> GridMap:
+        """A map; the same image may stand for many robots, and a small one unpack to a large map."""
+        nonlocal cells
+        check()
+        text = found(name, fleet)
+        image = found(parse_meta(text, files[text]).image, text)
+        grid = map_from_bytes(text, files[text], image, files[image])
+        cells += grid.cells.size
+        if cells > MOST_CELLS:
+            most = f"{MOST_CELLS / 1e6:.0f} million cells"
+            raise TooLargeError(f"{fleet}: its maps have more than {most} together; make them coarser")
+        return grid
+
+    return fleet_from_bytes(fleet, files[fleet], read)
 
 
 def fleet_to_files(fleet: Fleet) -> dict[str, bytes]:

@@ -1,36 +1,8 @@
-// A sighting from camera and scan: files that are dropped on the panel, boxes that are pressed in the image or in
-// the list, and how all of it looks.
+// A sighting from camera and scan: boxes that are pressed in the image or in the list, and how all of it looks.
 (() => {
   const S = window.mapmeld;
   if (S.sighting) return;
   S.sighting = true;
-
-  // --- files --------------------------------------------------------------------------------------
-  // Several at once: their button takes one after the other (upload.js). Where there is nothing to drop them on,
-  // nothing happens: a browser would leave the page for the file.
-  const zoneOf = (e) => e.target.closest?.("[data-mm-files]");
-  const files = (e) => [...(e.dataTransfer?.types || [])].includes("Files");
-  const aim = (zone) => { for (const each of document.querySelectorAll("[data-mm-files]")) each.toggleAttribute("data-aim", each === zone); };
-  window.addEventListener("dragover", (e) => {
-    if (!files(e)) return;
-    e.preventDefault();
-    const zone = zoneOf(e);
-    e.dataTransfer.dropEffect = zone ? "copy" : "none";
-    aim(zone);
-  });
-  window.addEventListener("dragleave", (e) => { if (!e.relatedTarget) aim(null); });
-  window.addEventListener("drop", (e) => {
-    if (!files(e)) return;
-    e.preventDefault();
-    const zone = zoneOf(e);
-    aim(null);
-    if (zone) S.sending.several([...e.dataTransfer.files], zone.dataset.mmFiles);
-  });
-  const button = () => document.querySelector("[data-mm-files]")?.dataset.mmFiles;
-  function several() { // viser's button offers to choose one file alone
-    const id = button(), input = id && document.getElementById(`file_upload_${id}`);
-    if (input && !input.multiple) input.multiple = true;
-  }
 
   // --- boxes --------------------------------------------------------------------------------------
   document.addEventListener("click", (e) => {
@@ -52,7 +24,6 @@
     const now = !!document.querySelector(".mm-sighting");
     if (open && !now) S.tell("left");
     open = now;
-    several();
   }, 100);
 
   const style = document.createElement("style");

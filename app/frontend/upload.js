@@ -7,7 +7,8 @@
   const SOON = 400, HARDLY = 300; // ms: what takes no longer, or will be there by then, is not worth a word
   const LATELY = 4000, SILENT = 5000, READ = 12000; // ms: a rate is of this time; no news for so long is news; a note stays
   const STEP = 150, RESERVE = 600; // ms of the line that one part takes, and all that is on its way: as much still comes after Stop
-  const F = { going: new Set() };
+  const LONGEST = 255; // letters of a name that the server takes
+  const F = { going: new Set(), paths: new WeakMap() }; // where in its folder a file was
   S.sending = F;
   let card = null, what = null, much = null, bar = null, leave = null, clock = 0;
   let shown = false, there = { size: 0, began: 0 }, lately = [], note = "", noted = 0;
@@ -20,24 +21,21 @@
     at.search = at.hash = "";
     return at.href;
   }
-  function send(file, button, rest = []) { // rest: what its button takes after it, one by one
-    for (const other of F.going) if (other.button === button) drop(other); // the newest choice counts
-    if (!F.going.size) { there = { size: 0, began: performance.now() }; lately = []; }
+  const pathOf = (file) => (F.paths.get(file) || file.webkitRelativePath || file.name).slice(-LONGEST);
+  function send(file, button) {
     const one = { file, button, socket: new WebSocket(address()), sent: 0, arrived: 0, least: 0, most: 0, ahead: 0, pumping: false };
     F.going.add(one);
-    note = "";
     clock ||= setInterval(show, 250);
-    one.socket.onopen = () => one.socket.send(JSON.stringify({ button, name: file.name, kind: file.type, size: file.size }));
+    one.socket.onopen = () => one.socket.send(JSON.stringify({ button, name: pathOf(file), kind: file.type, size: file.size }));
     one.socket.onmessage = (e) => {
       const { over, ...news } = JSON.parse(e.data);
       Object.assign(one, news);
-      if (over === "arrived") there.size += file.size;
-      if (over === "lost") lost(one);
-      if (over) drop(one); else pump(one);
-      if ((over === "arrived" || over === "refused") && rest.length) send(rest[0], button, rest.slice(1));
       if (news.arrived) lately.push([performance.now(), far()]);
+      if (!over) pump(one);
+      else if (over === "arrived" || over === "refused") done(one, over === "arrived");
+      else { if (over === "lost") lost(one); end(button, false); }
     };
-    one.socket.onclose = () => { if (F.going.has(one)) { lost(one); drop(one); } };
+    one.socket.onclose = () => { if (F.going.has(one)) { lost(one); end(button, false); } };
   }
   function room(one) { // bytes that may be sent now, as much as the line has been seen to carry in a moment
     const each = pace(performance.now()) / F.going.size;
@@ -50,7 +48,7 @@
     for (let size; F.going.has(one) && one.sent < one.file.size && (size = room(one)); ) {
       const part = await one.file.slice(one.sent, one.sent + size).arrayBuffer().catch(() => null);
       if (!F.going.has(one)) return;
-      if (!part?.byteLength) { say(`${one.file.name} cannot be read any more. Choose it again.`); drop(one); return; }
+      if (!part?.byteLength) { say(`${one.file.name} cannot be read any more. Choose it again.`); done(one, false); return; }
       one.socket.send(part);
       one.sent += part.byteLength;
     }
@@ -59,12 +57,42 @@
   function drop(one) {
     F.going.delete(one);
     one.socket.close();
+  }
+
+  // --- several files ------------------------------------------------------------------------------
+  // Those that are chosen at once go one by one, and so do those that are chosen for the same button meanwhile; in
+  // the end the page is told how many have arrived, to be taken together.
+  const choices = new Map(); // by button
+  F.several = (files, button) => {
+    if (!files.length) return;
+    if (!choices.size) { there = { size: 0, began: performance.now() }; lately = []; }
+    const choice = choices.get(button) || { rest: [], arrived: 0 };
+    choice.rest.push(...files);
+    if (choices.has(button)) return;
+    choices.set(button, choice);
+    note = "";
+    send(choice.rest.shift(), button);
+  };
+  function done(one, arrived) { // the next one
+    const choice = choices.get(one.button);
+    drop(one);
+    if (arrived) { choice.arrived += 1; there.size += one.file.size; }
+    if (choice.rest.length) send(choice.rest.shift(), one.button); else end(one.button, true);
     show();
   }
-  const lost = (one) => say(`${one.file.name} did not arrive: the connection broke off. Choose it again.`);
+  function end(button, whole) { // not whole: it was left, and nothing of it counts
+    for (const one of F.going) if (one.button === button) drop(one);
+    const choice = choices.get(button);
+    choices.delete(button);
+    if (choice) S.tell("sent", { button, count: choice.arrived, whole });
+    show();
+  }
+  function lost(one) {
+    const choice = choices.get(one.button), several = choice && choice.rest.length + choice.arrived > 0;
+    say(`${one.file.name} did not arrive: the connection broke off. Choose ${several ? "all of them" : "it"} again.`);
+  }
   function say(words) { note = words; noted = performance.now(); }
-  F.several = ([file, ...rest], button) => { if (file) send(file, button, rest); };
-  F.reset = () => { for (const one of F.going) { lost(one); drop(one); } }; // another connection, another page
+  F.reset = () => { for (const one of F.going) { lost(one); drop(one); } choices.clear(); show(); }; // another connection, another page
   // viser's button has its own way of sending: it is not told of the choice
   window.addEventListener("change", (e) => {
     const input = e.target;
@@ -77,6 +105,7 @@
 
   // --- words --------------------------------------------------------------------------------------
   const sum = (name) => [...F.going].reduce((total, one) => total + name(one), 0);
+  const waiting = () => [...choices.values()].flatMap((choice) => choice.rest);
   const far = () => there.size + sum((one) => one.arrived);
   function pace(now) { // bytes per ms
     while (lately.length > 2 && now - lately[0][0] > LATELY) lately.shift();
@@ -88,7 +117,8 @@
     return ms > 10000 ? `about ${5 * Math.round(ms / 5000)} s left` : "a few seconds left";
   }
   function show() {
-    const now = performance.now(), all = there.size + sum((one) => one.file.size), done = far(), rate = pace(now);
+    const now = performance.now(), rest = waiting(), done = far(),
+      all = there.size + sum((one) => one.file.size) + rest.reduce((total, file) => total + file.size, 0), rate = pace(now);
     if (!F.going.size) {
       shown = false;
       if (!note || now - noted > READ) { note = ""; clearInterval(clock); clock = 0; }
@@ -99,7 +129,7 @@
     leave.hidden = bar.hidden = !shown;
     if (!shown) { what.textContent = note; much.textContent = ""; return; }
     const unit = all < 1e6 ? ["kB", 1e3] : ["MB", 1e6], digits = all / unit[1] < 10 ? 1 : 0;
-    const names = [...F.going].map((one) => one.file.name), count = (bytes) => (bytes / unit[1]).toFixed(digits);
+    const names = [...[...F.going].map((one) => one.file), ...rest].map((file) => file.name), count = (bytes) => (bytes / unit[1]).toFixed(digits);
     const quiet = now - (lately.at(-1)?.[0] ?? there.began) > SILENT;
     what.textContent = `Sending ${names.length > 2 ? `${names.length} files` : names.join(" and ")}`;
     much.textContent = `${count(done)} of ${count(all)} ${unit[0]}` +
@@ -115,7 +145,7 @@
     bar.setAttribute("role", "progressbar"); bar.setAttribute("aria-label", "Files on their way");
     leave.type = "button"; leave.textContent = "✕"; leave.title = "Stop sending. Nothing of it stays.";
     leave.setAttribute("aria-label", "Stop sending");
-    leave.onclick = () => { S.tell("unsend"); for (const one of F.going) drop(one); };
+    leave.onclick = () => { S.tell("unsend"); for (const button of [...choices.keys()]) end(button, false); };
     card.append(what, much, leave, bar);
     S.kit.keep(card);
     hud.querySelector(".mm-head").append(card);

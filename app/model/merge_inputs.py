@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.common.source_file import SourceFile
 from algorithms.files.case_folder import Case
+from algorithms.files.map_file import MapMeta, parse_meta
 from algorithms.files.truth_file import Truth
 from algorithms.maps.grid_map import GridMap, remarks_on
 from algorithms.observations.observation import Encounter, Observation, encounters_of, name_of
@@ -26,19 +28,50 @@ TO_PLACE: dict[Choice, str] = {
 
 @dataclass(frozen=True)
 class Upload:
-    """One file as the browser sent it, or made by a form; its name is never used as a path."""
+    """One file as the browser sent it, or made by a form.
+
+    name, folder : where it was, as it is shown; never used as a path
+    """
 
     name: str
     content: bytes
     by_form: bool = False
+    folder: str = ""
+
+    @property
+    def path(self) -> str:
+        return f"{self.folder}/{self.name}" if self.folder else self.name
+
+    @cached_property
+    def meta(self) -> MapMeta:
+        """What it says as a map's YAML file; raises InputFileError."""
+        return parse_meta(self.name, self.content)
+
+
+@dataclass(frozen=True, eq=False)
+class OtherFile:
+    """A file of which nothing stands on the page of two maps.
+
+    told   : what was made of it, or why nothing was
+    used   : whether anything was
+    upload : the file itself where something may be made of it yet; None: there is but this word of it
+    kind   : what it is where there is the file itself, one of ``file_kinds.KINDS``
+    """
+
+    name: str
+    told: str
+    used: bool = False
+    upload: Upload | None = None
+    kind: str = ""
 
 
 @dataclass(frozen=True, eq=False)
 class Files:
-    """Where inputs came from: a sample by its name, or uploads by what they are for."""
+    """Where inputs came from: a sample by its name, or uploads by what they are for; and further files."""
 
     sample: str = ""
     uploads: Mapping[str, Upload] = field(default_factory=dict)
+    others: tuple[OtherFile, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,22 +24,22 @@ class InputsController:
         self._state, self._display, self._panels = tab.state, tab.display, tab.panels
         self._modes, self._history, self._notices = tab.modes, tab.history, tab.notices
         self._runs, self._quota = runs, quota
-        tab.panels.files.connect(self.load, tab.notices.report)
 
     def close(self) -> None:
         self._quota.release(self)
 
-    def load(self, inputs: MergeInputs) -> None:
-        """Show these inputs as an action of the person; a lesson goes on with them."""
+    def load(self, inputs: MergeInputs, label: str = "") -> None:
+        """Show these inputs as an action of the person, called so; a lesson goes on with them."""
         self._runs.thread.stop()
         with self._state.locks.action:
             mode, before = self._modes.close(), self._state.inputs
             inputs = inputs.named_as(before)
             with self._state.locks.drawing:
                 if self.show(inputs):
-                    self._state.update(fleet=None)
+                    if inputs.grids != before.grids:  # else it is more that is known of a fleet's pair
+                        self._state.update(fleet=None)
                     self.follow(before, inputs)
-                    self._history.note(self._state.snapshot())
+                    self._history.note(self._state.snapshot(), label)
             if mode is not None and mode.reopen is not None:
                 mode.reopen()
 

@@ -18,6 +18,7 @@ from app.page.editing.names_controller import NamesController
 from app.page.editing.placement_controller import PlacementController
 from app.page.editing.suggestion_controller import SuggestionController
 from app.page.export.export_controller import ExportController
+from app.page.files.files_controller import FilesController
 from app.page.fleet.fleet_controller import FleetController
 from app.page.inputs_controller import InputsController
 from app.page.lesson.lesson_controller import LessonController
@@ -92,6 +93,7 @@ class Page:
         others = OtherResultController(tab, undo, runs)
         deliver = DownloadTask(client, panels.task)
         fleet = FleetController(tab, runs, inputs, quota, deliver, robots.begin)
+        FilesController(tab, inputs.load, fleet, seeing.sensors.take)
         museum = MuseumController(tab, undo, runs, inputs, fleet.merge_fleet)
         panels.run.connect_learn(teaching.toggle, museum.toggle)
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)

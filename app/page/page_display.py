@@ -76,7 +76,6 @@ class PageDisplay:
         panels.run.merge.disabled = not inputs.complete
         panels.export.offer(None)
         panels.what_if.offer(None)
-        panels.files.placed(bool(inputs.observations))
         doubt = inputs.doubt()
         ready = status_text.READY if inputs.known else status_text.READY_FOR_ALL
         self.messages.hud(

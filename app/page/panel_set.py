@@ -14,12 +14,12 @@ from app.page.editing.knowledge_panel import KnowledgePanel
 from app.page.editing.names_panel import NamesPanel
 from app.page.editing.transform_panel import TransformPanel
 from app.page.export.export_panel import ExportPanel
+from app.page.files.files_panel import FilesPanel
 from app.page.fleet.fleet_panel import FleetPanel
 from app.page.lesson.lesson_panel import LessonPanel
 from app.page.lesson.museum_panel import MuseumPanel
 from app.page.page_state import PageState
 from app.page.panels.charts_panel import ChartsPanel
-from app.page.panels.files_panel import FilesPanel
 from app.page.panels.run_panel import RunPanel
 from app.page.panels.settings_panel import SettingsPanel
 from app.page.panels.what_if_panel import WhatIfPanel
@@ -48,7 +48,7 @@ class Panels:
         self.run = RunPanel(gui)
         self.task = CancellableTask(messages, state.locks.drawing, partial(self.run.stoppable, "task"))
         self.send = partial(DOWNLOADS.send, client)
-        self.files = FilesPanel(gui, sample, self.send, state.locks.action, self.task)
+        self.files = FilesPanel(gui, sample, self.send, state.locks.action)
         self.fleet = FleetPanel(gui)
         self.names = NamesPanel(gui)
         self.knowledge = KnowledgePanel(gui)

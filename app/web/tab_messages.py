@@ -15,7 +15,7 @@ from app.system.data_paths import asset
 # map_drawing.js first: map_viewer.js draws with it, and so does a saved replay; the others add to the page
 SCRIPTS = (
     *("map_drawing.js", "map_viewer.js", "map_editing.js", "zoom_detail.js", "map_comparison.js"),
-    *("measure_tool.js", "lesson.js", "research.js", "sighting.js", "fleet.js", "upload.js"),
+    *("measure_tool.js", "lesson.js", "research.js", "sighting.js", "fleet.js", "upload.js", "open_files.js"),
     "keyboard_shortcuts.js",
 )
 

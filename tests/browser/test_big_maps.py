@@ -16,14 +16,13 @@ from algorithms.files.observation_file import known_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
 from algorithms.observations.observation import Observation
 from app.drawing.palette import LIGHT
-from app.page.panels import files_panel as files
+from app.model.files import map_slots
 
 pytestmark = pytest.mark.browser
 
 SIDE, CELL = 3000, 0.05
 PILLAR = (1431, 1472)  # row and column of a wall of one cell in the middle of a room
 SEEN_AT = np.array([73.0, 70.0])  # robot 2, in both maps
-SLOTS = {"map1.yaml": 0, "map1.pgm": 1, "map2.yaml": 2, "map2.pgm": 3, "observation.yaml": 4}
 
 
 def many_rooms() -> GridMap:
@@ -80,36 +79,39 @@ def test_large_maps_are_loaded_stopped_looked_at_and_dragged(tab, tmp_path, monk
     content = {**map_to_bytes(grid, "map1"), **map_to_bytes(grid, "map2")}
     seen = Observation(Pose2(70.0, 70.0, 0.0), *SEEN_AT.tolist(), 3.0, 0.0)
     content["observation.yaml"] = known_to_bytes([seen])
-    tab.unfold("Upload your own")
-    table = tab.page.locator("table").first
-    for name, slot in SLOTS.items():
-        (tmp_path / name).write_bytes(content[name])
-        tab.upload(slot, tmp_path / name)
-        settle(lambda name=name: name in table.inner_text(), name)
+    for name, data in content.items():
+        (tmp_path / name).write_bytes(data)
+    for names in (("map1.yaml", "map1.pgm"), ("map2.yaml", "map2.pgm", "observation.yaml")):
+        tab.open_files(*(tmp_path / name for name in names))
+        settle(lambda name=names[1]: any(name in line for line in tab.listed()), names[1])
     settle(lambda: tab.state == "Ready. Press Merge.", "both maps and the observation")
     said = tab.page.evaluate("() => window.said")
     # two words that come within one frame are seen as the later one
-    assert {"Reading map1.pgm, 9 MB.", "Reading map2.pgm, 9 MB.", "Drawing the maps."} & set(said)
+    assert {
+        "Reading map1.pgm and 1 more, 9 MB.",
+        "Reading map2.pgm and 2 more, 9 MB.",
+        "Drawing the maps.",
+    } & set(said)
     drawn = "(name) => !!window.__viserMutable.nodeRefFromName[`/world/${name}/walls`]"
     settle(lambda: all(tab.page.evaluate(drawn, name) for name in ("map1", "map2")), "the pictures")
 
     def slowly(yaml_name, yaml, name, image):
-        while name == "slow.pgm":
+        while image.getvalue() == slow:
             image.read(1)
             sleep(0.01)
         return map_from_bytes(yaml_name, yaml, name, image)
 
-    monkeypatch.setattr(files, "map_from_bytes", slowly)
-    (tmp_path / "slow.pgm").write_bytes(content["map1.pgm"])
-    tab.upload(SLOTS["map1.pgm"], tmp_path / "slow.pgm")
-    settle(lambda: tab.state == "Reading slow.pgm, 9 MB.", "the reading")
+    slow = content["map1.pgm"] + b" "
+    monkeypatch.setattr(map_slots, "map_from_bytes", slowly)
+    (tmp_path / "map1.pgm").write_bytes(slow)
+    tab.open_files(tmp_path / "map1.pgm")
+    settle(lambda: tab.state == "Reading map1.pgm, 9 MB.", "the reading")
     stop = tab.page.get_by_role("button", name="Stop", exact=True)
     settle(stop.is_enabled, "Stop")
     tab.press("Stop")
     settle(lambda: tab.state == "Ready. Press Merge.", "everything as it was")
     settle(stop.is_disabled, "nothing to stop")
-    assert "map1.pgm" in table.inner_text()
-    assert "slow.pgm" not in table.inner_text()
+    assert len(tab.listed()) == 5
 
     look_at_the_pillar(tab, "map1")
     settle(lambda: around_the_pillar(tab, "map1") == [LIGHT.ref, *[LIGHT.free] * 4], "every cell of map 1")

@@ -138,8 +138,7 @@ def test_an_opened_pair_is_told_by_its_robots_names_and_two_maps_without_names_a
     called = fleet.renamed("r1", "Bob").renamed("r2", "<i>Alice").fleet
     (tmp_path / "fleet.zip").write_bytes(zip_bytes(fleet_to_files(called)))
     tab = open_tab(size=(1400, 900))
-    tab.unfold("Upload your own")
-    tab.page.locator("input[type=file][accept='.zip']").set_input_files(str(tmp_path / "fleet.zip"))
+    tab.open_files(tmp_path / "fleet.zip")
     settle(lambda: tab.state == OF_ROBOTS.format(3), "the fleet")
     tab.page.locator("button[data-mm-pair]", has_text="Bob saw <i>Alice").click()
     settle(lambda: tab.page.locator(".mm-case").inner_text() == "Bob saw <i>Alice", "the pair")
@@ -206,9 +205,9 @@ def test_a_robot_is_added_to_two_maps_and_the_result_and_the_fleet_are_taken_awa
     settle(lambda: tab.state == OF_ROBOTS.format(2), "a fleet of two")
     third = samples()["office_r3_r2"]
     tab.unfold("Add a robot")
-    tab.upload(0, third / "map1.yaml")
-    settle(lambda: "Now load its image, too." in tab.text, "what is missing")
-    tab.upload(1, third / "map1.pgm")
+    tab.open_files(third / "map1.yaml")
+    settle(lambda: "its image is missing" in " ".join(tab.listed()), "what is missing")
+    tab.open_files(third / "map1.pgm")
     settle(lambda: set(robots(tab)) == {"robot 1", "robot 2", "map1"}, "a third robot")
     tab.choose("Or a sample", "apartment, r1")
     settle(lambda: "apartment_r1" in robots(tab), "a fourth, of another building")
@@ -225,8 +224,7 @@ def test_a_robot_is_added_to_two_maps_and_the_result_and_the_fleet_are_taken_awa
         tab.press("Save the fleet")
     download.value.save_as(tmp_path / "fleet.zip")
     other = open_tab(size=(1400, 900))
-    other.unfold("Upload your own")
-    other.page.locator("input[type=file][accept='.zip']").set_input_files(str(tmp_path / "fleet.zip"))
+    other.open_files(tmp_path / "fleet.zip")
     settle(lambda: set(robots(other)) == {"robot 1", "robot 2", "map1", "apartment_r1"}, "the fleet")
 
 
@@ -235,9 +233,8 @@ def test_what_is_no_fleet_is_told_and_a_merge_of_one_can_be_stopped(island, tmp_
     files.pop("robot_2.pgm")
     (tmp_path / "bad.zip").write_bytes(zip_bytes(files))
     before = rows(island, "robot")
-    island.unfold("Upload your own")
-    island.page.locator("input[type=file][accept='.zip']").set_input_files(str(tmp_path / "bad.zip"))
-    settle(lambda: "names robot_2.pgm, which is not in it" in island.text, "what is wrong")
+    island.open_files(tmp_path / "bad.zip")
+    settle(lambda: "names robot_2.pgm, which is not there" in island.state, "what is wrong")
     assert rows(island, "robot") == before
     island.press("Merge")
     settle(island.page.get_by_role("button", name="Stop", exact=True).is_enabled, "Stop")

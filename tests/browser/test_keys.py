@@ -37,20 +37,27 @@ def test_the_sheet_lists_every_key_and_closes_again(tab):
     settle(sheet.is_visible, "the sheet, by its button")
 
 
-def test_a_folder_is_reached_and_opened_by_keys_and_its_buttons_are_dark_in_the_dark(tab):
-    keys, upload = tab.page.keyboard, tab.page.get_by_role("button", name="Map 1: YAML")
-    head = tab.page.get_by_role("button", name="Upload your own", exact=True)
+def test_files_and_folders_are_opened_by_keys_and_buttons_are_dark_in_the_dark(tab):
+    keys, page = tab.page.keyboard, tab.page
+    head, place = page.get_by_role("button", name="Names", exact=True), page.get_by_text("Robot 1 is called")
     settle(lambda: head.get_attribute("aria-expanded") == "false", "the head of the folder")
-    tab.page.get_by_label("Sample", exact=True).first.focus()
-    keys.press("Tab")
-    assert head.evaluate("(head) => head === document.activeElement")
+    page.get_by_label("Sample", exact=True).first.focus()
+    for name, picker in (("Open files…", "multiple"), ("Open a folder…", "webkitdirectory")):
+        keys.press("Tab")
+        button = page.get_by_role("button", name=name)
+        settle(lambda button=button: button.evaluate("(it) => it === document.activeElement"), name)
+        with page.expect_file_chooser() as chooser:
+            keys.press("Enter")
+        assert chooser.value.element.evaluate(f"(input) => input.{picker}")
+    head.focus()
     keys.press("Enter")
-    settle(lambda: head.get_attribute("aria-expanded") == "true" and upload.is_visible(), "what is in it")
-    tab.page.get_by_text("Dark", exact=True).click()
+    settle(lambda: head.get_attribute("aria-expanded") == "true" and place.is_visible(), "what is in it")
+    page.get_by_text("Dark", exact=True).click()
     brightness = "(e) => Math.max(...getComputedStyle(e).backgroundColor.match(/\\d+/g).map(Number))"
+    upload = page.get_by_role("button", name="Open files…")
     settle(lambda: upload.evaluate(brightness) < 120, "a dark button")
     head.press(" ")
-    settle(lambda: head.get_attribute("aria-expanded") == "false" and not upload.is_visible(), "it to close")
+    settle(lambda: head.get_attribute("aria-expanded") == "false" and not place.is_visible(), "it to close")
 
 
 def test_what_is_written_into_a_field_is_no_key(tab):

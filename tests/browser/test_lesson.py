@@ -187,12 +187,8 @@ def test_a_slider_of_the_panel_feeds_the_lesson_and_is_put_back(tab):
 
 
 def test_the_lesson_goes_on_with_uploaded_maps_light_and_dark(tab, tmp_path, small_case: Case):
-    tab.unfold("Upload your own")
-    paths = write_case(tmp_path, small_case.ref, small_case.mov, small_case.observations[0])
-    for slot, path in enumerate(paths):
-        tab.upload(slot, path)
-        settle(lambda path=path: path.name in tab.text, f"the name {path.name}")
-    settle(lambda: tab.state == "Ready. Press Merge.", "all five files")
+    tab.open_files(*write_case(tmp_path, small_case.ref, small_case.mov, small_case.observations[0]))
+    settle(lambda: len(tab.listed()) == 5 and tab.state == "Ready. Press Merge.", "all five files")
     tab.page.get_by_label("Dark", exact=True).click()
     enter(tab)
     for number in range(FIRST, LAST + 1):

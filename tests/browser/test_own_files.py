@@ -20,47 +20,37 @@ from app.page.application import make_server
 pytestmark = pytest.mark.browser
 
 
-def test_a_broken_upload_is_told_by_name_and_the_page_lives_on(tab, tmp_path):
-    text = tmp_path / "mine.yaml"
-    text.write_text(
-        "image: mine.pgm\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
-    )
-    tab.unfold("Upload your own")
-    tab.upload(0, text)
+DROP = """(files) => {
+  const data = new DataTransfer(), on = document.querySelector("canvas");
+  for (const [name, bytes] of files) data.items.add(new File([new Uint8Array(bytes)], name));
+  const how = { dataTransfer: data, bubbles: true, cancelable: true };
+  const fire = (kind) => on.dispatchEvent(new DragEvent(kind, how));
+  fire("dragover");
+  const veil = document.querySelector(".mm-veil"), shown = getComputedStyle(veil).display !== "none";
+  fire("drop");
+  return shown && getComputedStyle(veil).display === "none";
+}"""
+
+
+def test_a_broken_file_is_told_by_name_as_words_and_the_page_lives_on(tab, tmp_path):
+    nasty = tmp_path / "<img src=x onerror=window.hit=1>.yaml"
+    nasty.write_text("image: mine.pgm\norigin: [0, 0, 0]\nnegate: 0\nfree_thresh: 0.2\n")
+    tab.open_files(nasty)
     tab.wait_for("failed")
-    assert "mine.yaml" in tab.state
+    assert "<img" in tab.state
     assert "resolution" in tab.state
-    assert tab.page.get_by_text("resolution").count() >= 2  # the sentence, and a notification
-    assert "cannot be used" in tab.text
+    assert tab.page.get_by_text("resolution").count() >= 3  # the sentence, a notification, and the list
+    assert "cannot be used" in tab.listed()[0]
+    assert tab.page.evaluate("() => window.hit") is None
     assert tab.page.locator(".mm-title").inner_text().endswith("office_r2_r1")  # nothing is lost
     assert tab.page.get_by_role("button", name="Merge", exact=True).is_enabled()
     tab.choose("Sample", "apartment_r2_r1")
     tab.wait_for("idle")
     settle(lambda: tab.page.get_by_text("This cannot be used").count() == 0, "the notice to go")
+    assert tab.listed() == []
     tab.press("Instant")
     tab.press("Merge")
     tab.wait_for("accepted")
-
-
-def test_forgotten_uploads_are_gone_from_the_page(tab, tmp_path, sample: Case):
-    (tmp_path / "o.yaml").write_bytes(known_to_bytes(sample.observations))
-    tab.unfold("Upload your own")
-    tab.upload(4, tmp_path / "o.yaml")
-    settle(lambda: "load the two maps" in tab.state, "what to load next")
-    tab.press("Forget uploads")
-    settle(lambda: tab.state.startswith("Choose a sample"), "the empty page")
-    assert tab.page.get_by_role("button", name="Merge", exact=True).is_disabled()
-    settle(lambda: not tab.page.locator(".mm-legend span").count(), "no legend where there is no map")
-
-
-def test_a_file_name_is_shown_as_words_and_never_run(tab, tmp_path):
-    nasty = tmp_path / "<img src=x onerror=window.hit=1>.yaml"
-    nasty.write_text("nonsense: [")
-    tab.unfold("Upload your own")
-    tab.upload(4, nasty)
-    tab.wait_for("failed")
-    assert "<img" in tab.state
-    assert tab.page.evaluate("() => window.hit") is None
 
 
 def test_the_downloaded_map_reads_back_to_the_merged_cells(tab, tmp_path, sample: Case):
@@ -79,44 +69,51 @@ def test_the_downloaded_map_reads_back_to_the_merged_cells(tab, tmp_path, sample
     assert (back.resolution, back.origin) == (expected.resolution, expected.origin)
 
 
-def test_uploads_one_by_one_say_what_is_missing_and_then_merge(tab, tmp_path):
-    room = l_room()
-    seen = Observation(Pose2(2.0, 2.0, 0.0), 3.0, 2.0, 1.0, 0.0)
-    tab.unfold("Upload your own")
-    for slot, path in enumerate(write_case(tmp_path, room, room, seen)):
-        tab.upload(slot, path)
-        settle(lambda path=path: path.name in tab.text, f"the name {path.name}")
-        if slot == 1:
-            settle(lambda: "Load map 2" in tab.state, "the next step in words")
-        if slot == 3:
-            settle(lambda: "Nothing is known" in tab.state, "that Merge would try everything")
-    settle(lambda: tab.state == "Ready. Press Merge.", "all five files")
-    tab.press("Instant")
-    tab.press("Merge")
-    settle(lambda: tab.mood in ("accepted", "refused"), "a verdict")
-
-
-def test_several_sightings_are_all_shown_and_counted(tab, tmp_path):
+def test_files_that_are_dropped_on_the_map_are_listed_swapped_removed_and_merged(open_tab, tmp_path):
+    tab = open_tab(touch=True)
     room = l_room()
     first = Observation(Pose2(2.0, 2.0, 0.0), 3.0, 2.0, 1.0, 0.0)
     second = Observation(Pose2(4.0, 3.0, 0.0), 5.0, 3.0, 1.0, 0.0)
     *maps, seen = write_case(tmp_path, room, room, first)
-    tab.unfold("Upload your own")
-    for slot, path in enumerate(maps):
-        tab.upload(slot, path)
-        settle(lambda path=path: path.name in tab.text, f"the name {path.name}")
-    seen.write_bytes(known_to_bytes([first, second]).replace(b"- observer", b"- obsever"))
-    tab.upload(4, seen)
+    for path in maps[:2]:
+        tab.open_files(path)
+        settle(lambda path=path: path.name in " ".join(tab.listed()), f"the name {path.name}")
+    settle(lambda: "Load map 2" in tab.state, "the next step in words")
+    shown = tab.page.evaluate(DROP, [[path.name, list(path.read_bytes())] for path in maps[2:]])
+    assert shown
+    settle(lambda: "Nothing is known" in tab.state, "that Merge would try everything")
+    several = known_to_bytes([first, second])
+    seen.write_bytes(several.replace(b"- observer", b"- obsever"))
+    tab.open_files(seen)
     tab.wait_for("failed")
     assert "observation 1: obsever is not a known key" in tab.state
-    seen = tmp_path / "both.yaml"
-    seen.write_bytes(known_to_bytes([first, second]))
-    tab.upload(4, seen)
+    seen.write_bytes(several)
+    tab.open_files(seen)
     settle(lambda: tab.state == "Ready. Press Merge.", "all five files")
+    roles = ["map 1", "image of map 1", "map 2", "image of map 2", "what is known"]
+    names = [*(path.name for path in maps), seen.name]
+    assert tab.listed() == [f"✓ {name} {role} ✕" for name, role in zip(names, roles, strict=True)]
     assert "Observation 1 of 2" in tab.text
     assert "Observation 2 of 2" in tab.text
     assert [item["t"] for item in tab.layer("sight") if "t" in item] == ["2", "2"]
     assert sorted(item["t"] for item in tab.layer("robots") if "t" in item)[:2] == ["robot 1", "robot 2"]
+    tab.press("Instant")
+    tab.press("Merge")
+    settle(lambda: tab.mood in ("accepted", "refused"), "a verdict")
+
+    tab.press("Swap the maps")
+    settle(lambda: tab.listed()[0].startswith("✓ map2.yaml map 1"), "map 2 in the place of map 1")
+    remove = tab.page.get_by_role("button", name="remove map1.pgm")
+    assert min(remove.bounding_box()[side] for side in ("width", "height")) >= 40  # for a finger
+    remove.click()
+    settle(lambda: "Load its image, too: map1.pgm" in tab.state, "what is missing now")
+    assert "· map1.pgm image of map 2: missing" in tab.listed()
+    tab.page.get_by_role("button", name="Undo").click()
+    settle(lambda: len(tab.listed()) == 5 and "missing" not in " ".join(tab.listed()), "the file again")
+    tab.press("Forget these files")
+    settle(lambda: tab.state.startswith("Choose a sample"), "the empty page")
+    assert tab.page.get_by_role("button", name="Merge", exact=True).is_disabled()
+    settle(lambda: not tab.page.locator(".mm-legend span").count(), "no legend where there is no map")
 
 
 def test_a_refused_map_is_downloaded_only_after_a_warning(open_tab, sample: Case):

@@ -17,7 +17,6 @@ from app.drawing.palette import LIGHT
 pytestmark = pytest.mark.browser
 
 PREVIEW = "img[alt='what each pixel means']"
-FIRST_IMAGE, FIRST_YAML = 1, 0  # buttons in their order
 
 
 def l_room(folder, name="room.png"):
@@ -40,8 +39,7 @@ def fill(tab: Tab, label: str, value: str) -> None:
 
 
 def test_an_image_alone_is_read_as_the_form_says_and_its_yaml_can_be_taken_away(tab, tmp_path):
-    tab.unfold("Upload your own")
-    tab.upload(FIRST_IMAGE, l_room(tmp_path))
+    tab.open_files(l_room(tmp_path))
     settle(lambda: "Map 1's image has no YAML file yet" in tab.state, "what to do")
     settle(lambda: "wall 33.3%" in tab.text, "the shares")
     assert "free 50.0%" in tab.text
@@ -83,19 +81,18 @@ def test_an_image_alone_is_read_as_the_form_says_and_its_yaml_can_be_taken_away(
     assert back.cells[-1].tolist() == [OCCUPIED] + [FREE] * 4 + [UNKNOWN]
 
     (tmp_path / "room.yaml").write_bytes((tmp_path / "room.yaml").read_bytes().replace(b": 0.5", b": 0.25"))
-    tab.upload(FIRST_YAML, tmp_path / "room.yaml")
+    tab.open_files(tmp_path / "room.yaml")
     form = tab.page.get_by_text("Map 1: what the image means", exact=True)
     settle(lambda: form.count() == 0 or not form.is_visible(), "the form to give way to the file")
 
 
 def test_limits_that_cannot_be_and_images_that_cannot_be_read_are_told(tab, tmp_path):
-    tab.unfold("Upload your own")
     broken = tmp_path / "broken.png"
     broken.write_bytes(l_room(tmp_path).read_bytes()[:40])
-    tab.upload(FIRST_IMAGE, broken)
+    tab.open_files(broken)
     tab.wait_for("failed")
     assert "broken.png" in tab.state
-    tab.upload(FIRST_IMAGE, l_room(tmp_path))
+    tab.open_files(l_room(tmp_path))
     settle(lambda: "wall 33.3%" in tab.text, "the shares")
     tab.move("free up to", 900)
     settle(lambda: "free_thresh must be the smaller one" in tab.text, "what is wrong")

@@ -11,7 +11,6 @@ from slowline import slow_line
 
 pytestmark = pytest.mark.browser
 
-IMAGES = (1, 3)  # slots
 SLOW = 300_000  # bytes a second
 
 
@@ -55,8 +54,7 @@ def test_a_file_on_its_way_is_told_of_holds_up_nothing_and_can_be_left(open_tab,
     with slow_line(server.get_port()) as line:
         tab = open_tab((1280, 800), at=line)
         watch(tab)
-        tab.unfold("Upload your own")
-        table, stop = tab.page.locator("table").first, tab.page.get_by_role("button", name="Stop", exact=True)
+        stop = tab.page.get_by_role("button", name="Stop", exact=True)
         shown, way = (
             tab.page.locator(".mm-sending"),
             tab.page.get_by_role("progressbar", name="Files on their way"),
@@ -69,16 +67,16 @@ def test_a_file_on_its_way_is_told_of_holds_up_nothing_and_can_be_left(open_tab,
             states = [client.gui._current_file_upload_states for client in server.get_clients().values()]
             return sum(len(of_tab) for of_tab in states)
 
-        before, empty = tab.state, table.text_content()
+        before = tab.state
         first, second = image(tmp_path / "floor_1.pgm"), image(tmp_path / "floor_2.pgm")
         line.rate = SLOW
-        tab.upload(IMAGES[0], first)
+        tab.open_files(first)
         settle(lambda: percent() > 5, "some progress")
         settle(stop.is_enabled, "Stop")
         tab.press("Slow")  # what a person does meanwhile does not wait for the file
         settle(lambda: tab.page.get_by_role("button", name="Slow", pressed=True).count(), "an answer")
         assert 5 < percent() < 90
-        tab.upload(IMAGES[1], second)
+        tab.open_files(second)
         settle(lambda: "Sending floor_1.pgm and floor_2.pgm" in shown.inner_text(), "both files")
         assert " of 12 MB" in shown.inner_text()
         both = percent()
@@ -88,22 +86,22 @@ def test_a_file_on_its_way_is_told_of_holds_up_nothing_and_can_be_left(open_tab,
         settle(lambda: not kept(), "nothing to stay")
         settle(lambda: not server.uploads._coming, "the end")
         settle(stop.is_disabled, "nothing to stop")
-        assert (tab.state, table.text_content()) == (before, empty)
+        assert (tab.state, tab.listed()) == (before, [])
 
-        tab.upload(IMAGES[0], first)
+        tab.open_files(first)
         settle(lambda: percent() > 0, "the same file again")
         tab.page.get_by_role("button", name="Stop sending").click()
         settle(lambda: shown.is_hidden() and not kept(), "nothing on its way")
         assert "did not arrive" not in said(tab)
 
-        tab.upload(IMAGES[0], first)
+        tab.open_files(first)
         settle(lambda: percent() > 0, "the same file once more")
         line.rate = None
-        settle(lambda: "floor_1.pgm" in table.inner_text(), "the file")
+        settle(lambda: "floor_1.pgm" in " ".join(tab.listed()), "the file")
         settle(shown.is_hidden, "it to be there")
         tab.page.evaluate("() => { window.said = []; }")
         (tmp_path / "small.yaml").write_text("image: [")
-        tab.upload(0, tmp_path / "small.yaml")
+        tab.open_files(tmp_path / "small.yaml")
         settle(lambda: tab.mood == "failed", "the reason why not")
         assert tab.page.evaluate("() => window.soonest") >= 400  # ms: what takes but a moment is not told
         told = said(tab)
@@ -112,9 +110,9 @@ def test_a_file_on_its_way_is_told_of_holds_up_nothing_and_can_be_left(open_tab,
         assert "ploading" not in told
 
         line.rate = SLOW
-        loaded = table.text_content()
+        loaded = tab.listed()
         for spoil in (lambda: truncate(second, 100), second.unlink):  # while it is being read
-            tab.upload(IMAGES[1], second)
+            tab.open_files(second)
             settle(lambda: percent() > 0, "some of it")
             spoil()
             settle(
@@ -122,9 +120,9 @@ def test_a_file_on_its_way_is_told_of_holds_up_nothing_and_can_be_left(open_tab,
                 "the note",
             )
             image(second)
-        tab.upload(IMAGES[1], second)  # and it can be chosen again
+        tab.open_files(second)  # and it can be chosen again
         settle(lambda: percent() > 0 and kept() == 1, "a last one")
-        assert table.text_content() == loaded
+        assert tab.listed() == loaded
         line.cut()
         line.rate = None
         settle(

@@ -182,9 +182,17 @@ class Tab:
         for _ in range(abs(presses)):
             self.page.keyboard.press("ArrowRight" if presses > 0 else "ArrowLeft")
 
-    def upload(self, slot: int, *files: Path) -> None:
-        """Give a file to the upload button of this number."""
-        self.page.locator("input[type=file]").nth(slot).set_input_files([str(file) for file in files])
+    def open_files(self, *files: Path) -> None:
+        """Choose these files, all at once, with the button for it."""
+        chooser = self.page.locator(
+            f'[id="file_upload_{self.page.evaluate("() => mapmeld.hud.open.button")}"]'
+        )
+        settle(lambda: chooser.evaluate("(input) => input.multiple"), "a choice of several files")
+        chooser.set_input_files([str(file) for file in files])
+
+    def listed(self) -> list[str]:
+        """The lines of the list of files."""
+        return [" ".join(line.split()) for line in self.page.locator(".mm-given li").all_inner_texts()]
 
     def close(self) -> None:
         """Close the tab."""
@@ -200,7 +208,7 @@ SAID = """() => [
     document.body.innerText, JSON.stringify(mapmeld.layers), JSON.stringify(mapmeld.hud),
     ...[...document.querySelectorAll("[title], [aria-label]")].flatMap((e) => [e.title, e.ariaLabel || ""]),
     ...[...document.querySelectorAll("svg text")].map((e) => e.textContent)].join("\\n")"""
-FIELDS = re.compile(r"Map [12]: (YAML|image)|Robot [12] is called")  # that load other maps, and give names
+FIELDS = re.compile(r"Robot [12] is called")  # that give names
 
 
 def of_two(tab: Tab) -> list[str]:

@@ -5,12 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from threading import RLock
 from typing import Any
+from unittest.mock import Mock
 
 import viser
+from tabs import noting_tab
 
+from algorithms.common.errors import MapMergeError
 from app.drawing.browser_messages import BrowserMessages
+from app.model.files.file_reader import upload_at
+from app.model.merge_inputs import MergeInputs, Upload
 from app.page.cancellable_task import CancellableTask
-from app.page.panels.files_panel import FilesPanel
+from app.page.files.files_controller import FilesController
+from app.page.files.files_panel import FilesPanel
 from app.page.panels.settings_panel import SettingsPanel
 
 
@@ -21,17 +27,41 @@ class Silent(BrowserMessages):
         """Let go of it."""
 
 
-def files_panel(
-    gui: viser.GuiApi,
-    load: Callable[..., None],
-    report: Callable[..., None],
-    save: Callable[[str, bytes], None] = lambda name, content: None,
-    task: CancellableTask | None = None,
-) -> FilesPanel:
-    task = task or CancellableTask(Silent(), RLock(), lambda yes: None)
-    panel = FilesPanel(gui, "", save, RLock(), task)
-    panel.connect(load, report)
-    return panel
+class FilesDesk:
+    """The folder of maps, with what came of it: pairs and their labels, errors, files saved and sightings."""
+
+    def __init__(self, gui: viser.GuiApi, task: CancellableTask | None = None) -> None:
+        self.loaded: list[MergeInputs] = []
+        self.labels: list[str] = []
+        self.reports: list[MapMergeError] = []
+        self.saved: dict[str, bytes] = {}
+        self.seen: list[Upload] = []
+        self.tab = noting_tab()
+        panels = self.tab.panels
+        self.panel = FilesPanel(gui, "", self.saved.__setitem__, self.tab.state.locks.action)
+        panels.files = self.panel  # type: ignore[misc]
+        panels.task = task or CancellableTask(Silent(), RLock(), lambda yes: None)  # type: ignore[misc]
+        self.tab.notices.report = self.reports.append  # type: ignore[method-assign]
+        self.fleet = Mock(shown=None)
+        self.controller = FilesController(self.tab, self.load, self.fleet, self.seen.append)
+
+    def load(self, inputs: MergeInputs, label: str) -> None:
+        """As the page does it."""
+        self.tab.state.update(inputs=inputs, files=self.panel.files)
+        self.loaded.append(inputs)
+        self.labels.append(label)
+
+    @property
+    def inputs(self) -> MergeInputs:
+        return self.loaded[-1]
+
+    def open(self, files: dict[str, bytes]) -> None:
+        """Give these files at once, by their paths."""
+        self.controller.open([upload_at(path, content) for path, content in files.items()])
+
+    def press(self, what: str, n: int = 0) -> None:
+        """Press a button of the list."""
+        self.controller._change(what, n)
 
 
 def settings_panel(

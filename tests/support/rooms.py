@@ -22,7 +22,7 @@ def l_room() -> GridMap:
 
 
 def write_case(folder: Path, ref: GridMap, mov: GridMap, observation: Observation) -> list[Path]:
-    """The five files in the order of the upload buttons."""
+    """The files of both maps, then what is known."""
     paths = []
     for stem, grid in (("map1", ref), ("map2", mov)):
         files = map_to_bytes(grid, stem)

@@ -198,8 +198,7 @@ def an_empty_page(tab: Tab, keep: Keep) -> None:
         image = Path(folder) / "floor.png"
         pixels = np.asarray(Image.open(io.BytesIO(map_to_bytes(case.ref, "floor")["floor.pgm"])))
         Image.fromarray(pixels).save(image)
-        tab.unfold("Upload your own")
-        tab.upload(1, image)
+        tab.open_files(image)
         until(tab, "has no YAML file yet", 600)
     tab.page.locator("img[alt='what each pixel means']").first.scroll_into_view_if_needed()
     tab.page.wait_for_timeout(900)

@@ -14,6 +14,7 @@ from rosbags.rosbag2 import Reader as Reader2
 
 from algorithms.common.errors import InputFileError, unreadable
 from algorithms.files.bags.bag_path import NANO, bag_kind, is_ros1
+from algorithms.files.bags.bounded_decompression import bound
 from algorithms.files.bags.message_types import MessageReader
 
 ROS2_SUFFIXES = (".db3", ".mcap")  # by which the library knows them
@@ -112,6 +113,8 @@ def open_bag(path: Path) -> Iterator[BagReader]:
     with _reading(path):
         reader = Reader1(path) if is_ros1(path) else Reader2(path)
         reader.open()
+        if isinstance(reader, Reader1):
+            bound(reader)
     try:
         yield BagReader(path, reader)
     finally:

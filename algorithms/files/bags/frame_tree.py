@@ -40,7 +40,9 @@ class Placed:
         """Of a geometry_msgs/Transform; None where it is none."""
         q, t = transform.rotation, transform.translation
         turn, shift = np.array([q.x, q.y, q.z, q.w], float), np.array([t.x, t.y, t.z], float)
-        if not (np.isfinite(shift).all() and 0.5 < float(turn @ turn) < 2.0):
+        with np.errstate(all="ignore"):
+            size = float(turn @ turn)
+        if not (np.isfinite(shift).all() and 0.5 < size < 2.0):
             return None
         return Placed(Rotation.from_quat(turn), shift)
 

@@ -219,7 +219,8 @@ def scan_of(name: str, message: Any) -> LaserScan:
 
 
 def _listed(numbers: Any) -> str:
-    return f"[{', '.join(map(repr, np.asarray(numbers, dtype=float).tolist()))}]"
+    with np.errstate(invalid="ignore"):  # a NaN of any kind is a NaN
+        return f"[{', '.join(map(repr, np.asarray(numbers, dtype=float).tolist()))}]"
 
 
 def _of_camera(bag: BagReader, T_robot_camera: FloatArray) -> Pose2:

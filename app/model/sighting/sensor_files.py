@@ -8,6 +8,7 @@ from math import degrees
 from pathlib import PurePath
 from typing import Generic, TypeVar
 
+from algorithms.common.errors import InputFileError
 from algorithms.detection.model_file import model_from_bytes
 from algorithms.detection.svm_detector import DetectorModel
 from algorithms.files.camera_file import camera_from_bytes
@@ -16,11 +17,16 @@ from algorithms.files.encounter_table import EncounterRow, encounters_from_bytes
 from algorithms.files.scan_file import scan_from_bytes
 from algorithms.sensors.camera import Camera
 from algorithms.sensors.laser_scan import LaserScan
+from app.model.files.file_kinds import KINDS, UNKNOWN, FileKind, kind_of_file
 from app.model.merge_inputs import Upload
-from app.model.sighting.file_kinds import FileKind, kind_of_file
 from app.model.sighting.look_settings import LookSettings
 
 T = TypeVar("T")
+
+NONE = "is neither an image, nor a camera's calibration, nor a laser scan"
+GIVE = "give a JPEG or PNG, the camera's camera.yaml, or the laser's scan.yaml"
+# what else it may be here; whose reader tells of zips that are no detector
+ALSO: Mapping[FileKind, FileKind] = {"image": "picture", "zip": "model"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +67,7 @@ class SensorFiles:
     def with_file(self, upload: Upload) -> tuple[SensorFiles, FileKind]:
         """The same with one file more, and what it is, by its content; raises InputFileError."""
         name, content = upload.name, upload.content
-        kind = kind_of_file(name, content)
+        kind = _kind_of(name, content)
         if kind == "picture":
             height, width = picture_from_bytes(name, content).shape[:2]
             return _checked_together(replace(self, picture=CameraPicture(upload, width, height))), kind
@@ -127,6 +133,17 @@ class SensorFiles:
         if settings.finder == "own" and self.model is None:
             return "Load your detector (.npz), or choose another one."
         return ""
+
+
+def _kind_of(name: str, content: bytes) -> FileKind:
+    """What a file is; any image is the camera's. Raises InputFileError where it is none of a sighting's."""
+    try:
+        kind = kind_of_file(name, content)
+    except InputFileError as error:
+        raise InputFileError(name, NONE if error.found == UNKNOWN else error.found, GIVE) from error
+    if kind in ("known", "map", "fleet", "truth"):
+        raise InputFileError(name, f"is {KINDS[kind]}", "drop it beside this panel, or press Open files…")
+    return ALSO.get(kind, kind)
 
 
 def _checked_together(files: SensorFiles) -> SensorFiles:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from algorithms.common.errors import MapMergeError, SettingError
 from algorithms.common.pose import FloatArray
@@ -16,7 +16,6 @@ from app.model.merge_inputs import MergeInputs
 from app.page.cancellable_task import DownloadTask
 from app.page.fleet.fleet_display import FleetDisplay
 from app.page.fleet.fleet_run_controller import STOPPED, FleetRunController
-from app.page.fleet.robot_files import RobotFiles
 from app.page.inputs_controller import InputsController
 from app.page.modes import Mode
 from app.page.run_controller import RunController
@@ -65,8 +64,7 @@ class FleetController:
         )
         self._panel.connect(self._rename, self._anchor, self._remove, self._add_sighting)
         self._panel.connect_files(self._back, self._download, self._save)
-        tab.panels.files.connect_fleet(self._load, self._begin)
-        RobotFiles(self._panel, self._locks.action, tab.panels.task, self._add_robot, tab.notices.report)
+        tab.panels.files.connect_fleet(self._begin)
         tab.events.on("fleet", self._pressed, what=("robot", "eye", "pair"), n=int)
         tab.state.subscribe("fleet", self._fleet_changed)
 
@@ -75,20 +73,20 @@ class FleetController:
         self._quota.release(self)
 
     @property
-    def _shown(self) -> FleetState | None:
+    def shown(self) -> FleetState | None:
         """The fleet, where the page shows it."""
         return self._state.fleet if self._modes.current is self._mode else None
 
     # --- a fleet comes and goes -----------------------------------------------------------------------
 
-    def _load(self, fleet: Fleet, name: str) -> None:
+    def load(self, fleet: Fleet, name: str) -> None:
         """Show a fleet in place of what is on the page, as an action of the person."""
         self._go(FleetState(fleet, name), f"load {name}")
 
     def merge_fleet(self, fleet: Fleet, name: str) -> None:
         """Show a fleet, and merge it."""
         with self._locks.action:
-            self._load(fleet, name)
+            self.load(fleet, name)
             self._merge()
 
     def _begin(self) -> None:
@@ -153,14 +151,14 @@ class FleetController:
         self._show_panel()
 
     def _show_panel(self) -> None:
-        self._display.show_panel(self._shown is not None)
+        self._display.show_panel(self.shown is not None)
 
     # --- what a person does with it ---------------------------------------------------------------------
 
     def _change(self, make: Callable[[FleetState], FleetState], label: str) -> bool:
         """Another fleet, and whether it can be: what cannot is told."""
         with self._locks.action, self._locks.drawing:
-            state = self._shown
+            state = self.shown
             if state is None:
                 return False
             try:
@@ -172,8 +170,15 @@ class FleetController:
             self._take(changed, label)
             return True
 
-    def _add_robot(self, name: str, grid: GridMap) -> None:
-        self._change(lambda state: state.with_robot(name, grid), f"add {name}")
+    def add_robots(self, robots: Sequence[tuple[str, GridMap]]) -> None:
+        """Robots more, by the names that they are to have as far as they can."""
+
+        def with_all(state: FleetState) -> FleetState:
+            for name, grid in robots:
+                state = state.with_robot(name, grid)
+            return state
+
+        self._change(with_all, f"add {', '.join(name for name, _ in robots)}")
 
     def _rename(self, old: str, new: str) -> None:
         if new != old:
@@ -191,7 +196,7 @@ class FleetController:
     def _pressed(self, what: str, n: int) -> None:
         """A row of the lists was pressed."""
         with self._locks.action, self._locks.drawing:
-            state = self._shown
+            state = self.shown
             rows = () if state is None else state.orders if what == "pair" else state.robots
             if state is None or not 0 <= n < len(rows):
                 return
@@ -209,7 +214,7 @@ class FleetController:
     def _click(self, place: FloatArray) -> None:
         """A click on a sighting's line opens its pair."""
         with self._locks.action:
-            state, edge = self._shown, self._display.edge_at(place)
+            state, edge = self.shown, self._display.edge_at(place)
             if state is not None and edge is not None:
                 self._open(next(each for each in state.orders if edge.number in each.sightings))
 
@@ -225,7 +230,7 @@ class FleetController:
 
     def _open(self, order: PairOrder) -> None:
         with self._locks.action, self._locks.drawing:
-            state = self._shown
+            state = self.shown
             if state is None:
                 return
             self._modes.close()
@@ -264,7 +269,7 @@ class FleetController:
 
     def _merge(self) -> None:
         with self._locks.action, self._locks.drawing:
-            if (state := self._shown) is not None:
+            if (state := self.shown) is not None:
                 self._run.begin(state)
 
     def _stop(self) -> bool:
@@ -275,14 +280,14 @@ class FleetController:
         return stopped
 
     def _download(self) -> None:
-        state = self._shown
+        state = self.shown
         if state is not None and state.result is not None:
             fleet, result, name = state.fleet, state.result, state.name
             make = lambda check: zip_bytes(fleet_files(fleet, result, name))  # noqa: E731
             self._deliver(MAKING, "fleet_result.zip", make)
 
     def _save(self) -> None:
-        state = self._shown
+        state = self.shown
         if state is not None:
             fleet = state.fleet
             self._deliver(MAKING, "fleet.zip", lambda check: zip_bytes(fleet_to_files(fleet)))

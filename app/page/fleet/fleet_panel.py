@@ -7,12 +7,11 @@ from typing import Any
 
 import viser
 
-from algorithms.files.map_file import READABLE_SUFFIXES
 from app.drawing.palette import LIGHT, QUIET
 from app.model.fleet_state import FleetState
 from app.page.fleet.fleet_html import pairs_html, robots_html
 from app.page.fleet.sample_robots import sample_robots
-from app.page.panels.html_widgets import Action, box, on_press, put
+from app.page.panels.html_widgets import Action, box, on_press, put, small
 
 LEAST = 2  # robots of a fleet
 NO_SAMPLE = "(choose)"
@@ -41,10 +40,7 @@ class FleetPanel:
                 hint = "Opens the two maps, to say where it was."
                 self._place = gui.add_button("Place it on the maps", hint=hint, **quiet)
             with gui.add_folder("Add a robot", expand_by_default=False) as self._adding:
-                self._waits = gui.add_html("")
-                self.yaml = gui.add_upload_button("Robot: YAML", mime_type=".yaml,.yml", **quiet)
-                kinds = ",".join(READABLE_SUFFIXES)
-                self.image = gui.add_upload_button("Robot: image", mime_type=kinds, **quiet)
+                gui.add_html(small("Open its map's files, under Maps, or drop them anywhere on the page."))
                 hint = "A map that ships with mapmeld."
                 self.sample = gui.add_dropdown("Or a sample", (NO_SAMPLE, *sample_robots()), hint=hint)
             icon = viser.Icon.DOWNLOAD
@@ -98,7 +94,3 @@ class FleetPanel:
     def choose(self, name: str) -> None:
         """That robot is the chosen one from now on."""
         self._chosen = name
-
-    def waiting(self, words: str) -> None:
-        """What is still to be loaded of the robot that is added."""
-        put(self._waits, content=box(words, "plain") if words else "")

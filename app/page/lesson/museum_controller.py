@@ -119,7 +119,7 @@ class MuseumController:
             self._runs.thread.stop()
             self._modes.close()
             self._runs.set_method(method, config, seed=0)
-            self._panels.files.restore(Files(self._pair.name))
+            self._panels.files.show(Files(self._pair.name))
             with self._state.locks.drawing:
                 if self._inputs.show(self._pair):
                     self._state.update(fleet=None)

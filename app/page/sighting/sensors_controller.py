@@ -13,10 +13,10 @@ from algorithms.files.camera_file import CAMERA_FILE
 from algorithms.files.camera_picture import MOST_BYTES
 from algorithms.files.encounter_table import ENCOUNTER_TABLE, EncounterRow
 from algorithms.files.map_file import read_bytes
+from app.model.files.map_slots import short_name
 from app.model.merge_inputs import MergeInputs, Upload
 from app.model.observation_draft import ObservationDraft
 from app.model.sighting.sensor_files import SensorFiles
-from app.page.panels.uploaded_file import short_name
 from app.page.sighting.sighting_look import LookOrder
 from app.page.tab import Tab
 from app.system import data_paths as paths
@@ -42,7 +42,7 @@ class SensorsController:
         self._folder: Path | None = None  # of the sample whose files these are
         self._pair = MergeInputs()
         self._panel.connect(
-            partial(tab.events.then, self._take), self._take_sample, self._take_row, self.forget
+            partial(tab.events.then, self.take), self._take_sample, self._take_row, self.forget
         )
         tab.state.subscribe("setup", self._setup_changed)
         self._setup_changed()
@@ -96,7 +96,7 @@ class SensorsController:
 
     # --- files ------------------------------------------------------------------------------------
 
-    def _take(self, upload: Upload) -> None:
+    def take(self, upload: Upload) -> None:
         """A file has come: it is what it holds."""
         with self._locks.action:
             try:

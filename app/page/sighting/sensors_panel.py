@@ -15,11 +15,12 @@ from algorithms.detection.svm_detector import LEAST_PROBABILITY
 from algorithms.detection.tag_detector import FAMILIES, TAG_SIZES
 from algorithms.maps.grid_map import FARTHEST
 from app.drawing.palette import LIGHT, QUIET, STOP
+from app.model.files.file_reader import upload_at
 from app.model.merge_inputs import Upload
 from app.model.observation_draft import ObservationDraft
 from app.model.sighting.look_settings import Finder, LookSettings
 from app.page.panels.html_widgets import Action, box, on_choice, on_press, put
-from app.page.panels.uploaded_file import taken_from, upload_of
+from app.page.panels.uploaded_file import taken_from
 
 FINDERS: dict[str, Finder] = {
     "The trained one": "trained",
@@ -116,7 +117,7 @@ class SensorsPanel:
         async def arrived(event: viser.GuiEvent[Any]) -> None:  # before the next one takes its place
             file = taken_from(event)
             if file is not None:
-                take(upload_of(file, "file"))
+                take(upload_at(file.name, file.content))
 
         self._files.on_upload(arrived)
         on_press((self._sample, sample), (self._forget, forget))

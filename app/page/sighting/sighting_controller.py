@@ -56,14 +56,14 @@ class SightingController:
         self._mode = tab.modes.add(Mode(self._end))
         self._work = BackgroundJob(self, self._locks.drawing, "sighting", self._dock.say)
         self._pair = tab.state.inputs
-        self._sensors = SensorsController(tab, samples)
-        typed = partial(tab.events.then, self._sensors.typed)  # in order with what is typed elsewhere
-        self._panel.connect_look(typed, self._sensors.settings_changed, self.look, self._stop, self.open)
+        self.sensors = SensorsController(tab, samples)
+        typed = partial(tab.events.then, self.sensors.typed)  # in order with what is typed elsewhere
+        self._panel.connect_look(typed, self.sensors.settings_changed, self.look, self._stop, self.open)
         self._dock.connect(self.look, self._close, self.use)
         tab.events.on("box", self._choose, n=int)
         tab.state.subscribe("setup", self._setup_changed)
         tab.state.subscribe("palette", self._show)
-        self._sensors.changed = self._sensors_changed
+        self.sensors.changed = self._sensors_changed
         self._sensors_changed()
 
     def close(self) -> None:
@@ -103,7 +103,7 @@ class SightingController:
     def look(self) -> None:
         """Find robots in the image, in another process."""
         with self._locks.action:
-            order = self._sensors.order()
+            order = self.sensors.order()
             if order is None:
                 return
             if not self.active:
@@ -168,7 +168,7 @@ class SightingController:
     def _made(self) -> Observation | None:
         """The observation that a person is looking at; None where there is none that can be used."""
         position = self._look.seen.position if self._look is not None else None
-        at = self._sensors.place
+        at = self.sensors.place
         if position is None or at.observer is None or at.observed is None or self._cannot():
             return None
         try:
@@ -219,14 +219,14 @@ class SightingController:
     def _possible(self) -> None:
         seen = self._look is not None and not self.active
         busy = self._work.busy and self._look is None  # its process may take a while to end
-        self._panel.possible(self._sensors.order() is not None, busy, seen)
+        self._panel.possible(self.sensors.order() is not None, busy, seen)
 
     def _cannot(self) -> str:
         """Why the sighting cannot be used as all of it stands."""
-        order = self._sensors.order()
+        order = self.sensors.order()
         if order is None or self._order is None or not order.same_as(self._order):
             return STALE
-        return self._sensors.unplaced
+        return self.sensors.unplaced
 
     def _show(self) -> None:
         with self._locks.drawing:

@@ -70,6 +70,7 @@ class PageSnapshot:
             held += [grid.cells for grid in self.fleet.fleet.maps.values()]
             held += [island.fusion.merged.cells for island in self.fleet.islands]
         held += [upload.content for upload in self.files.uploads.values()]
+        held += [other.upload.content for other in self.files.others if other.upload is not None]
         if self.result is not None:
             fusion = self.result.fusion
             held += [fusion.merged.cells, fusion.ref_cells, fusion.mov_cells]

@@ -46,7 +46,7 @@ class UndoController:
         self._runs.thread.stop()
         mode = self._modes.close()
         self._runs.set_method(s.method, s.config, s.seed)
-        self._panels.files.restore(s.files)
+        self._panels.files.show(s.files)
         with state.locks.drawing:
             bare = s.goal is None or (s.goal == "candidates" and state.result is not None)
             if s.inputs is not state.inputs or bare:

@@ -16,8 +16,8 @@ from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError, NoAnswerError, OutputError, SettingError, TooLargeError
 from algorithms.files.map_file import map_from_bytes, map_to_bytes
 from algorithms.maps.grid_map import GridMap
+from app.model.files.map_slots import inputs_of
 from app.model.merge_inputs import Upload
-from app.page.panels.files_panel import inputs_from
 
 ODD = "\ud800\udfff\u202e\u2067\u200f\x00\x1b\x85\u2028\n\r"
 strange = st.text(st.one_of(st.characters(exclude_categories=()), st.sampled_from(ODD)), max_size=30)
@@ -65,5 +65,5 @@ def test_a_map_s_name_is_shown_with_what_is_hidden_in_it(name):
 def test_the_image_that_is_asked_for_is_named_the_way_it_reads():
     files = map_to_bytes(GridMap(np.zeros((2, 2), dtype=np.int8), 0.05), "m")
     text = files["m.yaml"].replace(b"m.pgm", b'"m\\u202emgp.exe"')
-    missing = inputs_from({"yaml1": Upload("m.yaml", text)}).missing()
+    missing = inputs_of({"yaml1": Upload("m.yaml", text)}).missing()
     assert "Load its image, too: m[U+202E]mgp.exe." in missing

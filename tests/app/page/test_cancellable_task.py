@@ -9,13 +9,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import viser
-from panels import files_panel
+from panels import FilesDesk
 from PIL import Image
 
 from algorithms.common.errors import InputFileError
 from algorithms.files.map_file import map_from_bytes
 from app.drawing.browser_messages import BrowserMessages
-from app.model.merge_inputs import Upload
 from app.page.cancellable_task import CancellableTask
 from app.page.export.export_panel import ReplayButton
 from app.system.cancellation import CancellableReader, Cancelled
@@ -98,39 +97,35 @@ def test_no_reader_takes_stop_for_a_damaged_file(kind):
 @pytest.mark.parametrize("kind", ["pgm", "png"])
 @pytest.mark.parametrize("with_yaml", [True, False], ids=["map", "image alone"])
 def test_a_file_whose_reading_is_stopped_leaves_everything_as_it_was(server, person, kind, with_yaml):
-    loaded, reports = [], []
-
-    def load(inputs):
-        loaded.append(inputs)
-        person.stage.hud(**BEFORE)
-
-    panel = files_panel(server.gui, load, reports.append, task=person.task)
+    desk = FilesDesk(server.gui, person.task)
+    load = desk.controller._load
+    desk.controller._load = lambda *what: (load(*what), person.stage.hud(**BEFORE))
     if with_yaml:
-        panel._take("yaml1", Upload("m.yaml", YAML))
-    panel._take("image1", Upload("first", image(kind)))
-    before, so_far = dict(panel.files.uploads), len(loaded)
+        desk.open({"m.yaml": YAML})
+    desk.open({"a": image(kind)})
+    before, so_far = dict(desk.panel.files.uploads), len(desk.loaded)
     person.impatient = True
-    panel._take("image1", Upload("second", image(kind, 1200)))
-    assert panel.files.uploads == before
-    assert len(loaded) == so_far
-    assert reports == []
+    desk.open({"a": image(kind, 1200)})
+    assert desk.panel.files.uploads == before
+    assert len(desk.loaded) == so_far
+    assert desk.reports == []
     assert person.said == BEFORE
-    assert "Reading second" in " ".join(filter(None, person.stage.sent))
+    assert "Reading a, " in " ".join(filter(None, person.stage.sent))
     person.impatient = False
-    panel._take("image1", Upload("second", image(kind, 1200)))  # and it can be loaded after all
-    assert panel.files.uploads["image1"].name == "second"
+    desk.open({"a": image(kind, 1200)})  # and it can be loaded after all
+    assert desk.panel.files.uploads["image1"].content == image(kind, 1200)
     assert person.could_stop == [True, False] * 3
-    assert len(loaded) == so_far + 1
+    assert len(desk.loaded) == so_far + 1
 
 
 def test_a_small_file_is_read_without_a_word_and_a_small_png_of_many_pixels_is_not(server, person):
-    panel = files_panel(server.gui, lambda _: None, lambda _: None, task=person.task)
-    panel._take("image1", Upload("small.png", image("png", 100)))
+    desk = FilesDesk(server.gui, person.task)
+    desk.open({"small.png": image("png", 100)})
     assert person.could_stop == []
     packed = io.BytesIO()
     Image.new("L", (3000, 3000), 254).save(packed, "PNG")
     assert len(packed.getvalue()) < 100_000
-    panel._take("image1", Upload("blank.png", packed.getvalue()))
+    desk.open({"blank.png": packed.getvalue()})
     assert person.could_stop == [True, False]
 
 

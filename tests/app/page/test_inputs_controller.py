@@ -8,6 +8,8 @@ import pytest
 from tabs import noting_tab
 
 from algorithms.common.errors import TooLargeError
+from algorithms.observations.fleet import Fleet
+from app.model.fleet_state import FleetState
 from app.model.merge_inputs import MergeInputs
 from app.page.inputs_controller import InputsController
 from app.page.modes import Mode
@@ -33,6 +35,15 @@ def test_what_was_found_on_other_maps_is_forgotten_and_can_be_undone(tab, inputs
     assert (state.result, state.goal, state.contradictions) == (None, None, None)
     assert tab.history.steps[-1].label == "load swapped"
     assert tab.display.show_inputs.called
+
+
+def test_what_more_is_known_of_a_fleets_pair_leaves_the_fleet_there_and_other_maps_do_not(tab, inputs):
+    tab.state.update(fleet=FleetState(Fleet({"r1": inputs.ref, "r2": inputs.mov})))
+    controller(tab).load(inputs.knowing(()), "remove o.yaml")
+    assert tab.state.fleet is not None
+    assert tab.history.steps[-1].label == "remove o.yaml"
+    controller(tab).load(MergeInputs.pair(inputs.mov, inputs.ref))
+    assert tab.state.fleet is None
 
 
 def test_maps_that_are_too_large_are_reported_and_what_is_on_the_page_stays(tab, inputs):

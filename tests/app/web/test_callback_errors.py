@@ -21,8 +21,8 @@ from app.jobs import worker_pool as workers
 from app.model import status_text as words_of_the_page
 from app.model.run_state import RunState
 from app.page.application import make_server
+from app.page.files.files_controller import read_case as real_read_case
 from app.page.page_state import PageState
-from app.page.panels.files_panel import read_case as real_read_case
 from app.system.logging_setup import JsonFormatter, facts
 from app.web.callback_errors import OUT_OF_MEMORY, words
 
@@ -176,7 +176,9 @@ def test_files_that_cannot_be_made_are_told_of_and_can_be_asked_for_again(tab, m
 
 
 def test_a_sample_that_has_gone_meanwhile_is_named_and_what_was_there_stays(tab, monkeypatch, tmp_path):
-    monkeypatch.setattr("app.page.panels.files_panel.read_case", lambda _: real_read_case(tmp_path / "gone"))
+    monkeypatch.setattr(
+        "app.page.files.files_controller.read_case", lambda _: real_read_case(tmp_path / "gone")
+    )
     before = tab.words["case"]
     tab.write("Sample", "office_r2_r1", "Dropdown")
     until(lambda: tab.mood == "failed", "a word of it")

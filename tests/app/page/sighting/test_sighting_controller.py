@@ -178,7 +178,7 @@ def test_where_nothing_was_known_a_sighting_is_what_is_known_now(seeing, tab, in
     seeing.use(None)
     assert tab.state.inputs.observations == ()
     for name in ("x1", "x2"):
-        seeing._sensors.typed(name, 1.0)
+        seeing.sensors.typed(name, 1.0)
     assert page(tab).usable
     seeing.use(None)
     assert tab.state.inputs.choice == "sighting"

@@ -20,7 +20,7 @@ from algorithms.maps.map_fusion import fuse
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from algorithms.methods.steps import Step
 from algorithms.observations.observation import Observation
-from app.model.merge_inputs import Files, MergeInputs, Upload
+from app.model.merge_inputs import Files, MergeInputs, OtherFile, Upload
 from app.model.run_state import RunState
 from app.model.settings import with_value
 from app.page.undo.history_panel import history_html, steps_html
@@ -125,7 +125,12 @@ def test_large_answers_of_long_ago_are_let_go_of_before_any_wish_is(outcome):
 
 
 def test_uploads_of_long_ago_are_let_go_of_where_they_are_too_many():
-    files = [Files("", {"yaml1": Upload("a", bytes(1000))}) for _ in range(5)]
+    files = [
+        Files(
+            "", {"yaml1": Upload("a", bytes(500))}, (OtherFile("b", "waits", upload=Upload("b", bytes(500))),)
+        )
+        for _ in range(5)
+    ]
     told = history(*(replace(START, files=one) for one in files), most_bytes=ROOM.cells.nbytes + 2500)
     assert len(told.steps) == 2
     assert told.snapshot.files is files[-1]

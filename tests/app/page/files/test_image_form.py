@@ -10,14 +10,14 @@ import viser
 from hypothesis import given
 from hypothesis import strategies as st
 from mapfiles import image_map_from_bytes
-from panels import files_panel
+from panels import FilesDesk
 
 from algorithms.common.pose import Pose2
 from algorithms.files.images.thresholds import MODES, Shading
 from algorithms.files.map_file import MapMeta, meta_to_bytes, parse_meta
 from algorithms.maps.grid_map import COARSEST, FINEST, FREE, MOST_TURN, OCCUPIED, UNKNOWN
 from app.model.merge_inputs import Files
-from app.page.panels.image_form import doubt_about, shares
+from app.page.files.image_form import doubt_about, shares
 
 # 3 x 2 pixels: white, grey, black above; black, white, white below
 IMAGE = b"P5\n3 2\n255\n" + bytes([254, 205, 0, 0, 254, 254])
@@ -32,24 +32,6 @@ shadings = st.builds(
 )
 
 
-class Desk:
-    """The folder of the files, and what it told."""
-
-    def __init__(self, gui: viser.GuiApi) -> None:
-        self.loaded, self.reports, self.saved = [], [], {}
-        self.panel = files_panel(gui, self.loaded.append, self.reports.append, self.saved.__setitem__)
-
-    def upload(self, key: str, name: str, content: bytes) -> None:
-        self.panel._take_upload(key, viser.UploadedFile(name, content))
-
-    def form(self, number: int):
-        return self.panel._forms[number]
-
-    @property
-    def inputs(self):
-        return self.loaded[-1]
-
-
 @pytest.fixture(scope="module")
 def server():
     server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
@@ -59,7 +41,7 @@ def server():
 
 @pytest.fixture
 def desk(server):
-    return Desk(server.gui)
+    return FilesDesk(server.gui)
 
 
 # ---- laws
@@ -100,12 +82,12 @@ def test_an_odd_reading_is_doubted_with_what_would_mend_it(cells, shading, words
 
 
 def test_an_image_alone_is_asked_about_and_used_as_it_was_filled_in(desk):
-    desk.upload("image1", "a.pgm", IMAGE)
+    desk.open({"a.pgm": IMAGE})
     assert desk.inputs.ref is None
     assert "fill in the form" in desk.inputs.missing()
-    form = desk.form(1)
+    form = desk.panel._forms[1]
     assert form._folder.visible
-    assert not desk.form(2)._folder.visible
+    assert not desk.panel._forms[2]._folder.visible
     assert "wall 33.3%" in form._says.content
     assert "free 50.0%" in form._says.content
     form._resolution.value, form._x.value, form._yaw.value = 0.1, -3.5, 90.0
@@ -121,21 +103,21 @@ def test_an_image_alone_is_asked_about_and_used_as_it_was_filled_in(desk):
 
 
 def test_what_is_changed_after_use_is_not_in_use_before_it_is_used_again(desk):
-    desk.upload("image2", "a.pgm", IMAGE)
-    form = desk.form(2)
+    desk.open({"a.pgm": IMAGE})
+    form = desk.panel._forms[1]
     form._taken()
-    before = desk.inputs.mov
+    before = desk.inputs.ref
     form._negate.value = True
     assert "not in use yet" in form._says.content
-    assert desk.inputs.mov is before
+    assert desk.inputs.ref is before
     form._taken()
     negated = image_map_from_bytes("a.pgm", IMAGE, 0.05, shading=Shading(negate=True))
-    assert np.array_equal(desk.inputs.mov.cells, negated.cells)
+    assert np.array_equal(desk.inputs.ref.cells, negated.cells)
 
 
 def test_limits_that_cross_are_told_and_cannot_be_used(desk):
-    desk.upload("image1", "a.pgm", IMAGE)
-    form, told = desk.form(1), len(desk.loaded)
+    desk.open({"a.pgm": IMAGE})
+    form, told = desk.panel._forms[1], len(desk.loaded)
     form._free.value = 0.8
     assert "free_thresh must be the smaller one" in form._says.content
     assert form._go.disabled
@@ -147,8 +129,8 @@ def test_limits_that_cross_are_told_and_cannot_be_used(desk):
 
 
 def test_the_downloaded_yaml_makes_the_same_map(desk):
-    desk.upload("image1", "a house.pgm", IMAGE)
-    form = desk.form(1)
+    desk.open({"a house.pgm": IMAGE})
+    form = desk.panel._forms[1]
     form._yaw.value = 33.3
     form._download()
     form._taken()
@@ -161,45 +143,48 @@ def test_the_downloaded_yaml_makes_the_same_map(desk):
 
 
 def test_a_yaml_file_that_comes_later_takes_the_place_of_the_form(desk):
-    desk.upload("image1", "a.pgm", IMAGE)
-    desk.form(1)._taken()
-    desk.upload("yaml1", "a.yaml", YAML)
-    assert not desk.form(1)._folder.visible
+    desk.open({"a.pgm": IMAGE})
+    desk.panel._forms[1]._taken()
+    desk.open({"a.yaml": YAML})
+    assert not desk.panel._forms[1]._folder.visible
     assert desk.inputs.ref.resolution == 0.2
 
 
-def test_another_image_is_asked_about_anew(desk):
-    desk.upload("image1", "a.pgm", IMAGE)
-    desk.form(1)._taken()
-    desk.upload("image1", "b.pgm", IMAGE)
+def test_the_same_image_with_other_pixels_is_asked_about_anew_and_a_further_one_is_map_2(desk):
+    desk.open({"a.pgm": IMAGE})
+    desk.panel._forms[1]._taken()
+    desk.open({"b.pgm": IMAGE})
+    assert desk.inputs.ref is not None
+    assert "Map 2's image has no YAML file yet" in desk.inputs.missing()
+    assert "b.pgm" in desk.panel._forms[2]._about.content
+    desk.open({"a.pgm": IMAGE[:-1] + b"\0"})
     assert desk.inputs.ref is None
-    assert "Map 1's image has no YAML file yet" in desk.inputs.missing()
-    assert "b.pgm" in desk.form(1)._about.content
+    assert "Not in use yet." in desk.panel._forms[1]._says.content
 
 
 def test_an_image_that_cannot_be_read_is_told_at_once_and_what_was_there_stays(desk):
-    desk.upload("image1", "a.pgm", IMAGE)
-    desk.form(1)._taken()
-    desk.upload("image1", "broken.png", b"\x89PNG\r\n\x1a\n nothing more")
+    desk.open({"a.pgm": IMAGE})
+    desk.panel._forms[1]._taken()
+    desk.open({"broken.png": b"\x89PNG\r\n\x1a\n nothing more"})
     assert "broken.png" in str(desk.reports[-1])
     assert desk.inputs.ref is not None
-    assert "In use." in desk.form(1)._says.content
+    assert "In use." in desk.panel._forms[1]._says.content
 
 
 def test_undo_and_a_reload_bring_back_what_was_filled_in(desk, server):
-    desk.upload("image1", "a.pgm", IMAGE)
-    desk.form(1)._resolution.value = 0.25
-    desk.form(1)._taken()
+    desk.open({"a.pgm": IMAGE})
+    desk.panel._forms[1]._resolution.value = 0.25
+    desk.panel._forms[1]._taken()
     kept = desk.panel.files
-    other = Desk(server.gui)
-    other.panel.restore(kept)
-    assert other.form(1)._resolution.value == 0.25
-    assert "In use." in other.form(1)._says.content
-    other.panel.restore(Files())
-    assert not other.form(1)._folder.visible
+    other = FilesDesk(server.gui)
+    other.panel.show(kept)
+    assert other.panel._forms[1]._resolution.value == 0.25
+    assert "In use." in other.panel._forms[1]._says.content
+    other.panel.show(Files())
+    assert not other.panel._forms[1]._folder.visible
     assert other.loaded == []
 
 
 def test_the_name_of_an_image_is_shown_as_words(desk):
-    desk.upload("image1", "<img src=x onerror=alert(1)>.pgm", IMAGE)
-    assert "<img src=x" not in desk.form(1)._about.content
+    desk.open({"<img src=x onerror=alert(1)>.pgm": IMAGE})
+    assert "<img src=x" not in desk.panel._forms[1]._about.content

@@ -26,7 +26,6 @@ from app.drawing.palette import LIGHT, QUIET, Rgb, css
 from app.drawing.png import data_uri
 from app.model.merge_inputs import Upload
 from app.page.panels.html_widgets import box, on_press, put
-from app.system.cancellation import CancellableReader, Check, never_cancelled
 
 RESOLUTION = 0.05  # metres per cell: what most robots' maps have
 PREVIEW = 280  # pixels of a side at most: as wide as the panel, so that every pixel is a square of its own
@@ -100,19 +99,18 @@ class ImageForm:
 
     # --- what it is asked ---------------------------------------------------------------------------
 
-    def show(self, image: Upload | None, text: Upload | None, check: Check = never_cancelled) -> None:
+    def show(self, image: Upload | None, text: Upload | None, decoded: GreyImage | None) -> None:
         """Offer the form for an image whose YAML file is missing or was made here; else put it away.
 
-        check  : is called now and then while the image is read, and may leave that by raising
-        raises : MapMergeError where the image cannot be read; nothing has changed then
+        decoded : the image, where it has just been; raises MapMergeError where it was not, and cannot be
         """
         if image is None or (text is not None and not text.by_form):
             self._image = self._grey = self._used = None
             self._folder.visible = False
             return
-        grey = self._grey
-        if grey is None or image != self._image:
-            grey = grey_image(image.name, CancellableReader(image.content, check))
+        grey = decoded or (self._grey if image == self._image else None)
+        if grey is None:
+            grey = grey_image(image.name, image.content)
         self._image, self._grey, self._used = image, grey, None
         if text is not None:
             self._used = text.content
