@@ -92,8 +92,7 @@ def pair_roles(before: Files, given: Sequence[GivenFile]) -> Files:
         if came and before.sample:
             known = None  # of other maps
         for files in joined(maps, came):
-            same = (n for n, there in maps.items() if there.parts[0].name == files.parts[0].name)
-            number = next(same, None) or place_for(files, maps)
+            number = place_for(files, maps)
             if number is None:
                 spare.append(files)
             else:
