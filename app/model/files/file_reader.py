@@ -94,7 +94,7 @@ class FileReader:
         if fleet is not None:
             opened = self._fleet(before, given, fleet, check)
         else:
-            sighting, seen, given = sighting_roles(given)
+            sighting, seen, given = sighting_roles(before, given)
             work = self._robots if fleet_shown and not _is_pair(given) else self._pair
             opened = work(before, given, current, check)
             others = (*opened.files.others, *seen)

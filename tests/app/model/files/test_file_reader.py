@@ -277,6 +277,14 @@ def test_of_several_moments_one_is_looked_at():
     assert "seen_2.png was taken" in {other.name: other.told for other in opened.files.others}["seen_10.png"]
 
 
+def test_an_image_that_a_map_waits_for_is_no_camera_image_whatever_comes_with_it():
+    page = Page()
+    page.open({"map1.yaml": MAP_1["map1.yaml"]})
+    opened = page.open({"camera.yaml": sighting_files(NEAR)["camera.yaml"], "map1.pgm": MAP_1["map1.pgm"]})
+    assert page.cells == cells_of(FIRST, None)
+    assert [upload.name for upload in opened.sighting] == ["camera.yaml"]
+
+
 def test_files_that_wait_are_bounded_and_of_one_path_the_newest_is_kept(monkeypatch):
     monkeypatch.setattr(file_reader, "MOST_UNPACKED", 1000)
     page = Page()
