@@ -288,6 +288,7 @@ EXERCISED_BY = {
         "app.page.editing.suggestion_controller",
     },
     "app/model/files/test_file_reader.py": {
+        "app.model.files.bag_maps",
         "app.model.files.file_roles",
         "app.model.files.map_files",
         "app.model.files.map_slots",

@@ -40,7 +40,7 @@
   const veil = document.createElement("div");
   veil.className = "mm-veil";
   veil.hidden = true;
-  veil.append(Object.assign(document.createElement("p"), { textContent: "Drop files, a folder or a zip: maps, what is known, a fleet, what a robot saw" }));
+  veil.append(Object.assign(document.createElement("p"), { textContent: "Drop files, a folder or a zip: maps, recordings, what is known, a fleet, what a robot saw" }));
   document.body.append(veil);
   function aim(zone, page) {
     for (const each of document.querySelectorAll("[data-mm-files]")) each.toggleAttribute("data-aim", each === zone);

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from bags import (
+    bag_bytes,
     camera_message,
     grid_message,
     image_message,
@@ -16,7 +17,6 @@ from bags import (
     scan_message,
     transform_message,
     update_message,
-    write_bag,
 )
 
 from algorithms.files.bags.bag_path import BagPath
@@ -38,10 +38,7 @@ def _bag_file(kind: str) -> bytes:
         transform_message("map", "base_link", 0.5, (1, 2, 0)),
         update_message(grid.cells[:1, :2], 1, 0, 1.0),
     ]
-    with TemporaryDirectory() as folder:
-        path = write_bag(Path(folder), "bag", kind, told)
-        (file,) = [path] if path.is_file() else path.glob("bag*")
-        return file.read_bytes()
+    return bag_bytes(kind, told)
 
 
 def _bag(suffix: str) -> Callable[[bytes], object]:

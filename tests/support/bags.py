@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import cos, sin
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -58,6 +59,14 @@ def write_bag(folder: Path, name: str, kind: str, messages: Iterable[Recorded]) 
                 connections[each.topic] = writer.add_connection(each.topic, each.type, typestore=types)
             writer.write(connections[each.topic], BEGIN + round(each.at * SECOND), message_bytes(each, ros1))
     return path
+
+
+def bag_bytes(kind: str, messages: Iterable[Recorded]) -> bytes:
+    """A recording of one file."""
+    with TemporaryDirectory() as folder:
+        path = write_bag(Path(folder), "bag", kind, messages)
+        (file,) = [path] if path.is_file() else path.glob("bag*")
+        return file.read_bytes()
 
 
 def message_bytes(message: Recorded, ros1: bool = False) -> bytes:

@@ -55,10 +55,20 @@ def is_bag(path: Path) -> bool:
         if path.is_dir():
             about = path / ABOUT
             return about.is_file() and BAG_FOLDER in _head(about)
-        head = _head(path)
+        return bool(suffix_of(_head(path), path.name))
     except (OSError, ValueError):  # ValueError: a NUL in the name
         return False
-    return head.startswith((ROS1, MCAP)) or (head.startswith(SQLITE) and is_rosbag2_database(str(path), head))
+
+
+def suffix_of(content: bytes, name: str = "") -> str:
+    """What the name of a recording with this content ends in, by its first bytes; "" where it is none.
+
+    name : as it is; a database without tables is a recording where that says so
+    """
+    for first, suffix in ((ROS1, ".bag"), (MCAP, ".mcap")):
+        if content.startswith(first):
+            return suffix
+    return ".db3" if content.startswith(SQLITE) and is_rosbag2_database(name, content[:HEAD]) else ""
 
 
 def is_ros1(path: Path) -> bool:

@@ -15,7 +15,7 @@ MOST_CHUNK = 256 * 2**20  # bytes; a chunk may hold a single large message, a ma
 
 
 def _bounded(kind: Callable[[], Any]) -> Callable[..., bytes]:
-    """Unpacks with a decompressor of this kind; raises ValueError beyond MOST_CHUNK, and for what is cut off."""
+    """Unpacks with a decompressor of this kind; raises ValueError beyond MOST_CHUNK, or cut off."""
 
     def unpack(data: bytes, size: int = MOST_CHUNK) -> bytes:
         work = kind()

@@ -13,7 +13,7 @@ from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError
 from algorithms.common.pose import Pose2
 from algorithms.common.source_file import SourceFile
-from algorithms.files.bags.bag_path import BagPath, nanoseconds
+from algorithms.files.bags.bag_path import BagPath, bag_kind, nanoseconds
 from algorithms.files.bags.bag_reader import BagReader, BagTopic, open_bag
 from algorithms.files.bags.message_types import GRID, GRID_UPDATE
 from algorithms.maps.grid_map import FARTHEST, OCCUPIED, UNKNOWN, CellArray, GridMap, check_size
@@ -64,9 +64,12 @@ def grid_of(name: str, label: str, message: Any, updates: Iterable[Any] = ()) ->
     return GridMap(cells, shortest(message.info.resolution), origin, show_hidden(label), files=(source,))
 
 
-def map_topics(bag: BagReader) -> tuple[BagTopic, ...]:
-    """The topics with a map."""
-    return bag.of_type(GRID)
+def choose_maps(bag: BagReader) -> tuple[BagTopic, ...]:
+    """The topics with a map of walls, not of costs, where there are such; raises InputFileError."""
+    maps = bag.of_type(GRID)
+    if not maps:
+        raise InputFileError(bag.path, f"is {bag_kind(bag.path)} (a recording) that holds no map", RECORD)
+    return tuple(topic for topic in maps if COST not in topic.name) or maps
 
 
 def shortest(number: float) -> float:
@@ -92,10 +95,8 @@ def yaw_of(name: str, q: Any, what: str) -> float:
 
 def _choose(bag: BagReader, asked: BagPath) -> tuple[BagTopic, tuple[str, ...]]:
     """The topic of the map, and what is to be said of the choice."""
-    maps = map_topics(bag)
+    walls, maps = choose_maps(bag), bag.of_type(GRID)
     listed = ", ".join(topic.name for topic in maps)
-    if not maps:
-        raise InputFileError(bag.path, "is a bag (a recording) that holds no map", RECORD)
     if asked.topic:
         for topic in maps:
             if topic.name.strip("/") == asked.topic.strip("/"):
@@ -103,13 +104,12 @@ def _choose(bag: BagReader, asked: BagPath) -> tuple[BagTopic, tuple[str, ...]]:
         raise InputFileError(bag.path, f"has no map on {asked.topic}", f"its maps are on {listed}")
     if len(maps) == 1:
         return maps[0], ()
-    walls = [topic for topic in maps if COST not in topic.name]
-    usual = walls if len(walls) == 1 else [topic for topic in walls if topic.name == USUAL]
+    usual = walls if len(walls) == 1 else tuple(topic for topic in walls if topic.name == USUAL)
     if not usual:
         raise InputFileError(
             bag.path, f"has maps on {listed}", f"say which one, as {bag.path.name}#{maps[0].name}"
         )
-    others = ", ".join(topic.name for topic in maps if topic is not usual[0])
+    others = ", ".join(topic.name for topic in maps if topic.name != usual[0].name)
     return usual[0], (f"its topic {usual[0].name} was taken, not {others}",)
 
 

@@ -16,7 +16,8 @@ from app.drawing.draw_items import Item, path
 from app.drawing.palette import Palette, css, level_colours
 
 TALLEST = 0.3  # of the shown radius: height of a wall with the highest level there is
-VISIBLE = 0.01  # of the peak; lower walls are left flat
+VISIBLE = 0.01  # of the peak; lower walls are left out, or flat
+FEW = 20  # walls that stand out; where there are no more, the flat ones are drawn, too
 APART = 1.12  # of the shown radius: how far each map's middle lies from the scene's
 MOST_BARS = 12_000  # of one map; further ones are thinned out
 
@@ -25,6 +26,7 @@ def bars(augmented: AugmentedMap, most: int = MOST_BARS) -> tuple[FloatArray, Fl
     """(N, 2) where bars stand, relative to x̂ in metres, and (N,) how high, as a share of the peak."""
     share = augmented.levels / augmented.peak
     keep = np.flatnonzero(share >= VISIBLE)
+    keep = keep if len(keep) > FEW else np.arange(len(share))
     keep = keep[:: max(1, -(-len(keep) // most))]
     return augmented.points[keep] - augmented.x_hat, share[keep]
 
@@ -79,7 +81,7 @@ class HeightsView:
             return
         foot = np.column_stack([where[:, 0], np.zeros(len(share)), away - where[:, 1]])
         top = foot.copy()
-        top[:, 1] = share * TALLEST * 2 * radius
+        top[:, 1] = np.maximum(share, VISIBLE) * TALLEST * 2 * radius
         colours = linear(level_colours(np.stack([0.55 * share, share], axis=1), palette.dark))
         ends = np.stack([foot, top], axis=1).astype(np.float32)
         how: Any = {"thickness": augmented.grid.resolution, "thickness_units": "world"}

@@ -6,13 +6,25 @@ import re
 from typing import Literal
 
 from algorithms.common.errors import InputFileError
+from algorithms.files.bags.bag_path import suffix_of
 from algorithms.files.camera_file import OST_TXT
 from algorithms.files.camera_picture import is_picture
 from algorithms.files.foreign_files import check_foreign
 from algorithms.files.images.picture_headers import JPEG, is_webp
 
 FileKind = Literal[
-    "map", "image", "known", "fleet", "truth", "zip", "picture", "camera", "scan", "encounters", "model"
+    "map",
+    "image",
+    "known",
+    "fleet",
+    "truth",
+    "zip",
+    "bag",
+    "picture",
+    "camera",
+    "scan",
+    "encounters",
+    "model",
 ]
 
 KINDS: dict[FileKind, str] = {
@@ -22,6 +34,7 @@ KINDS: dict[FileKind, str] = {
     "fleet": "a fleet's YAML file",
     "truth": "a known answer",
     "zip": "a zip",
+    "bag": "a recording",
     "picture": "a camera's image",
     "camera": "a camera's calibration",
     "scan": "a laser scan",
@@ -35,7 +48,7 @@ ZIP, PICKLE = b"PK", b"\x80"
 WIDE = (b"\xff\xfe", b"\xfe\xff")  # UTF-16, as the shell of Windows writes it
 NAME_AT, NAME_LENGTH_AT = 30, 26  # bytes of a zip before the name of its first file, and before its length
 UNKNOWN = "is nothing that is known here"
-GIVE = "give a map's YAML file or image, what is known, a fleet, a zip, or what camera and laser saw"
+GIVE = "give a map's YAML file or image, what is known, a fleet, a recording, a zip, or a sighting's files"
 
 
 def _key(*names: str) -> re.Pattern[str]:
@@ -69,6 +82,8 @@ def kind_of_file(name: str, content: bytes) -> FileKind:
         return "model" if _first_in_zip(content).endswith(b".npy") else "zip"
     if content.startswith(PICKLE):  # whose reader tells what that is
         return "model"
+    if suffix_of(content, name):
+        return "bag"
     head = content[:HEAD]
     if head.lstrip().startswith(OST_TXT):
         return "camera"

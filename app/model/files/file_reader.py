@@ -16,6 +16,7 @@ from algorithms.files.map_file import GreyImage, grey_image, map_from_bytes
 from algorithms.files.observation_file import known_from_bytes
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import MOST_ROBOTS, Fleet
+from app.model.files.bag_maps import maps_of_bag
 from app.model.files.file_kinds import kind_of_file
 from app.model.files.file_roles import GivenFile, pair_roles, robot_roles, sighting_roles, told_of
 from app.model.files.map_slots import (
@@ -204,7 +205,8 @@ class FileReader:
 def _kinds(
     uploads: Sequence[Upload], check: Check
 ) -> tuple[list[GivenFile], list[OtherFile], list[MapMergeError]]:
-    """Files with their kinds, those of zips among them; what is told of the others, and what is wrong.
+    """Files with their kinds, those of zips and recordings among them; what is told of the others, and what
+    is wrong.
 
     What is no file of ours is wrong where it was given by itself; beside others in a folder it may well lie.
     """
@@ -226,6 +228,9 @@ def _kinds(
                 inside = files_of_zip(upload.name, upload.content)
                 stem = PurePath(upload.name).stem
                 waiting += [upload_at(f"{stem}/{path}", content) for path, content in inside.items()]
+                continue
+            if kind == "bag":
+                waiting += maps_of_bag(upload)
                 continue
             if kind == "map":
                 _ = upload.meta  # may raise

@@ -21,7 +21,9 @@ from app.system import data_paths as paths
 
 NONE = "(choose)"
 OF_CAMERAS = (".jpg", ".jpeg", ".webp", ".csv", ".txt", ".npz")
-SUFFIXES = (*YAML_SUFFIXES, *READABLE_SUFFIXES, ".zip", *OF_CAMERAS)  # offered, and taken from folders
+OF_BAGS = (".bag", ".db3", ".mcap")
+SUFFIXES = (*YAML_SUFFIXES, *READABLE_SUFFIXES, ".zip", *OF_BAGS, *OF_CAMERAS)
+"""What the names of files end in that are offered, and taken from folders."""
 
 
 class FilesPanel:

@@ -16,7 +16,7 @@ from algorithms.observations.observation import encounter
 from algorithms.spectra.augmented_map import augment
 from app.drawing.browser_messages import BrowserMessages
 from app.drawing.palette import DARK, LIGHT
-from app.drawing.scene.height_view import VISIBLE, HeightsView, bars, linear
+from app.drawing.scene.height_view import FEW, VISIBLE, HeightsView, bars, linear
 
 REF, MOV, SEEN, _ = flat_pair()
 AT = encounter(SEEN)
@@ -68,10 +68,21 @@ def test_bars_are_shares_of_the_peak_at_their_walls_and_no_more_than_are_wanted(
     augmented = lifted(REF, AT.x_ref, spread)
     where, share = bars(augmented, most)
     assert len(where) == len(share) <= most
-    assert (share >= VISIBLE).all()
+    standing = int((augmented.levels >= VISIBLE * augmented.peak).sum())
+    assert (share >= VISIBLE).all() == (standing > FEW or standing == len(augmented.levels))
     assert (share <= 1 + 1e-9).all()
     expected = np.exp(-0.5 * (where**2).sum(axis=1) / spread**2)  # eq. (4), over its peak
     assert np.allclose(share, expected)
+
+
+def test_where_hardly_any_wall_stands_out_the_others_are_drawn_flat(view, scene):
+    low = lifted(REF, AT.x_ref, 0.3)
+    _, share = bars(low)
+    assert (share >= VISIBLE).sum() <= FEW < len(share) == len(low.levels)
+    view.show(AugmentDetail(low, low), LIGHT, look=True)
+    heights = stems(scene)[0][:, 1, 1]
+    assert heights.min() > 0
+    assert np.ptp(heights[share < VISIBLE]) == 0
 
 
 def test_all_walls_that_can_be_seen_have_a_bar_where_there_are_not_too_many():

@@ -7,6 +7,7 @@ from itertools import permutations
 
 import numpy as np
 import pytest
+from bags import bag_bytes, grid_message, transform_message
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tagged_pictures import NEAR, sighting_files
@@ -299,6 +300,22 @@ def test_files_that_wait_are_bounded_and_of_one_path_the_newest_is_kept(monkeypa
     ]
     kept = [other.upload for other in page.files.others if other.upload is not None]
     assert sum(len(upload.content) for upload in kept) <= 1000
+
+
+@pytest.mark.parametrize("kind", ["ros1", "db3", "mcap"])
+def test_the_maps_of_recordings_are_taken_as_files_are(tmp_path, kind):
+    costs = grid_message(THIRD, 0.0, "/local_costmap/costmap")
+    both = [grid_message(FIRST, 1.0, "/robot1/map"), grid_message(SECOND, 1.0, "/robot2/map"), costs]
+    one, two = Page(), Page()
+    one.open({"both.any": bag_bytes(kind, both), **KNOWN})
+    assert one.cells == [FIRST.cells.ravel().tolist(), SECOND.cells.ravel().tolist()]
+    two.open({"robot2.bag": bag_bytes(kind, [grid_message(SECOND, 1.0)])})
+    two.open({"robot1.bag": bag_bytes(kind, [grid_message(FIRST, 1.0), costs])})
+    assert two.cells == one.cells
+    assert two.files.uploads["yaml1"].name == "robot1.yaml"
+    (error,) = two.open({"empty.bag": bag_bytes(kind, [transform_message("a", "b", 0.0, (0, 0, 0))])}).errors
+    assert str(error).startswith("empty.bag: is ")
+    assert "holds no map; record a map topic" in str(error)
 
 
 def test_of_very_many_maps_but_so_many_are_read(monkeypatch):

@@ -7,6 +7,7 @@ from dataclasses import replace
 from unittest.mock import MagicMock, Mock
 
 import pytest
+from looks import lesson_of
 
 from algorithms.common.robot_names import RobotNames
 from algorithms.methods.registry import METHODS, run
@@ -115,6 +116,16 @@ def test_what_stands_beside_a_picture_in_parts_is_that_of_the_part_its_dial_show
         assert beside == (formulas,)
     drawn(display, panel, text, LessonRun(MergeInputs(), CONFIG))
     assert panel.beside.call_args.args == ("A ….\n", ("line",))
+
+
+def test_another_way_to_draw_a_picture_may_have_a_dial_of_its_own_or_none(display, panel, small_case):
+    lesson = lesson_of(small_case, sides={})
+    for picture, way, labels in (("window", "origins", ["off the best turn (°)"]), ("proof", "lattice", [])):
+        display.draw_as(picture, way)
+        drawn(display, panel, StepText("", "Title", picture, (), (), "Words."), lesson)
+        dials, places = panel.dials.call_args.args
+        assert [dial.label for dial in dials] == labels
+        assert places == tuple(0 for _ in labels)
 
 
 def test_an_answer_is_told_only_where_it_was_asked_for(display, panel, hough, inputs, until_hough):

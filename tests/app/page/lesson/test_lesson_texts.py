@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
 from algorithms.common.errors import InputFileError
 from app.page.lesson.figures.figure_registry import PICTURES
+from app.page.lesson.lesson_panel import emphasised
 from app.page.lesson.lesson_texts import files, filled, first_number, lesson_folder, read_step
 from app.page.lesson.placeholders import NUMBERS
 
@@ -112,6 +114,16 @@ def test_what_is_wrong_with_a_step_in_parts_is_told(tmp_path, old, new, said):
     assert old in IN_PARTS
     with pytest.raises(InputFileError, match=said):
         step(tmp_path, IN_PARTS.replace(old, new, 1))
+
+
+@pytest.mark.parametrize("path", files(lesson_folder()), ids=lambda path: path.stem)
+def test_what_there_is_to_try_shows_no_raw_markdown(path):
+    for trial in read_step(path, PICTURES, NUMBERS).trials:
+        assert not re.search(r"[*`\\]|\]\(", emphasised(trial.ask) + emphasised(trial.answer))
+
+
+def test_words_between_asterisks_are_in_italics_and_never_markup():
+    assert emphasised("2 * 3 is *not* <b>") == "2 * 3 is <em>not</em> &lt;b&gt;"
 
 
 def test_steps_are_counted_from_0_where_the_first_file_says_so(tmp_path):

@@ -16,6 +16,7 @@ from algorithms.methods.registry import METHODS
 from algorithms.observations.observation import encounter
 from algorithms.optimisation.particle_swarm import SwarmConfig
 from app.drawing.palette import LIGHT
+from app.model.objective_label import AGREEMENT
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_run import LessonRun
 from app.page.lesson.placeholders import numbers_of
@@ -56,7 +57,7 @@ def sample(request) -> LessonRun:
 
 def test_a_number_of_a_text_is_the_one_that_the_page_and_the_picture_of_its_step_show(sample):
     numbers, result, inputs = numbers_of(sample), sample.get(MergeResult), sample.inputs
-    page = result_html(result, replace(inputs), sample.config)
+    page = result_html(result, inputs, sample.config)
     cells = re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", page.replace("-", "−"))
     shown = dict(zip(cells[::2], cells[1::2], strict=False))
     shown = {unescape(re.sub("<.*?>", "", label)): unescape(value) for label, value in shown.items()}
@@ -65,6 +66,8 @@ def test_a_number_of_a_text_is_the_one_that_the_page_and_the_picture_of_its_step
     }
     assert shown[f"eq. (23), {numbers['performance_over']}"] == numbers["performance"]
     assert numbers["value"] == f"{shown['agreement (m of wall)']} m"
+    value, at = AGREEMENT.text(result.value), (PICTURES["objective"].dials(sample)[0].start,)
+    assert f"A: {value} at the star" in words(PICTURES["objective"].draw(sample, at, LIGHT))
     seen = dict(sighting_rows(inputs.observations[0], encounter(inputs.observations[0])))
     assert (numbers["range"], numbers["x1"]) == (
         seen["range r"],
