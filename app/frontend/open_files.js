@@ -68,16 +68,20 @@
     if (e.target.closest?.("button[data-mm-folder]")) {
       const input = Object.assign(document.createElement("input"), { type: "file", webkitdirectory: true });
       input.onchange = () => {
-        const found = [...input.files].filter((file) => useful(file.webkitRelativePath)).slice(0, MOST);
-        S.sending.several(found, S.hud.open.button);
+        const path = (file) => file.webkitRelativePath;
+        const found = [...input.files].filter((file) => useful(path(file))).sort((a, b) => (path(a) < path(b) ? -1 : 1));
+        S.sending.several(found.slice(0, MOST), S.hud.open.button);
       };
       input.click();
       return;
     }
     const button = e.target.closest?.("button[data-mm-file]");
     if (!button) return;
-    S.tell("file", { what: button.dataset.mmFile, n: Number(button.dataset.n) });
-    S.kit.stay(`button[data-mm-file="${button.dataset.mmFile}"][data-n="${button.dataset.n}"]`); // it is written anew
+    const { mmFile: what, n } = button.dataset;
+    S.tell("file", { what, n: Number(n) });
+    // it is written anew: whoever uses the keyboard stays in this line, or where the list has ended
+    const swap = "button[data-mm-file=swap]", line = `.mm-given li button[data-n="${n}"]`;
+    S.kit.stay(what === "swap" ? swap : `${line}, button[data-mm-folder]`);
   });
   setInterval(() => { // viser's button offers to choose one file alone
     for (const input of document.querySelectorAll("input[type=file][id^=file_upload_]:not([multiple])")) input.multiple = true;

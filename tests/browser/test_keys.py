@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 from driver import settle
 
+from app.system.data_paths import samples
+
 pytestmark = pytest.mark.browser
 
 
@@ -49,6 +51,14 @@ def test_files_and_folders_are_opened_by_keys_and_buttons_are_dark_in_the_dark(t
         with page.expect_file_chooser() as chooser:
             keys.press("Enter")
         assert chooser.value.element.evaluate(f"(input) => input.{picker}")
+    chooser.value.set_files(str(samples()["apartment_r2_r1"]))
+    settle(lambda: "✓ map1.yaml map 1 ✕" in tab.listed(), "the files of the folder")
+    remove = page.get_by_role("button", name="remove map1.yaml")
+    remove.focus()
+    keys.press("Enter")
+    settle(lambda: "Map 1's image has no YAML file yet" in tab.state, "one file less")
+    following = page.get_by_role("button", name="remove map1.pgm")
+    settle(lambda: following.evaluate("(it) => it === document.activeElement"), "the next line")
     head.focus()
     keys.press("Enter")
     settle(lambda: head.get_attribute("aria-expanded") == "true" and place.is_visible(), "what is in it")

@@ -35,6 +35,7 @@ from app.system.cancellation import CancellableReader, Check, never_cancelled
 LONGEST_FOLDER = 120  # letters
 MOST_TEXTS = MOST_ROBOTS + 16  # YAML files that are read of a choice: a fleet's, and what is known
 TOO_MANY = f"not used: at most {MOST_TEXTS} maps and files of what is known are read at once"
+NOT_OF_FLEET = "not used: a fleet came with it, which does not name it"
 OF_ITS_FLEET = "waits for its fleet"
 
 Greys = dict[Upload, GreyImage]
@@ -94,10 +95,8 @@ class FileReader:
         if fleet is not None:
             opened = self._fleet(before, given, fleet, check)
         else:
-            sighting, seen, given = sighting_roles(given)
-            maps = [one for one in given if one.kind == "map"]
-            a_pair = len(maps) >= len(PAIR) and any(one.kind == "known" for one in given)
-            work = self._robots if fleet_shown and not a_pair else self._pair
+            sighting, seen, given = sighting_roles(before, given)
+            work = self._robots if fleet_shown and not _is_pair(given) else self._pair
             opened = work(before, given, current, check)
             others = (*opened.files.others, *seen)
             opened = replace(opened, sighting=sighting, files=replace(opened.files, others=others))
@@ -184,21 +183,23 @@ class FileReader:
         try:
             made = fleet_from_files(contents, fleet.path, check)
         except MapMergeError as error:
-            told = [
-                told_of(one.upload, one.kind, OF_ITS_FLEET)
-                for one in given
-                if one.kind in ("map", "image") and one.upload is not fleet
-            ]
+            beside = [_beside_fleet(one) for one in given if one.upload is not fleet]
             left = [other for other in before.others if other.upload not in (None, fleet)]
             first = told_of(fleet, "fleet", _why(error))
-            return OpenedFiles(replace(before, others=(first, *left, *told)), errors=(error,))
+            return OpenedFiles(replace(before, others=(first, *left, *beside)), errors=(error,))
         robots = [
             OtherFile(" + ".join(file.name for file in grid.files), f"robot {name}", used=True)
             for name, grid in made.maps.items()
         ]
+        named = {file.name for grid in made.maps.values() for file in grid.files}
+        beside = [
+            replace(_beside_fleet(one), told=NOT_OF_FLEET, upload=None)
+            for one in given
+            if one.upload is not fleet and one.upload.name not in named
+        ]
         first = OtherFile(fleet.name, f"a fleet of {len(made.maps)} robots", used=True)
         name = PurePath(fleet.folder.split("/")[-1]).name or PurePath(fleet.name).stem
-        return OpenedFiles(Files(others=(first, *robots)), fleet=(name, made))
+        return OpenedFiles(Files(others=(first, *robots, *beside)), fleet=(name, made))
 
 
 def _kinds(
@@ -244,10 +245,24 @@ def _kinds(
     return given, told, errors
 
 
+def _beside_fleet(one: GivenFile) -> OtherFile:
+    """What is told of a file that came with a fleet of which maps are missing."""
+    if one.kind in ("map", "image"):
+        return told_of(one.upload, one.kind, OF_ITS_FLEET)
+    return OtherFile(one.upload.name, NOT_OF_FLEET)
+
+
+def _is_pair(given: list[GivenFile]) -> bool:
+    """Whether these are two maps and what is known of them, whatever else there is."""
+    kinds = [one.kind for one in given]
+    return kinds.count("map") >= len(PAIR) and "known" in kinds
+
+
 def _fleet_among(before: Files, given: list[GivenFile]) -> Upload | None:
     """The fleet's file that came, the one in the outermost folder; else the one that waits for its maps."""
     came = [one.upload for one in given if one.kind == "fleet"]
-    waiting = [other.upload for other in before.others if other.kind == "fleet" and other.upload is not None]
+    others = () if _is_pair(given) else before.others
+    waiting = [other.upload for other in others if other.kind == "fleet" and other.upload is not None]
     return min(came or waiting, key=lambda upload: (upload.path.count("/"), upload.path), default=None)
 
 

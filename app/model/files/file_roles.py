@@ -42,14 +42,15 @@ class GivenFile:
 
 
 def sighting_roles(
-    given: Sequence[GivenFile],
+    before: Files, given: Sequence[GivenFile]
 ) -> tuple[tuple[Upload, ...], tuple[OtherFile, ...], list[GivenFile]]:
     """What goes to the sighting from camera and scan, one file of each kind; what is told of files of those
     kinds; and the other files.
 
     An image that no YAML file names is the camera's where other files of a sighting come with it.
     """
-    named = {short_name(image_path(one.upload)) for one in given if one.kind == "map"}
+    there = [files.text for files in (*maps_in(before.uploads).values(), *_loose(before, given))]
+    named = {short_name(image_path(text)) for text in there if text is not None}
     seeing = any(one.kind in OF_A_SIGHTING for one in given)
 
     def kind_of(one: GivenFile) -> FileKind:
@@ -92,8 +93,7 @@ def pair_roles(before: Files, given: Sequence[GivenFile]) -> Files:
         if came and before.sample:
             known = None  # of other maps
         for files in joined(maps, came):
-            same = (n for n, there in maps.items() if there.parts[0].name == files.parts[0].name)
-            number = next(same, None) or place_for(files, maps)
+            number = place_for(files, maps)
             if number is None:
                 spare.append(files)
             else:

@@ -69,8 +69,8 @@ def paired(texts: Sequence[Upload], images: Sequence[Upload]) -> list[MapFiles]:
                 of[k] = image
 
     take(lambda k, image: image.path == named[k], again=True)  # an image may be that of two maps
-    take(lambda k, image: image.folder == texts[k].folder and _last(named[k]) == image.name, again=True)
-    take(lambda k, image: _last(named[k]) == image.name, again=True)
+    take(lambda k, image: image.folder == texts[k].folder and short_name(named[k]) == image.name, again=True)
+    take(lambda k, image: short_name(named[k]) == image.name, again=True)
     take(lambda k, image: image.folder == texts[k].folder and _same_stem(texts[k], image), again=False)
     lone = [k for k in range(len(texts)) if k not in of]
     left = [image for image in images if image not in of.values()]
@@ -81,25 +81,26 @@ def paired(texts: Sequence[Upload], images: Sequence[Upload]) -> list[MapFiles]:
 
 
 def joined(maps: dict[int, MapFiles], loose: Sequence[MapFiles]) -> list[MapFiles]:
-    """Have single files complete or correct the maps that are there; those that belong to none of them.
+    """Have files take the place of those of their names, and single ones complete the maps that are there;
+    those that belong to none of them.
 
     maps : by their number; takes them in
     """
     left = []
     for files in loose:
-        number = next((n for n, there in maps.items() if _fits(there, files)), None)
-        waiting = [n for n, there in maps.items() if _waits_for(there, files)]
-        if number is None and len(waiting) == 1:
-            number = waiting[0]
-        if number is None:
+        fits = [number for number, there in maps.items() if _fits(there, files)]
+        same = [number for number, there in maps.items() if _same_name(there.text, files.text)]
+        if fits:
+            maps[fits[0]] = _together(maps[fits[0]], files)
+        elif same:
+            maps[same[0]] = files
+        else:
             left.append(files)
-            continue
-        there = maps[number]
-        if files.text is not None:
-            maps[number] = MapFiles(files.text, there.image)
-        else:  # what was filled in was filled in for another image
-            text = None if there.text is None or there.text.by_form else there.text
-            maps[number] = MapFiles(text, files.image)
+    waited = [(n, files) for files in left for n, there in maps.items() if _waits_for(there, files)]
+    if len(waited) == 1:
+        ((number, files),) = waited
+        maps[number] = _together(maps[number], files)
+        left.remove(files)
     return left
 
 
@@ -126,12 +127,20 @@ def image_path(text: Upload) -> str:
     return posixpath.normpath(posixpath.join(text.folder, image))
 
 
-def _last(path: str) -> str:
-    return short_name(path)
-
-
 def _same_stem(text: Upload, image: Upload) -> bool:
     return PurePath(text.name).stem == PurePath(image.name).stem
+
+
+def _together(there: MapFiles, files: MapFiles) -> MapFiles:
+    """A map with a single file in place of its own one."""
+    if files.text is not None:
+        return MapFiles(files.text, there.image)
+    by_form = there.text is not None and there.text.by_form  # it was filled in for another image
+    return MapFiles(None if by_form else there.text, files.image)
+
+
+def _same_name(one: Upload | None, other: Upload | None) -> bool:
+    return one is not None and other is not None and one.name == other.name
 
 
 def _waits_for(there: MapFiles, files: MapFiles) -> bool:
@@ -148,12 +157,12 @@ def _fits(there: MapFiles, files: MapFiles) -> bool:
     if files.text is None and files.image is not None:
         if there.text is None or there.text.by_form:
             return there.image is not None and there.image.name == files.image.name
-        named = _last(image_path(there.text)) == files.image.name
+        named = short_name(image_path(there.text)) == files.image.name
         return named or (
             there.image.name == files.image.name if there.image else _same_stem(there.text, files.image)
         )
     if files.text is not None and files.image is None and there.image is not None:
-        named = _last(image_path(files.text)) == there.image.name
+        named = short_name(image_path(files.text)) == there.image.name
         if there.text is None or there.text.by_form:
             return named or _same_stem(files.text, there.image)
         return named and there.text.name == files.text.name

@@ -88,12 +88,11 @@ class FilesController:
         """Take these files, given at once, for what they are."""
         with self._locks.action:
             shown = self._fleet.shown is not None
-            label = f"load {uploads[0].name}" + (f" and {len(uploads) - 1} more" if uploads[1:] else "")
 
             def read(check: Check) -> OpenedFiles:
                 return self._reader.open(self._panel.files, uploads, self._state.inputs, shown, check)
 
-            self._show(uploads, read, label)
+            self._show(uploads, read, f"load {_name_of(uploads)}")
 
     # --- what a person does with them ---------------------------------------------------------------
 
@@ -213,6 +212,14 @@ class FilesController:
         more = f" and {len(new) - 1} more" if len(new) > 1 else ""
         with self._task(f"Reading {large[0].name}{more}, {size:.3g} MB.") as check:
             yield check
+
+
+def _name_of(uploads: Sequence[Upload]) -> str:
+    """What files that were given at once are called: by the folder of all of them, else by the first."""
+    (folder, *others) = {upload.folder.split("/")[0] for upload in uploads}
+    if folder and not others:
+        return folder
+    return uploads[0].name + (f" and {len(uploads) - 1} more" if uploads[1:] else "")
 
 
 def _large(upload: Upload) -> bool:

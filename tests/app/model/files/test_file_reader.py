@@ -8,12 +8,14 @@ from itertools import permutations
 import numpy as np
 import pytest
 from bags import bag_bytes, grid_message, transform_message
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from tagged_pictures import NEAR, sighting_files
 
 from algorithms.common.errors import InputFileError
 from algorithms.common.pose import Pose2
 from algorithms.files.fleet_archive import fleet_to_files
-from algorithms.files.map_file import map_to_bytes
+from algorithms.files.map_file import map_from_bytes, map_to_bytes
 from algorithms.files.observation_file import known_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
 from algorithms.observations.fleet import Fleet
@@ -276,6 +278,14 @@ def test_of_several_moments_one_is_looked_at():
     assert "seen_2.png was taken" in {other.name: other.told for other in opened.files.others}["seen_10.png"]
 
 
+def test_an_image_that_a_map_waits_for_is_no_camera_image_whatever_comes_with_it():
+    page = Page()
+    page.open({"map1.yaml": MAP_1["map1.yaml"]})
+    opened = page.open({"camera.yaml": sighting_files(NEAR)["camera.yaml"], "map1.pgm": MAP_1["map1.pgm"]})
+    assert page.cells == cells_of(FIRST, None)
+    assert [upload.name for upload in opened.sighting] == ["camera.yaml"]
+
+
 def test_files_that_wait_are_bounded_and_of_one_path_the_newest_is_kept(monkeypatch):
     monkeypatch.setattr(file_reader, "MOST_UNPACKED", 1000)
     page = Page()
@@ -333,3 +343,41 @@ def test_paths_are_shown_short_and_lead_nowhere():
     assert len(upload.name) == 80
     assert upload_at("C:\\maps\\a.yaml", b"").path == "C:/maps/a.yaml"
     assert upload_at("", b"").name == "file"
+
+
+POOL = {
+    **CASE,
+    **ROBOT_3,
+    **fleet_to_files(Fleet({"r1": FIRST, "r2": SECOND})),
+    **sighting_files(NEAR),
+    "plain.pgm": ROBOT_3["r3.pgm"],
+    "cut.pgm": ROBOT_3["r3.pgm"][:40],
+    "bad.yaml": MAP_1["map1.yaml"][:60],
+    "empty.yaml": b"",
+    "truth.yaml": b"expected: refuse\n",
+    "all.zip": zip_bytes({**MAP_1, "x/observation.yaml": KNOWN["observation.yaml"]}),
+}
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.lists(st.lists(st.sampled_from(sorted(POOL)), min_size=1, max_size=6, unique=True), max_size=6),
+    st.sampled_from(["", "a", "a/b"]),
+    st.booleans(),
+)
+def test_whatever_comes_in_whatever_order_every_file_is_told_of_and_no_map_has_anothers_image(
+    choices, folder, fleet
+):
+    page = Page(fleet=fleet)
+    for names in choices:
+        opened = page.open({f"{folder}/{name}" if folder else name: POOL[name] for name in names})
+        told = {upload.name for upload in page.files.uploads.values()}
+        told |= {name for other in page.files.others for name in other.name.split(" + ")}
+        assert set(names) - {"all.zip"} <= told
+        texts = (page.files.uploads.get(f"yaml{number}") for number in (1, 2))
+        for slot, text, number in zip(page.inputs.maps, texts, (1, 2), strict=True):
+            if slot.grid is not None and text is not None and not opened.fleet:
+                image = page.files.uploads[f"image{number}"]
+                alone = map_from_bytes(text.name, text.content, image.name, image.content)
+                assert np.array_equal(slot.grid.cells, alone.cells)
+                assert slot.doubt or text.meta.image == image.name

@@ -62,6 +62,8 @@ def test_what_was_chosen_at_once_is_one_action_and_is_listed_with_what_it_was_ta
     sent(desk, 5)
     assert desk.inputs.sighted
     assert desk.labels == ["load map1.pgm and 4 more"]
+    desk.open({f"flat/{name}": content for name, content in case.items()})
+    assert desk.labels[1] == "load flat"
     assert lines(desk.panel.files) == [
         "map1.yaml: map 1",
         "map1.pgm: image of map 1",
