@@ -22,7 +22,6 @@ EXERCISED_BY = {
         "app.cli.bag_arguments",
     },
     "algorithms/detection/test_svm_training.py": {
-        "algorithms.detection.hog_grid",
         "algorithms.detection.svm_detector",
     },
     "algorithms/detection/test_footprint.py": {
