@@ -230,7 +230,7 @@ def _kinds(
                 waiting += [upload_at(f"{stem}/{path}", content) for path, content in inside.items()]
                 continue
             if kind == "bag":
-                waiting += maps_of_bag(upload)
+                waiting += maps_of_bag(upload, check)
                 continue
             if kind == "map":
                 _ = upload.meta  # may raise

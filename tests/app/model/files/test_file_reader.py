@@ -20,7 +20,7 @@ from algorithms.files.observation_file import known_to_bytes
 from algorithms.maps.grid_map import FREE, OCCUPIED, GridMap
 from algorithms.observations.fleet import Fleet
 from algorithms.observations.observation import Observation
-from app.model.files import file_reader
+from app.model.files import bag_maps, file_reader
 from app.model.files.file_reader import FileReader, OpenedFiles, upload_at
 from app.model.files.file_roles import swapped, with_other
 from app.model.merge_inputs import Files, MergeInputs
@@ -303,7 +303,7 @@ def test_files_that_wait_are_bounded_and_of_one_path_the_newest_is_kept(monkeypa
 
 
 @pytest.mark.parametrize("kind", ["ros1", "db3", "mcap"])
-def test_the_maps_of_recordings_are_taken_as_files_are(tmp_path, kind):
+def test_the_maps_of_recordings_are_taken_as_files_are(monkeypatch, kind):
     costs = grid_message(THIRD, 0.0, "/local_costmap/costmap")
     both = [grid_message(FIRST, 1.0, "/robot1/map"), grid_message(SECOND, 1.0, "/robot2/map"), costs]
     one, two = Page(), Page()
@@ -316,6 +316,9 @@ def test_the_maps_of_recordings_are_taken_as_files_are(tmp_path, kind):
     (error,) = two.open({"empty.bag": bag_bytes(kind, [transform_message("a", "b", 0.0, (0, 0, 0))])}).errors
     assert str(error).startswith("empty.bag: is ")
     assert "holds no map; record a map topic" in str(error)
+    monkeypatch.setattr(bag_maps, "MOST_UNPACKED", 10)
+    (error,) = Page().open({"both.bag": bag_bytes(kind, both)}).errors
+    assert "its 2 maps are more than" in str(error)
 
 
 def test_of_very_many_maps_but_so_many_are_read(monkeypatch):
