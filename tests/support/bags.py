@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from math import cos, sin
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -39,7 +40,7 @@ class Recorded:
 def write_bag(folder: Path, name: str, kind: str, messages: Iterable[Recorded]) -> Path:
     """A recording of one of KINDS, with these messages; its file or its folder."""
     ros1 = kind.startswith("ros1")
-    types = MessageReader(ros1).types
+    types = _types(ros1)
     path = folder / (f"{name}.bag" if ros1 else name)
     if ros1:
         writer: Any = Writer1(path)
@@ -61,6 +62,11 @@ def write_bag(folder: Path, name: str, kind: str, messages: Iterable[Recorded]) 
     return path
 
 
+@cache
+def _types(ros1: bool) -> Any:
+    return MessageReader(ros1).types
+
+
 def bag_bytes(kind: str, messages: Iterable[Recorded]) -> bytes:
     """A recording of one file."""
     with TemporaryDirectory() as folder:
@@ -71,7 +77,7 @@ def bag_bytes(kind: str, messages: Iterable[Recorded]) -> bytes:
 
 def message_bytes(message: Recorded, ros1: bool = False) -> bytes:
     """A message as ROS 1 or ROS 2 sends it."""
-    types = MessageReader(ros1).types
+    types = _types(ros1)
     filled = _filled(types, message.type, message.fields, ros1)
     return bytes((types.serialize_ros1 if ros1 else types.serialize_cdr)(filled, message.type))
 

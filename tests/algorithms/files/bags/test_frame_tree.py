@@ -25,7 +25,7 @@ def now(at):
     return BEGIN + round(at * SECOND)
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(first=poses, second=poses, third=poses)
 def test_a_chain_of_transforms_is_their_product_in_any_direction(tmp_path_factory, first, second, third):
     messages = [
@@ -43,7 +43,7 @@ def test_a_chain_of_transforms_is_their_product_in_any_direction(tmp_path_factor
 
 
 @given(share=st.floats(0, 1), turn=st.floats(-3.1, 3.1))
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_between_two_transforms_a_robot_moves_and_turns_evenly(tmp_path_factory, share, turn):
     start, end = Pose2(1.0, 2.0, 3.0), Pose2(2.0, 0.0, 3.0 + turn)
     messages = [

@@ -29,7 +29,7 @@ def test_a_map_from_a_recording_is_the_map_from_its_files(tmp_path, kind):
     assert b.name == "robot1"
 
 
-@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(origin=poses)
 def test_any_origin_comes_through(tmp_path_factory, origin):
     grid = replace(DRAWN, origin=origin)
