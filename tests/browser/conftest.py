@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import pytest
 import viser
 from chromium import NoChromium, find_chromium
-from driver import ARGUMENTS, Tab
+from driver import ARGUMENTS, ROUGHER, Tab
 from playwright.sync_api import Browser, sync_playwright
 
 from algorithms.files.case_folder import Case, read_case
@@ -26,7 +26,7 @@ def browser() -> Iterator[Browser]:
     except NoChromium as error:
         pytest.fail(str(error), pytrace=False)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=path, args=ARGUMENTS)
+        browser = playwright.chromium.launch(executable_path=path, args=ARGUMENTS + ROUGHER)
         yield browser
         browser.close()
 

@@ -29,6 +29,9 @@ ARGUMENTS = [
     "--use-gl=angle",
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
+]
+# what is drawn is less smooth, in two thirds of the time
+ROUGHER = [
     "--disable-gpu-rasterization",
     "--disable-gpu-compositing",
     "--webgl-antialiasing-mode=none",
