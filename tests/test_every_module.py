@@ -159,6 +159,7 @@ EXERCISED_BY = {
         "algorithms.verdict.ranking",
     },
     "app/cli/commands/test_merge.py": {
+        "app.cli.project_argument",
         "app.cli.output_arguments",
         "app.system.data_paths",
         "app.system.hardware",
@@ -320,6 +321,11 @@ EXERCISED_BY = {
         "app.drawing.scene.frame_symbols",
         "app.page.export.export_panel",
         "app.page.export.frame_panel",
+    },
+    "app/page/project/test_project_file.py": {
+        "app.page.project.project_parts",
+        "app.page.project.project_reader",
+        "app.page.project.project_writer",
     },
     "app/page/undo/test_undo_history.py": {
         "app.page.undo.history_panel",

@@ -25,10 +25,11 @@ ANEW = "make the zip anew"
 OF_A_SYSTEM = ("__MACOSX", ".")  # how names begin that nobody has packed by intent
 
 
-def files_of_zip(source: str, content: bytes) -> dict[str, bytes]:
+def files_of_zip(source: str, content: bytes, most: int = MOST_UNPACKED) -> dict[str, bytes]:
     """What a zip holds, by the paths in it. Nothing is ever written to one of them.
 
     source : what the zip is called before a person
+    most   : bytes that all of its files may have together
     raises : InputFileError
     """
     try:
@@ -38,9 +39,9 @@ def files_of_zip(source: str, content: bytes) -> dict[str, bytes]:
     with archive:
         infos = archive.infolist()
         unpacked = sum(info.file_size for info in infos)
-        if len(infos) > MOST_FILES or unpacked > MOST_UNPACKED:
+        if len(infos) > MOST_FILES or unpacked > most:
             found = f"holds {len(infos):,} files of {unpacked / 1e6:,.0f} MB"
-            limit = f"give at most {MOST_FILES:,} of {MOST_UNPACKED / 1e6:.0f} MB"
+            limit = f"give at most {MOST_FILES:,} of {most / 1e6:.0f} MB"
             raise InputFileError(source, found, limit)
         files = {}
         for info in infos:

@@ -48,9 +48,12 @@ def add_seed(parser: Parser) -> None:
     parser.add_argument("--seed", type=whole_number(0), default=0, help=hint)
 
 
-def config_from(args: argparse.Namespace, method: str = "") -> Any:
-    """The config of a method, of ``args.method`` unless given, with every setting that was given."""
-    config = METHODS[method or args.method].defaults
+def config_from(args: argparse.Namespace, method: str = "", config: Any = None) -> Any:
+    """The config of a method, of ``args.method`` unless given, with every setting that was given.
+
+    config : what it is where nothing is given; None: the method's defaults
+    """
+    config = METHODS[method or args.method].defaults if config is None else config
     for setting in settings_of(config):
         value = getattr(args, _flag(setting), None)
         if value is not None and value != value_at(config, setting.path):

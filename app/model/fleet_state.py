@@ -33,6 +33,7 @@ class FleetState:
     found  : of every pair that was merged with the same maps and knowledge, what came of it
     result : of all of them together; None before, and where anything has changed since
     opened : the pair, and its sightings, that the page shows in place of the fleet
+    again  : there was a result, which is to be worked out again where the fleet is shown
     """
 
     fleet: Fleet
@@ -41,6 +42,7 @@ class FleetState:
     found: Mapping[FindingKey, PairFinding] = field(default_factory=dict)
     result: FleetResult | None = None
     opened: PairOrder | None = None
+    again: bool = False
 
     @property
     def robots(self) -> tuple[str, ...]:
@@ -73,7 +75,7 @@ class FleetState:
 
     def with_fleet(self, fleet: Fleet) -> FleetState:
         """Another fleet; what was found of pairs that are still the same stays at hand."""
-        return replace(self, fleet=fleet, hidden=self.hidden & set(fleet.maps), result=None)
+        return replace(self, fleet=fleet, hidden=self.hidden & set(fleet.maps), result=None, again=False)
 
     def with_robot(self, name: str, grid: GridMap) -> FleetState:
         """One robot more, called so as far as it can be; raises SettingError."""
@@ -120,7 +122,7 @@ class FleetState:
             for key, each in self.found.items()
         }
         hidden = frozenset(map(called, self.hidden))
-        return replace(self, fleet=fleet, found=found, hidden=hidden, result=None)
+        return replace(self, fleet=fleet, found=found, hidden=hidden, result=None, again=False)
 
     def anchored(self, name: str) -> FleetState:
         """The result is to be in that robot's frame."""
@@ -158,7 +160,7 @@ class FleetState:
             fleet = replace(f, sightings=(*others, *seen), priors=(*priors, *rough))
             state = state.with_fleet(fleet)
         if finding is not None:
-            state = replace(state.with_finding(replace(finding, order=order)), result=None)
+            state = replace(state.with_finding(replace(finding, order=order)), result=None, again=False)
         return state
 
     # --- what is found --------------------------------------------------------------------------------

@@ -43,6 +43,11 @@ class Upload:
         return f"{self.folder}/{self.name}" if self.folder else self.name
 
     @cached_property
+    def digest(self) -> str:
+        """The SHA-256 of its content."""
+        return SourceFile.of(self.name, self.content).sha256
+
+    @cached_property
     def meta(self) -> MapMeta:
         """What it says as a map's YAML file; raises InputFileError."""
         return parse_meta(self.name, self.content)

@@ -46,12 +46,12 @@ class PortError(MapMergeError):
 def make_server(
     host: str = "127.0.0.1",
     port: int = 8080,
-    initial: Case | None = None,
+    initial: Case | SavedTab | None = None,
     lesson: Path | None = None,
     access: Access | None = None,
     research: bool = False,
 ) -> viser.ViserServer:
-    """Start to serve; every tab opens with ``initial``.
+    """Start to serve; every tab opens with ``initial``, a pair or a project.
 
     port   : 0 for any free one (``server.get_port()`` tells which)
     lesson : folder of the lesson's texts; None for those that come along
@@ -70,7 +70,7 @@ def make_server(
     camera.position, camera.look_at, camera.up = (0.0, 0.0, 600.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)
     camera.fov, camera.near, camera.far = radians(4), 10.0, 5000.0
     pages: dict[int, Page] = {}
-    first = MergeInputs.of(initial) if initial else MergeInputs()
+    first = MergeInputs.of(initial) if isinstance(initial, Case) else initial or MergeInputs()
     keep: SessionStore[SavedTab] = SessionStore()
     quota = CellQuota(make_room=keep.forget_all)
     housekeeping = MemoryCleanup()

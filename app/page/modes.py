@@ -18,7 +18,7 @@ class Mode:
     leave   : puts back what was on the page before; None: there is nothing to put back
     redraw  : draws the map while it is on; None: the run is drawn as usual
     changed : a setting was changed while it was on
-    resume  : goes on as a snapshot says, given whether it was on before; whether it is on now
+    resume  : goes on as a snapshot says, given whether it was on before; whether there is nothing to run
     reopen  : goes on with other maps; the settings are its own for a while. None: other maps end it
     merge   : what the button Merge does while it is on; None: the method runs
     stop    : leaves what it is at; whether there was anything

@@ -29,6 +29,7 @@ from app.page.notices import Notices
 from app.page.page_display import PageDisplay
 from app.page.page_state import PageState
 from app.page.panel_set import Panels
+from app.page.project.project_controller import ProjectController
 from app.page.research.comparison_controller import ComparisonController
 from app.page.research.other_result_controller import OtherResultController
 from app.page.research.sweep_controller import SweepController
@@ -50,7 +51,7 @@ class Page:
     """No event passes through it: they go from a widget or the browser to a controller, to the state, to the
     display.
 
-    first  : what a new tab opens with
+    first  : what a new tab opens with: a pair, or a project at the place where it was left
     store  : where a tab leaves what it finds again
     lesson : folder of the lesson's texts; None for those that come along
     research : whether a browser that remembers no mode gets that of researchers
@@ -59,7 +60,7 @@ class Page:
     def __init__(
         self,
         client: viser.ClientHandle,
-        first: MergeInputs,
+        first: MergeInputs | SavedTab,
         store: SessionStore[SavedTab],
         uploads: Uploads,
         quota: CellQuota,
@@ -71,7 +72,8 @@ class Page:
         self._key = ""  # of what it leaves in the store
         state, history, messages = PageState(), UndoHistory(), TabMessages(client)
         events, notices = BrowserEvents(client.gui, messages), Notices(client, messages, state.locks)
-        panels = Panels(client, state, messages, first.name, turned=lambda: display.show_buttons())
+        sample = first.name if isinstance(first, MergeInputs) else ""
+        panels = Panels(client, state, messages, sample, turned=lambda: display.show_buttons())
         views = Views(client, messages)
         display = PageDisplay(client, state, views, panels, messages)
         display.show_theme()
@@ -93,7 +95,8 @@ class Page:
         others = OtherResultController(tab, undo, runs)
         deliver = DownloadTask(client, panels.task)
         fleet = FleetController(tab, runs, inputs, quota, deliver, robots.begin)
-        FilesController(tab, inputs.load, fleet, seeing.sensors.take)
+        projects = ProjectController(tab, undo, deliver)
+        FilesController(tab, inputs.load, fleet, seeing.sensors.take, projects)
         museum = MuseumController(tab, undo, runs, inputs, fleet.merge_fleet)
         panels.run.connect_learn(teaching.toggle, museum.toggle)
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
@@ -131,9 +134,10 @@ class Page:
             self._key, saved = self._store.enter(key, again, self._leave)
             self._tab.display.messages.remember(self._key)
             self._view.research(mode == RESEARCH if mode else self._research)
-            if saved is None:
+            if saved is None and isinstance(self._first, MergeInputs):
                 self._inputs.load(self._first)
                 return
+            saved = saved or self._first
             panels.run.dark, panels.run.speed = saved.dark, saved.speed
             self._tab.display.show_buttons()
             history.take_over(saved.steps, saved.position)

@@ -43,7 +43,8 @@ class FilesDesk:
         panels.task = task or CancellableTask(Silent(), RLock(), lambda yes: None)  # type: ignore[misc]
         self.tab.notices.report = self.reports.append  # type: ignore[method-assign]
         self.fleet = Mock(shown=None)
-        self.controller = FilesController(self.tab, self.load, self.fleet, self.seen.append)
+        self.projects = Mock()
+        self.controller = FilesController(self.tab, self.load, self.fleet, self.seen.append, self.projects)
 
     def load(self, inputs: MergeInputs, label: str) -> None:
         """As the page does it."""

@@ -22,6 +22,7 @@ from PIL import Image
 from repository import ROOT
 
 from algorithms.common.errors import MapMergeError
+from algorithms.common.pose import Pose2
 from algorithms.files.camera_file import camera_from_bytes, camera_to_bytes
 from algorithms.files.camera_picture import picture_from_bytes
 from algorithms.files.encounter_table import EncounterRow, encounters_from_bytes, encounters_to_bytes
@@ -36,14 +37,25 @@ from algorithms.files.observation_file import (
 )
 from algorithms.files.scan_file import scan_from_bytes, scan_to_bytes
 from algorithms.files.truth_file import read_truth
+from algorithms.fleets.pair_hypotheses import Hypothesis, PairFinding, PairOrder
+from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import Fleet
 from algorithms.observations.pair_problem import Known
 from algorithms.sensors.camera import Camera
 from algorithms.sensors.laser_scan import LaserScan
+from app.model.fleet_state import FleetState
+from app.model.merge_inputs import Files, MergeInputs, OtherFile, Upload
+from app.model.settings import with_value
 from app.page.lesson.exhibit_texts import read_exhibit
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_texts import read_step
 from app.page.lesson.placeholders import NUMBERS
+from app.page.page_state import PageState
+from app.page.project.project_file import project_from_bytes, project_to_bytes
+from app.page.project.project_reader import saved_tab
+from app.page.project.project_writer import project_of
+from app.page.undo.undo_history import SavedTab, UndoStep
+from app.report.export_frame import ExportFrame
 
 MOST_MEMORY = 2_000  # MB that a process may take to read any file of at most 1 MB
 MOST_SECONDS = 1.0  # of processor time
@@ -176,6 +188,35 @@ def _encounters_twice(data: bytes) -> tuple[EncounterRow, ...]:
     return encounters
 
 
+def _tab() -> SavedTab:
+    """A tab with a pair, a fleet, and something of everything else."""
+    room = GridMap(np.zeros((3, 4), np.int8), 0.05)
+    pair = MergeInputs.pair(room, room).knowing(known_from_bytes("o.yaml", SEEN + NEAR))
+    files = Files("office", {"yaml1": Upload("m.yaml", META)}, (OtherFile("a", "waits"),))
+    page = replace(PageState().snapshot(), inputs=pair, files=files, hand=Pose2(1, 2, 3), seed=4)
+    page = replace(page, config=with_value(page.config, ("augment", "spread"), 4.5), taken="by hand")
+    answer = Hypothesis(Pose2(1, 2, 3), np.eye(3), 0.5, 1.0)
+    found = PairFinding(PairOrder("a", "b", ()), np.zeros(2), (answer,), "fits")
+    fleet = FleetState(Fleet({"a": room, "b": room}), "two", again=True).with_finding(found)
+    fleets = replace(page, inputs=MergeInputs(), fleet=fleet, export=ExportFrame(Pose2(1, 2, 3)))
+    return SavedTab((UndoStep("load", page), UndoStep("a fleet", fleets)), 1)
+
+
+TAB = _tab()
+PROJECT = project_of(TAB)
+
+
+def _document_twice(data: bytes) -> SavedTab:
+    """What a project's document says whose files are there, and which is the same written again."""
+    contents = {digest: make() for digest, make in PROJECT.contents.items()}
+    saved = saved_tab("p.mapmeld", data, contents.get)
+    written = project_of(saved)
+    files = {digest: make() for digest, make in written.contents.items()}
+    again = saved_tab("again", written.document, files.get)
+    assert project_of(again).document == written.document
+    return saved
+
+
 # name -> what reads it, and files that it is meant for
 READERS: dict[str, tuple[Callable[[bytes], object], list[bytes]]] = {
     "meta": (lambda data: parse_meta("m.yaml", data), [META, META.replace(b"[", b"\n- ")]),
@@ -190,6 +231,8 @@ READERS: dict[str, tuple[Callable[[bytes], object], list[bytes]]] = {
     ),
     "known": (_from_disk(_known_twice), [KNOWN, INITIAL, SEEN + NEAR, b"- " + TURN + b"- " + NEAR]),
     "fleet": (_fleet, [FLEET, FLEET.replace(b"anchor: b\n", b"")]),
+    "project": (lambda data: project_from_bytes("p.mapmeld", data), [project_to_bytes(TAB)]),
+    "a project's document": (_document_twice, [PROJECT.document]),
     "truth": (_from_disk(read_truth), [TRUTH, b"expected: refuse\n"]),
     "camera": (_camera_twice, [CAMERA, CAMERA_INFO, b"width: 64\nheight: 48\nfield_of_view: 1.2\n"]),
     "scan": (_scan_twice, [SCAN, SCAN.replace(b"ranges:\n", b"ranges:\n  # m\n"), SCAN_IN_LINE]),

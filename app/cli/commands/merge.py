@@ -10,9 +10,10 @@ from dataclasses import replace
 from math import degrees
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from algorithms.common.errors import NoAnswerError, OutputError, SettingError
+from algorithms.common.pose import Pose2
 from algorithms.common.source_file import SourceFile
 from algorithms.files.atomic_write import check_folder, write_files
 from algorithms.files.map_file import YAML_SUFFIXES, parse_meta, read_bytes
@@ -20,12 +21,12 @@ from algorithms.methods import registry as methods
 from algorithms.methods.manual_merge import ManualMerge, known_answers
 from algorithms.methods.merge_result import CHOSEN, MergeResult
 from algorithms.methods.suggestions import MOST, are_wanted, suggestions_of
-from algorithms.observations.pair_problem import PairProblem
 from app.cli.argument_parser import Parser, whole_number
 from app.cli.map_arguments import add_known, add_names, add_reading, known_from, names_from, read_maps
 from app.cli.output_arguments import add_frame, frame_of
 from app.cli.progress_bar import result_of
-from app.cli.setting_flags import add_method, configs_from
+from app.cli.project_argument import ALONE, opened_project, problem_of
+from app.cli.setting_flags import add_method, config_from, configs_from
 from app.evaluation.table_files import aligned
 from app.model import verdict_text
 from app.model.merge_inputs import MergeInputs
@@ -42,15 +43,19 @@ from app.report.result_files import (
 )
 from app.report.suggestion_files import HEAD, SUGGESTION_FILES, suggestion_rows
 
+if TYPE_CHECKING:
+    from app.page.undo.page_snapshot import PageSnapshot
+
 FILES = (*MERGED_FILES, TRANSFORM_FILE, OVERLAY_FILE, *SUGGESTION_FILES, PAGE_FILE, REPORT_FILE)
 
 USAGE = (
-    "MAP1 MAP2 [--observation FILE | what else is known] --out DIR [--names NAME1 NAME2] "
+    "PROJECT | MAP1 MAP2 [--observation FILE | what else is known] --out DIR [--names NAME1 NAME2] "
     "[--frame ref|mov|X,Y,YAW] [--no-yaw] [--json] [--force] [--strict] [options]"
 )
 DESCRIPTION = """\
 Merge two maps: from one sighting of robot 2 by robot 1 or several in one file, from a rough initial
-pose, a rough turn, a place that both maps show, any of these together, or from the walls alone.
+pose, a rough turn, a place that both maps show, any of these together, or from the walls alone. A
+project that was saved on the page has all of it, its settings too; what is given beside it counts more.
 
 Examples:
   mapmeld merge map1.yaml map2.yaml --observation observation.yaml --out result
@@ -59,6 +64,7 @@ Examples:
   mapmeld merge map1.yaml map2.yaml --out result
   mapmeld merge map1.yaml map2.yaml --out result --take 2
   mapmeld merge map1.yaml map2.yaml --out result --names Bob Alice --frame mov --no-yaw
+  mapmeld merge office.mapmeld --out result
   mapmeld merge left.pgm right.pgm --resolution 0.05 --observation o.yaml --out result
   mapmeld merge map1.yaml map2.yaml --observation observation.yaml --out result \\
           --augment.spread 4 --swarm.particles 800 --seed 7 --json | jq .T_ref_mov
@@ -88,8 +94,10 @@ Exit status: 0 merged, bent or not, or taken with --take; 1 refused (with --forc
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    parser.add_argument("map1", type=Path, metavar="MAP1", help="map of robot 1, the observer: YAML or image")
-    parser.add_argument("map2", type=Path, metavar="MAP2", help="map of robot 2, the observed")
+    about = "map of robot 1, the observer: YAML or image; or a project alone"
+    parser.add_argument("map1", type=Path, metavar="MAP1", help=about)
+    about = "map of robot 2, the observed"
+    parser.add_argument("map2", type=Path, metavar="MAP2", nargs="?", help=about)
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the files")
     add_known(parser)
     add_names(parser)
@@ -100,40 +108,58 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("--take", type=whole_number(1, MOST), metavar="N", help=about)
     parser.add_argument("--force", action="store_true", help="write the merged map of a refused merge, too")
     seen = "--observation" in [word.partition("=")[0] for word in words]
-    add_method(parser, words, methods.DEFAULT_METHOD if seen else methods.PLANE_METHOD, suits=True)
+    usual = methods.DEFAULT_METHOD if seen else methods.PLANE_METHOD
+    project = opened_project(words)
+    add_method(parser, words, usual if project is None else project.method, suits=True)
+    parser.set_defaults(project=project)
+    if project is not None:
+        names, frame = project.inputs.names, project.export
+        place = frame.frame.array().tolist() if isinstance(frame.frame, Pose2) else frame.frame
+        parser.set_defaults(seed=project.seed, names=(names.ref, names.mov))
+        parser.set_defaults(frame=place, no_yaw=not frame.yaw, merged_resolution=frame.resolution)
 
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, write and tell; the exit status."""
     began = perf_counter()
     names, frame = names_from(args), frame_of(args)
-    (ref, mov), known = read_maps(args), known_from(args)
+    if args.project is not None and args.map2 is not None:
+        parser.error(ALONE)
+    if args.project is None and args.map2 is None:
+        parser.error("give MAP1 and MAP2, or a project alone")
+    pair = replace(_pair(args), names=names)
     load_s = perf_counter() - began
-    problem = PairProblem.of(ref, mov, known)
-    name = f"{args.map1.stem} and {args.map2.stem}"
-    pair = MergeInputs.pair(ref, mov, problem.observations, name, priors=problem.priors)
-    if args.observation is not None:
-        pair = pair.read_from(SourceFile.at(args.observation))
-    pair = replace(pair, names=names)
-    configs = configs_from(args)
-    method = methods.default_method(problem, tuple(configs))
-    config = configs[method]
+    problem = problem_of(pair)
+    project: PageSnapshot | None = args.project
+    if project is None:
+        configs = configs_from(args)
+        method = methods.default_method(problem, tuple(configs))
+        config = configs[method]
+    else:
+        method = args.method or project.method
+        config = config_from(args, method, project.config if method == project.method else None)
     for warning in pair.readings():
         print(f"warning: {names.told(warning)}", file=sys.stderr)
     _check_folder(args)
     given = {"map1": args.map1, "map2": args.map2, "observation": args.observation}
+    if project is not None:
+        given["project"] = given.pop("map1")
     named = {key: str(path) for key, path in given.items() if path is not None}
     end, status = "", 1
     try:
-        result = result_of(methods.run_explained(method, ref, mov, known, config, args.seed))
+        how = (problem.ref, problem.mov, pair.known, config, args.seed)
+        result = result_of(methods.run_explained(method, *how))
     except NoAnswerError as refusal:
         report = report_of_no_answer(refusal, method, args.seed, config, load_s, named, pair)
         files, lines = {REPORT_FILE: report_json(report)}, [str(refusal)]
         if args.force:
             end = "--force: there is no transform to write a merged map with"
     else:
+        manual = ManualMerge(problem, config, known_answers(result))
         if args.take is not None:
-            result = _taken(result, ManualMerge(problem, config, known_answers(result)), args.take)
+            result = _taken(result, manual, args.take)
+        elif project is not None and project.taken and project.hand is not None:
+            result = manual.weigh(project.hand, args.seed, project.taken)
         accepted = result.verdict.accepted or result.by_person
         exported = frame.given(result.fusion.merged, result.T_ref_mov) if accepted or args.force else None
         report = report_of(result, config, load_s, named, pair, exported)
@@ -156,6 +182,18 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         lines.append(f"removed from {args.out}, being of an earlier run: {', '.join(removed)}")
     print("\n".join([*lines, end] if end else lines))
     return status
+
+
+def _pair(args: argparse.Namespace) -> MergeInputs:
+    """The maps and what is known of them: of the project, or as the command line names them."""
+    known = known_from(args)
+    if args.project is not None:
+        inputs: MergeInputs = args.project.inputs
+        pair = inputs.knowing(known) if known else inputs
+    else:
+        ref, mov = read_maps(args)
+        pair = MergeInputs.pair(ref, mov, name=f"{args.map1.stem} and {args.map2.stem}").knowing(known)
+    return pair if args.observation is None else pair.read_from(SourceFile.at(args.observation))
 
 
 def _taken(result: MergeResult, manual: ManualMerge, number: int) -> MergeResult:
@@ -197,8 +235,9 @@ def _leave(folder: Path, files: Mapping[str, bytes]) -> list[str]:
 def _check_folder(args: argparse.Namespace) -> None:
     """Raise OutputError where the result could not be left, or would take the place of an input."""
     check_folder(args.out)
-    inputs = [args.map1, args.map2, *([args.observation] if args.observation is not None else [])]
-    for path in (args.map1, args.map2):
+    maps = [args.map1] if args.map2 is None else [args.map1, args.map2]
+    inputs = [*maps, *([args.observation] if args.observation is not None else [])]
+    for path in maps:
         if path.suffix.lower() in YAML_SUFFIXES:
             inputs.append(path.parent / parse_meta(str(path), read_bytes(path, "a map")).image)
     places = {os.path.realpath(args.out / name): args.out / name for name in FILES}

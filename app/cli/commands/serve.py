@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.argument_parser import Parser, whole_number
 from app.cli.map_arguments import add_known, add_reading, any_known, known_from, read_maps
+from app.cli.project_argument import ALONE, is_project
 from app.web.security.access_control import TOKEN_VARIABLE, Access, access_for, is_local, numeric
 
 if TYPE_CHECKING:
@@ -23,13 +24,14 @@ LOCAL = "127.0.0.1"
 PORT = 8080
 FIRST_SAMPLE = "office_r2_r1"
 
-USAGE = "[MAP1 MAP2 [--observation FILE | what else is known]] [--host HOST] [--port PORT] ..."
+USAGE = "[PROJECT | MAP1 MAP2 [--observation FILE | what else is known]] [--host HOST] [--port PORT] ..."
 DESCRIPTION = f"""\
 Open the page: two maps, the sighting, every step of the merge.
 
 Examples:
   mapmeld serve                      a sample that ships with mapmeld
   mapmeld serve map1.yaml map2.yaml --observation observation.yaml
+  mapmeld serve office.mapmeld       a project that was saved on the page
   mapmeld serve --port 9000 --no-browser
   mapmeld serve --lesson my_lesson   the lesson with texts of your own, a Markdown file a step
 
@@ -43,7 +45,8 @@ can be read on the network, the token with it. SECURITY.md tells more. Ctrl-C en
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    parser.add_argument("map1", type=Path, metavar="MAP1", nargs="?", help="map of robot 1, the observer")
+    about = "map of robot 1, the observer; or a project alone"
+    parser.add_argument("map1", type=Path, metavar="MAP1", nargs="?", help=about)
     parser.add_argument("map2", type=Path, metavar="MAP2", nargs="?", help="map of robot 2, the observed")
     add_known(parser)
     add_reading(parser)
@@ -78,10 +81,14 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     """Serve until Ctrl-C."""
     from app.cli.open_browser import browser
     from app.page.application import make_server
+    from app.page.project.project_file import read_project
     from app.system import logging_setup as logs
     from app.web.download import DOWNLOADS
 
-    if (args.map1 is None) != (args.map2 is None):
+    project = is_project(args.map1) or is_project(args.map2)
+    if project and (args.map2 is not None or any_known(args)):
+        parser.error(ALONE)
+    if not project and (args.map1 is None) != (args.map2 is None):
         parser.error("give MAP1 and MAP2 together, or none of them for a sample")
     if args.map1 is None and any_known(args):
         parser.error("what is known is told of MAP1 and MAP2: give both maps, too")
@@ -94,7 +101,8 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     access = access_for(args.host, args.token_file, proxies, args.certfile, args.keyfile)
     logs.hide(access.token)
     research = args.mode == "research"
-    server = make_server(args.host, args.port, _case(args), args.lesson, access, research)
+    opened = read_project(args.map1) if project else _case(args)
+    server = make_server(args.host, args.port, opened, args.lesson, access, research)
     port = server.get_port()
     url = address(args.host, port, access)
     try:

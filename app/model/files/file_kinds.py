@@ -47,6 +47,8 @@ HEAD = 65536  # bytes that are looked at
 ZIP, PICKLE = b"PK", b"\x80"
 WIDE = (b"\xff\xfe", b"\xfe\xff")  # UTF-16, as the shell of Windows writes it
 NAME_AT, NAME_LENGTH_AT = 30, 26  # bytes of a zip before the name of its first file, and before its length
+PROJECT_SUFFIX = ".mapmeld"
+PROJECT_DOCUMENT = "project.json"  # the first file of its zip
 UNKNOWN = "is nothing that is known here"
 GIVE = "give a map's YAML file or image, what is known, a fleet, a recording, a zip, or a sighting's files"
 
@@ -68,6 +70,12 @@ TEXTS: tuple[tuple[FileKind, re.Pattern[str]], ...] = (
 )
 
 
+def is_project(name: str, content: bytes) -> bool:
+    """Whether a file is a project, or is called one."""
+    first = _first_in_zip(content) if content.startswith(ZIP) else b""
+    return name.lower().endswith(PROJECT_SUFFIX) or first == PROJECT_DOCUMENT.encode()
+
+
 def kind_of_file(name: str, content: bytes) -> FileKind:
     """What a file is; raises InputFileError where it is nothing that is used here.
 
@@ -78,6 +86,8 @@ def kind_of_file(name: str, content: bytes) -> FileKind:
     if is_picture(content):
         lossy = content.startswith(JPEG) or is_webp(content)
         return "picture" if lossy else "image"
+    if is_project(name, content):
+        raise InputFileError(name, "is a project", "open it by itself")
     if content.startswith(ZIP):
         return "model" if _first_in_zip(content).endswith(b".npy") else "zip"
     if content.startswith(PICKLE):  # whose reader tells what that is

@@ -135,7 +135,30 @@ class MapDragController:
         if snapshot.held and snapshot.other is None:
             self.begin(snapshot.hand)
             return True
-        return False
+        return snapshot.outcome is None and self._answer_again(snapshot)
+
+    def _answer_again(self, snapshot: PageSnapshot) -> bool:
+        """Show the answer that a person took, which was let go of; whether there is one."""
+        manual = self._new_manual() if snapshot.taken else None
+        if manual is None or snapshot.hand is None:
+            return False
+        try:
+            result = manual.weigh(snapshot.hand, method=snapshot.taken)
+        except MapMergeError as error:
+            self._notices.report(error)
+            return False
+        self._show_taken(result)
+        return True
+
+    def _show_taken(self, result: MergeResult) -> None:
+        """Show what a person took for the answer, which comes of the step at hand."""
+        run = RunState(self._state.config)
+        run.add(Step("observe", ObservationDetail(result.encounters), 0.0))
+        run.add(Step("fuse", result.fusion, 0.0))
+        run.add(Step("verdict", result, 0.0))
+        self._runs.show_answer(run, result, self._state.config, live=False)
+        self._undo.history.amend(run)
+        self._messages.flush()
 
     # --- what a person does -----------------------------------------------------------------------
 
@@ -263,13 +286,7 @@ class MapDragController:
                 self._panel.tell(box(state.inputs.names.told(str(error)), "refused"))
                 return
             self._modes.close()
-            run = RunState(state.config)
-            run.add(Step("observe", ObservationDetail(result.encounters), 0.0))
-            run.add(Step("fuse", result.fusion, 0.0))
-            run.add(Step("verdict", result, 0.0))
             with self._locks.drawing:
-                snapshot = replace(state.snapshot(), hand=result.T_ref_mov)
+                snapshot = replace(state.snapshot(), hand=result.T_ref_mov, taken=result.method)
                 self._undo.history.note(snapshot, "take it by hand")
-                self._runs.show_answer(run, result, state.config, live=False)
-                self._undo.history.amend(run)
-                self._messages.flush()
+                self._show_taken(result)

@@ -33,6 +33,10 @@ class ExportPanel:
         self.offered: Action = lambda: None  # called once a result is there to be taken
         gui = client.gui
         with gui.add_folder("Export", order=70):
+            hint = "All that is here and was done, to go on from another day: Open files… takes it."
+            self._project = gui.add_button(
+                "Save project", color=QUIET, icon=viser.Icon.DEVICE_FLOPPY, hint=hint
+            )
             hint = "A zip: merged map for Nav2, transform, report to read and print, picture, observation."
             quiet: Any = {"color": QUIET, "visible": False}
             icon = viser.Icon.DOWNLOAD
@@ -47,6 +51,10 @@ class ExportPanel:
             self.frame = FramePanel(gui)
             self._line = gui.add_html("")
             self._note = gui.add_html(_NOTHING)  # last, so that nothing moves when it comes
+
+    def connect_project(self, save: Action) -> None:
+        """What is done where all of the page is to become a file."""
+        on_press((self._project, save))
 
     def offer(self, harvest: ResultFiles | None) -> None:
         """Take this result, or none; a replay of its run is offered apart."""

@@ -14,6 +14,7 @@ from algorithms.files.case_folder import read_case
 from algorithms.files.fleet_archive import MOST_FILES
 from algorithms.files.fleet_file import read_fleet
 from algorithms.files.map_file import read_map
+from app.model.files.file_kinds import is_project
 from app.model.files.file_reader import FileReader, OpenedFiles, upload_at
 from app.model.files.file_roles import swapped, with_other
 from app.model.merge_inputs import Files, MergeInputs, Upload
@@ -23,11 +24,13 @@ from app.page.fleet.fleet_controller import FleetController
 from app.page.fleet.fleet_panel import NO_SAMPLE
 from app.page.fleet.sample_robots import sample_robots
 from app.page.panels.html_widgets import on_choice, put
+from app.page.project.project_controller import ProjectController
 from app.page.tab import Tab
 from app.system import data_paths as paths
 from app.system.cancellation import Cancelled, Check, never_cancelled
 from app.web.upload import MAX_UPLOADS
 
+BY_ITSELF = "open it by itself"
 LARGE = 1_000_000  # bytes, or pixels of a PNG; to read less takes no time to speak of
 Load = Callable[[MergeInputs, str], None]
 
@@ -38,14 +41,20 @@ class FilesController:
     load     : shows a pair of maps, as an action of the person that is called so
     fleet    : takes fleets, and robots of the one that is shown
     sighting : takes a file of the sighting from camera and scan
+    projects : takes a project
     """
 
     def __init__(
-        self, tab: Tab, load: Load, fleet: FleetController, sighting: Callable[[Upload], None]
+        self,
+        tab: Tab,
+        load: Load,
+        fleet: FleetController,
+        sighting: Callable[[Upload], None],
+        projects: ProjectController,
     ) -> None:
         self._state, self._panel, self._task = tab.state, tab.panels.files, tab.panels.task
         self._locks, self._notices = tab.state.locks, tab.notices
-        self._load, self._fleet, self._sighting = load, fleet, sighting
+        self._load, self._fleet, self._sighting, self._projects = load, fleet, sighting, projects
         self._reader = FileReader()
         self._arrived: list[Upload | None] = []  # None: there was no room for it
         self._lock = Lock()
@@ -86,6 +95,10 @@ class FilesController:
 
     def open(self, uploads: Sequence[Upload]) -> None:
         """Take these files, given at once, for what they are."""
+        project = next((each for each in uploads if is_project(each.name, each.content)), None)
+        if project is not None:
+            self._open_project(project, alone=len(uploads) == 1)
+            return
         with self._locks.action:
             shown = self._fleet.shown is not None
 
@@ -93,6 +106,20 @@ class FilesController:
                 return self._reader.open(self._panel.files, uploads, self._state.inputs, shown, check)
 
             self._show(uploads, read, f"load {_name_of(uploads)}")
+
+    def _open_project(self, upload: Upload, alone: bool) -> None:
+        """Go on with a project."""
+        try:
+            if not alone:
+                raise InputFileError(upload.name, "is a project, and other files came with it", BY_ITSELF)
+            with self._locks.action, self._reading([upload]) as check:
+                project = self._projects.read(upload, check)
+        except Cancelled:
+            return
+        except MapMergeError as error:
+            self._notices.report(error)
+            return
+        self._projects.open(project)
 
     # --- what a person does with them ---------------------------------------------------------------
 

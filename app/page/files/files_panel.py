@@ -12,6 +12,7 @@ import viser
 from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.files.map_file import READABLE_SUFFIXES, YAML_SUFFIXES, GreyImage
 from app.drawing.palette import QUIET
+from app.model.files.file_kinds import PROJECT_SUFFIX
 from app.model.merge_inputs import Files, Upload
 from app.page.files.files_html import files_html
 from app.page.files.image_form import ImageForm
@@ -22,7 +23,7 @@ from app.system import data_paths as paths
 NONE = "(choose)"
 OF_CAMERAS = (".jpg", ".jpeg", ".webp", ".csv", ".txt", ".npz")
 OF_BAGS = (".bag", ".db3", ".mcap")
-SUFFIXES = (*YAML_SUFFIXES, *READABLE_SUFFIXES, ".zip", *OF_BAGS, *OF_CAMERAS)
+SUFFIXES = (*YAML_SUFFIXES, *READABLE_SUFFIXES, ".zip", PROJECT_SUFFIX, *OF_BAGS, *OF_CAMERAS)
 """What the names of files end in that are offered, and taken from folders."""
 
 
@@ -102,7 +103,8 @@ class FilesPanel:
         for number, form in self._forms.items():
             image, text = files.uploads.get(f"image{number}"), files.uploads.get(f"yaml{number}")
             form.show(image, text, None if image is None else (greys or {}).get(image))
-        put(self._sample, value=files.sample or NONE)
+        there = files.sample in self._sample.options  # a project may name what another mapmeld has
+        put(self._sample, value=files.sample if there else NONE)
         put(self._list, content=files_html(files, self._names))
         put(self._forget, visible=bool(files.uploads or files.others))
 

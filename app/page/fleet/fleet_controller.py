@@ -143,6 +143,8 @@ class FleetController:
         self._show_panel()
         self._display.show(look=True)
         self._display.say_outcome()
+        if state.again:
+            self._run.begin(state)
         return True
 
     def _fleet_changed(self) -> None:

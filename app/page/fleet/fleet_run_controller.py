@@ -72,7 +72,7 @@ class FleetRunController:
         if state is None:
             return
         if isinstance(step, FleetResult):
-            self._take(replace(state, result=step))
+            self._take(replace(state, result=step, again=False))
             return
         self._display.say(_progress(step), "running", step.done / (step.total + 1))
         if state.finding(step.finding.order) is None and step.finding.order in pair_orders(state.fleet):

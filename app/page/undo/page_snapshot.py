@@ -27,6 +27,7 @@ class PageSnapshot:
     method, config, seed : how to merge
     goal    : how far it was asked for; None: nothing was asked for yet
     hand    : where map 2 was put by hand, T_ref_mov; None where a method says it
+    taken   : by what a person took that for the answer, BY_HAND or CHOSEN; "" where they did not
     outcome : of the run that came to its end with all this; None before
     other   : another method's answer that is looked at in its place
     fleet   : the fleet that is shown, or of which a pair is
@@ -44,11 +45,12 @@ class PageSnapshot:
     other: OtherResult | None = None
     fleet: FleetState | None = None
     export: ExportFrame = AS_MERGED
+    taken: str = ""
 
     @property
     def held(self) -> bool:
         """Whether map 2 is in a person's hand: it was put somewhere, and is not the answer yet."""
-        return self.hand is not None and self.outcome is None
+        return self.hand is not None and self.outcome is None and not self.taken
 
     @property
     def result(self) -> MergeResult | None:

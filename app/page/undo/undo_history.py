@@ -110,6 +110,13 @@ class UndoHistory:
         self._steps, self.position, self._moving = list(steps), position, False
         self.changed()
 
+    def append(self, steps: tuple[UndoStep, ...], position: int) -> None:
+        """Go on with steps of a project, at one of them; what was done here before comes before them."""
+        before = self._steps[: self.position + 1] if self.position > 0 else []
+        self._steps, self.position, self._moving = [*before, *steps], len(before) + position, False
+        self._trim()
+        self.changed()
+
     def _trim(self) -> None:
         """Let go of the oldest; before that, of what can be worked out again, the farthest first."""
         while len(self._steps) > self._most:

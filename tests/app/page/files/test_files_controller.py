@@ -10,6 +10,7 @@ import viser
 from panels import FilesDesk
 from tabs import event
 
+from algorithms.common.errors import TooLargeError
 from algorithms.common.pose import Pose2
 from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.files.fleet_archive import fleet_to_files
@@ -236,3 +237,18 @@ def test_of_very_many_files_a_part_is_listed():
 def test_a_page_without_files_has_no_list():
     assert PageState(MergeInputs()).files.others == ()
     assert "<ul" not in files_html(Files("sample"), UNNAMED)
+
+
+def test_a_project_is_opened_alone_and_one_that_cannot_be_read_is_told(desk, case):
+    desk.open({"a.mapmeld": b"PK", **case})
+    assert str(desk.reports.pop()) == (
+        "a.mapmeld: is a project, and other files came with it; open it by itself"
+    )
+    desk.projects.read.assert_not_called()
+    desk.open({"a.mapmeld": b"PK"})
+    desk.projects.open.assert_called_once_with(desk.projects.read.return_value)
+    desk.projects.read.side_effect = TooLargeError("too much")
+    desk.open({"called_otherwise.zip": b"PK" + bytes(24) + b"\x0c" + bytes(3) + b"project.json"})
+    assert str(desk.reports.pop()) == "too much"
+    assert desk.projects.open.call_count == 1
+    assert desk.loaded == []

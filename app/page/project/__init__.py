@@ -1,0 +1,1 @@
+"""All that a tab holds as a file: written, read, and kept on the disk of the server."""
