@@ -55,8 +55,13 @@ def open_tab(browser: Browser, server: viser.ViserServer) -> Iterator[Callable[.
     """Open a tab; a script error in it fails the test."""
     tabs: list[Tab] = []
 
-    def open_one(size: tuple[int, int] = SIZE, at: viser.ViserServer = server, touch: bool = False) -> Tab:
-        tabs.append(Tab(browser, f"http://127.0.0.1:{at.get_port()}/", size, touch))
+    def open_one(
+        size: tuple[int, int] = SIZE,
+        at: viser.ViserServer = server,
+        touch: bool = False,
+        smooth: bool = False,
+    ) -> Tab:
+        tabs.append(Tab(browser, f"http://127.0.0.1:{at.get_port()}/", size, touch, smooth=smooth))
         return tabs[-1]
 
     yield open_one

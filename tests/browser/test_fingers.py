@@ -43,7 +43,7 @@ def places(tab: Tab) -> list[Point]:
 
 
 def test_a_finger_drags_the_map_two_zoom_it_and_map_2_goes_along_with_a_finger(open_tab):
-    tab = open_tab(touch=True)
+    tab = open_tab(touch=True, smooth=True)
     hand = Hand(tab)
     x, y = 500.0, 450.0
 

@@ -127,7 +127,8 @@ def at_mov(tab, point: tuple[float, float]) -> list[float]:
     return tab.page.evaluate("(p) => mapmeld.pixel(p, 'map2')", list(point))
 
 
-def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(tab, tmp_path):
+def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(open_tab, tmp_path):
+    tab = open_tab(smooth=True)
     tab.press("Instant")
     tab.press("Merge")
     tab.wait_for("accepted")

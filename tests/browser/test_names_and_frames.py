@@ -107,7 +107,7 @@ def test_two_maps_that_have_names_make_a_fleet_of_robots_that_have_them(open_tab
 def test_the_merged_map_is_taken_away_in_map_2s_frame_without_yaw_and_the_changed_cells_are_told(
     open_tab, tmp_path
 ):
-    tab = open_tab(size=(1400, 900))
+    tab = open_tab(size=(1400, 900), smooth=True)
     merge(tab)
     tab.unfold("Frame and cells")
     tab.choose("Frame", "map 2's")

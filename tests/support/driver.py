@@ -81,14 +81,18 @@ class Tab:
         size: tuple[int, int],
         touch: bool = False,
         mode: str = "Research",
+        smooth: bool = False,
     ) -> None:
-        """``mode``: that the browser remembers; empty for a browser that was never here."""
+        """mode : that the browser remembers; empty for a browser that was never here
+        smooth : every picture is drawn, as what is dragged needs it
+        """
         self.context = browser.new_context(
             viewport={"width": size[0], "height": size[1]}, accept_downloads=True, has_touch=touch
         )
         if mode:
             self.context.add_init_script(REMEMBER.format(mode))
-        self.context.add_init_script(SLOW_FRAMES)
+        if not smooth:
+            self.context.add_init_script(SLOW_FRAMES)
         self.page: Page = self.context.new_page()
         self.errors: list[str] = []
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
