@@ -36,4 +36,3 @@ def test_a_project_is_saved_and_another_tab_goes_on_with_it(open_tab, tmp_path):
     assert entries(other) == ["merge", "load apartment_r2_r1", "load office_r2_r1"]
     other.page.get_by_role("button", name="Undo").click()
     settle(lambda: other.state.startswith("Ready"), "the pair before it was merged")
-    other.page.screenshot(path="/tmp/h3shot.png")
