@@ -12,7 +12,7 @@ import numpy as np
 
 from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError, SettingError, TooLargeError
-from algorithms.common.robot_names import RobotNames
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.common.source_file import SourceFile
 from algorithms.files.fleet_archive import MOST_CELLS
 from algorithms.files.fleet_file import fleet_from_bytes
@@ -34,7 +34,6 @@ from app.page.undo.undo_history import SavedTab, UndoStep
 from app.system.cancellation import Check, never_cancelled
 
 T = TypeVar("T")
-MOST_DOCUMENT = 16_000_000  # bytes
 ANEW = "save the project anew"
 
 
@@ -48,8 +47,8 @@ def saved_tab(
     check   : is called now and then, and may leave the work by raising
     raises  : InputFileError, TooLargeError
     """
-    if len(document) > MOST_DOCUMENT:
-        raise TooLargeError(f"{source}: its document has more than {MOST_DOCUMENT / 1e6:.0f} MB")
+    if len(document) > parts.MOST_DOCUMENT:
+        raise TooLargeError(f"{source}: its document has more than {parts.MOST_DOCUMENT / 1e6:.0f} MB")
     try:
         head = msgspec.json.decode(document, type=parts.Head)
         if head.format != parts.FORMAT:
@@ -128,7 +127,7 @@ class _Reader:
         return tuple(known)
 
     def _inputs_of(self, part: parts.InputsPart) -> MergeInputs:
-        known = self._known(part.known)
+        known, names = self._known(part.known), RobotNames.of(part.names.ref, part.names.mov)
         slots = tuple(
             MapSlot(
                 None if slot.map is None else self._one(self._maps, slot.map, "map"), slot.missing, slot.doubt
@@ -146,7 +145,7 @@ class _Reader:
             tuple(one for one in known if not isinstance(one, Observation)),
             part.choice,
             self._known(part.aside),
-            RobotNames.of(part.names.ref, part.names.mov),
+            names if names != UNNAMED else UNNAMED,  # the one that documents leave out
             read,
         )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from hashlib import sha256
 from typing import Any, Generic, TypeVar
@@ -50,6 +50,14 @@ def project_of(saved: SavedTab) -> Project:
     Its comparisons and sweeps are left out.
     """
     return _Writer().project(saved)
+
+
+def bounded_project(saved: SavedTab) -> Project:
+    """The same; where its history would be too long to be read again, the step at hand alone."""
+    project = project_of(saved)
+    if len(project.document) <= parts.MOST_DOCUMENT:
+        return project
+    return project_of(replace(saved, steps=(saved.steps[saved.position],), position=0))
 
 
 class _Table(Generic[Read, Written]):
