@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from hashlib import sha256
 from typing import Any, Generic, TypeVar
 from weakref import WeakKeyDictionary
@@ -208,6 +208,7 @@ class _Writer:
         )
 
 
+@lru_cache(maxsize=256)  # those of a history are asked for at every step
 def settings_by_name(method: str, config: Any) -> dict[str, Any]:
     """The settings that are not the method's defaults, by the names of their flags; options in words."""
     defaults = METHODS[method].defaults
