@@ -159,6 +159,7 @@ class Page:
             self._end()
 
     def _leave(self) -> SavedTab | None:
+        self._undo.keep = lambda: None  # from here on it is for the tab that comes back to say what is kept
         self._end()
         return self._saved() if self._tab.history.steps else None
 

@@ -19,7 +19,7 @@ from algorithms.files.fleet_file import fleet_from_bytes
 from algorithms.files.map_file import map_from_bytes
 from algorithms.files.observation_file import known_from_bytes
 from algorithms.fleets.pair_hypotheses import Hypothesis, PairFinding, PairOrder
-from algorithms.maps.grid_map import GridMap
+from algorithms.maps.grid_map import COARSEST, FINEST, GridMap
 from algorithms.methods.registry import METHODS
 from algorithms.observations.fleet import Fleet
 from algorithms.observations.observation import Observation
@@ -31,6 +31,7 @@ from app.model.settings import with_value
 from app.page.project import project_parts as parts
 from app.page.undo.page_snapshot import PageSnapshot
 from app.page.undo.undo_history import SavedTab, UndoStep
+from app.report.export_frame import ExportFrame
 from app.system.cancellation import Check, never_cancelled
 
 T = TypeVar("T")
@@ -208,6 +209,11 @@ class _Reader:
     def _snapshot(self, step: parts.StepPart) -> PageSnapshot:
         if step.method not in METHODS:
             raise self._wrong(f"merges by {show_hidden(step.method)}, a method that there is not")
+        if step.hand is not None:
+            ExportFrame(step.hand)  # it lies where a frame may lie
+        cells = step.export.resolution
+        if cells is not None and not FINEST <= cells <= COARSEST:
+            raise self._wrong(f"gives the merged map away in cells of {cells:g} m")
         return PageSnapshot(
             self._one(self._inputs, step.inputs, "inputs"),
             self._one(self._files, step.files, "files"),

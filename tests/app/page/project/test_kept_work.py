@@ -25,6 +25,7 @@ from app.page.project.kept_work import KEPT_FILE, KeptWork
 from app.page.project.project_writer import project_of
 from app.page.undo.page_snapshot import PageSnapshot
 from app.page.undo.undo_history import SavedTab, UndoHistory
+from app.web.session_store import SessionStore
 
 KILLS = 20
 SEED = 20
@@ -134,6 +135,28 @@ def test_a_tab_finds_its_work_by_its_newest_key_or_the_one_before_and_nobody_els
     kept.keep("fourth", done(page, replace(page, seed=1)))
     kept.leave("fourth")
     assert len(kept.take("third", "x").steps) == 2
+
+
+def test_a_tab_of_a_server_that_was_killed_finds_its_work_and_a_copy_of_it_begins_anew(page, tmp_path):
+    kept = KeptWork(tmp_path)
+    store: SessionStore[SavedTab] = SessionStore(shelf=kept)
+    key, _ = store.enter("", False, lambda: done(page))
+    store.keep(key, done(page))
+    kept.close()
+
+    kept = KeptWork(tmp_path)
+    store = SessionStore(shelf=kept)
+    newer = done(page, replace(page, seed=1))
+    key, found = store.enter(key, True, lambda: newer)
+    assert [step.label for step in found.steps] == ["load"]
+    assert store.enter(key, False, lambda: None)[1] is None  # of a tab that is still there
+    store.keep(key, newer)
+    store.leave(key)
+    other, found = store.enter(key, False, lambda: None)
+    assert found is newer  # from memory
+    store.leave(other)
+    assert len(store.enter(other, False, lambda: None)[1].steps) == 2  # from the folder
+    kept.close()
 
 
 def test_the_folder_is_its_owners_holds_each_file_once_and_no_key_and_one_server_uses_it(

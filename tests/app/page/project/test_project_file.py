@@ -242,6 +242,8 @@ BAD = {
     "what is known": (changed(put("inputs", 0, "known", value=["observer: 1"])), "observer is"),
     "robots of one name": (changed(put("inputs", 0, "names", value={"ref": "A", "mov": "A"})), "both robots"),
     "a number that is none": (changed(put("steps", 0, "hand", value={"x": "far"})), "$.steps[0].hand"),
+    "a place too far": (changed(put("steps", 0, "hand", value={"x": 1e300})), "no frame lies at 1e+300"),
+    "cells of nothing": (changed(put("steps", 0, "export", value={"resolution": 0})), "in cells of 0 m"),
     "a map's size": (changed(put("maps", 0, "text", value="image: a")), "resolution is missing"),
 }  # fmt: skip
 
