@@ -23,6 +23,7 @@ from app.jobs.warm_up import small_merge
 from app.jobs.warm_up import warm_up as warm_up_there
 from app.model.merge_inputs import MergeInputs
 from app.page.page import Page
+from app.page.project.kept_work import KeptWork
 from app.page.undo.undo_history import SavedTab
 from app.system.logging_setup import facts
 from app.system.memory import MemoryCleanup
@@ -50,6 +51,7 @@ def make_server(
     lesson: Path | None = None,
     access: Access | None = None,
     research: bool = False,
+    kept: KeptWork | None = None,
 ) -> viser.ViserServer:
     """Start to serve; every tab opens with ``initial``, a pair or a project.
 
@@ -57,6 +59,7 @@ def make_server(
     lesson : folder of the lesson's texts; None for those that come along
     research : tabs open in the mode of researchers, unless their browser remembers another
     access : who may talk to it; None: this machine alone
+    kept   : keeps the work of tabs beyond the server's end; None: it ends with it
     raises : PortError where the port is taken or the address is not this machine's
     """
     _probe(host, port)
@@ -71,7 +74,7 @@ def make_server(
     camera.fov, camera.near, camera.far = radians(4), 10.0, 5000.0
     pages: dict[int, Page] = {}
     first = MergeInputs.of(initial) if isinstance(initial, Case) else initial or MergeInputs()
-    keep: SessionStore[SavedTab] = SessionStore()
+    keep: SessionStore[SavedTab] = SessionStore(shelf=kept)
     quota = CellQuota(make_room=keep.forget_all)
     housekeeping = MemoryCleanup()
     visited = False

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import viser
 
+from algorithms.common.errors import MapMergeError
 from app.drawing.scene.tab_views import Views
 from app.jobs.worker_pool import COMMON
 from app.model.merge_inputs import MergeInputs
@@ -133,6 +134,7 @@ class Page:
                 return
             self._key, saved = self._store.enter(key, again, self._leave)
             self._tab.display.messages.remember(self._key)
+            self._undo.keep = self._keep
             self._view.research(mode == RESEARCH if mode else self._research)
             if saved is None and isinstance(self._first, MergeInputs):
                 self._inputs.load(self._first)
@@ -157,12 +159,21 @@ class Page:
             self._end()
 
     def _leave(self) -> SavedTab | None:
+        self._undo.keep = lambda: None  # from here on it is for the tab that comes back to say what is kept
         self._end()
+        return self._saved() if self._tab.history.steps else None
+
+    def _saved(self) -> SavedTab:
         history, run = self._tab.history, self._tab.panels.run
-        if not history.steps:
-            return None
         found, swept = self._comparison.found, self._sweep.swept
         return SavedTab(history.steps, history.position, run.dark, run.speed, found, swept)
+
+    def _keep(self) -> None:
+        """What was done is to outlive the server, if it keeps anything."""
+        try:
+            self._store.keep(self._key, self._saved())
+        except MapMergeError as error:
+            self._tab.notices.report(error)
 
     def _end(self) -> None:
         for part in self._parts:

@@ -12,7 +12,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from threading import Lock, Timer
 from time import monotonic
-from typing import Generic, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 GRACE = 15 * 60.0  # seconds that a tab may be away
 MOST_KEPT = 8  # tabs that are away; the one that is away longest is forgotten first
@@ -21,13 +21,33 @@ MOST_KEPT = 8  # tabs that are away; the one that is away longest is forgotten f
 Saved = TypeVar("Saved")  # what a tab leaves behind
 
 
+class Shelf(Protocol[Saved]):
+    """What outlives the server."""
+
+    def keep(self, key: str, saved: Saved) -> None:
+        """Have it there before this returns; raises MapMergeError."""
+
+    def take(self, key: str, fresh: str) -> Saved | None:
+        """What a tab left that is not there any more, and is known by a fresh key from now on."""
+
+    def move(self, key: str, fresh: str) -> None:
+        """A tab is known by a fresh key from now on."""
+
+    def leave(self, key: str) -> None:
+        """A tab is gone."""
+
+
 class SessionStore(Generic[Saved]):
-    """Of all tabs of a server."""
+    """Of all tabs of a server; ``shelf``: what outlives it, if anything does."""
 
     def __init__(
-        self, grace: float = GRACE, most: int = MOST_KEPT, clock: Callable[[], float] = monotonic
+        self,
+        grace: float = GRACE,
+        most: int = MOST_KEPT,
+        clock: Callable[[], float] = monotonic,
+        shelf: Shelf[Saved] | None = None,
     ) -> None:
-        self._grace, self._most, self._clock = grace, most, clock
+        self._grace, self._most, self._clock, self._shelf = grace, most, clock, shelf
         self._here: dict[str, Callable[[], Saved | None]] = {}
         self._away: OrderedDict[str, tuple[float, Saved]] = OrderedDict()
         self._sweeping = False  # whether a timer is set
@@ -44,12 +64,23 @@ class SessionStore(Generic[Saved]):
             self._forget()
             _, kept = self._away.pop(key, (0.0, None))
             dead = self._here.pop(key, None) if again else None
+            a_copy = key in self._here
         if dead is not None:
             kept = dead()
         fresh = secrets.token_urlsafe(24)
+        if self._shelf is not None and not a_copy:
+            if kept is None:
+                kept = self._shelf.take(key, fresh)
+            else:
+                self._shelf.move(key, fresh)
         with self._lock:
             self._here[fresh] = leave
         return fresh, kept
+
+    def keep(self, key: str, saved: Saved) -> None:
+        """What a tab would leave behind, should the server end now; raises MapMergeError."""
+        if self._shelf is not None:
+            self._shelf.keep(key, saved)
 
     def leave(self, key: str) -> None:
         """A tab is gone: what it leaves behind is kept for a while."""
@@ -58,6 +89,8 @@ class SessionStore(Generic[Saved]):
         if leave is None:
             return  # it has come back already
         kept = leave()
+        if self._shelf is not None:
+            self._shelf.leave(key)
         if kept is None:
             return
         with self._lock:

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
 import pytest
-from driver import settle
+from driver import PATIENCE, READY, Tab, settle
+from repository import ROOT
 
 pytestmark = pytest.mark.browser
 
@@ -36,4 +43,36 @@ def test_a_project_is_saved_and_another_tab_goes_on_with_it(open_tab, tmp_path):
     assert entries(other) == ["merge", "load apartment_r2_r1", "load office_r2_r1"]
     other.page.get_by_role("button", name="Undo").click()
     settle(lambda: other.state.startswith("Ready"), "the pair before it was merged")
-    other.page.screenshot(path="/tmp/h3shot.png")
+
+
+@contextmanager
+def served(folder: Path, port: int) -> Iterator[str]:
+    """The address of a server that keeps work in that folder, and is killed in the end."""
+    words = ["serve", "--no-browser", "--port", str(port), "--keep", str(folder)]
+    command = [sys.executable, "-m", "app", *words]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT) as server:
+        try:
+            assert server.stdout is not None
+            yield next(line for line in server.stdout if line.startswith("mapmeld is at ")).split()[3]
+        finally:
+            server.kill()
+
+
+def test_a_reload_finds_everything_after_the_server_was_killed_and_started_again(browser, tmp_path):
+    with served(tmp_path, 0) as address:
+        tab = Tab(browser, address, (1000, 700))
+        tab.press("Instant")
+        tab.press("Merge")
+        tab.wait_for("accepted")
+        said = tab.state
+        tab.unfold("History")
+        done = entries(tab)
+    port = int(address.rstrip("/").rsplit(":", 1)[1])
+    with served(tmp_path, port):
+        tab.page.reload()
+        tab.page.wait_for_function(READY, timeout=1000 * PATIENCE)
+        tab.wait_for("accepted")
+        assert tab.state == said
+        tab.unfold("History")
+        assert entries(tab) == done == ["merge", "load office_r2_r1"]
+        tab.close()

@@ -32,6 +32,7 @@ Examples:
   mapmeld serve                      a sample that ships with mapmeld
   mapmeld serve map1.yaml map2.yaml --observation observation.yaml
   mapmeld serve office.mapmeld       a project that was saved on the page
+  mapmeld serve --keep work          what is done outlives the server: reload the page after it is back
   mapmeld serve --port 9000 --no-browser
   mapmeld serve --lesson my_lesson   the lesson with texts of your own, a Markdown file a step
 
@@ -67,6 +68,8 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("--behind", action="append", default=[], help=argparse.SUPPRESS)
     help_ = "operator (default): maps, sighting, result; research: every setting and stage, too"
     parser.add_argument("--mode", choices=("operator", "research"), default="operator", help=help_)
+    about = "folder in which the work of every tab outlives the server, even where that is killed"
+    parser.add_argument("--keep", type=Path, metavar="DIR", help=about)
     parser.add_argument("--verbose", action="store_true", help="log who comes and what is run, too")
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
     parser.add_argument(
@@ -81,6 +84,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     """Serve until Ctrl-C."""
     from app.cli.open_browser import browser
     from app.page.application import make_server
+    from app.page.project.kept_work import KeptWork
     from app.page.project.project_file import read_project
     from app.system import logging_setup as logs
     from app.web.download import DOWNLOADS
@@ -102,7 +106,8 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     logs.hide(access.token)
     research = args.mode == "research"
     opened = read_project(args.map1) if project else _case(args)
-    server = make_server(args.host, args.port, opened, args.lesson, access, research)
+    kept = None if args.keep is None else KeptWork(args.keep)
+    server = make_server(args.host, args.port, opened, args.lesson, access, research, kept)
     port = server.get_port()
     url = address(args.host, port, access)
     try:

@@ -9,8 +9,8 @@ from pathlib import Path
 from algorithms.common.errors import InputFileError, TooLargeError, unreadable
 from algorithms.files.fleet_archive import files_of_zip
 from app.model.files.file_kinds import PROJECT_DOCUMENT, PROJECT_SUFFIX
-from app.page.project.project_reader import ANEW, MOST_DOCUMENT, saved_tab
-from app.page.project.project_writer import Project, project_of
+from app.page.project.project_reader import ANEW, saved_tab
+from app.page.project.project_writer import Project, bounded_project, project_of
 from app.page.undo.undo_history import SavedTab
 from app.report.result_files import zip_bytes
 from app.system.cancellation import Check, never_cancelled
@@ -25,7 +25,7 @@ def project_to_bytes(saved: SavedTab, check: Check = never_cancelled) -> bytes:
     check  : is called now and then, and may leave the work by raising
     raises : TooLargeError
     """
-    files = _files(project_of(saved), check)
+    files = _files(bounded_project(saved), check)
     if files is None:
         files = _files(project_of(replace(saved, steps=(saved.steps[saved.position],), position=0)), check)
     if files is None:
@@ -35,8 +35,6 @@ def project_to_bytes(saved: SavedTab, check: Check = never_cancelled) -> bytes:
 
 def _files(project: Project, check: Check) -> dict[str, bytes] | None:
     """What goes into the zip; None where it is too much."""
-    if len(project.document) > MOST_DOCUMENT:
-        return None
     files, size = {PROJECT_DOCUMENT: project.document}, len(project.document)
     for digest, content in project.contents.items():
         check()

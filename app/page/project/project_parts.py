@@ -19,6 +19,7 @@ from app.page.undo.undo_history import MOST
 from app.report.export_frame import AS_MERGED, ExportFrame
 
 FORMAT = 1
+MOST_DOCUMENT = 16_000_000  # bytes
 
 Text = Annotated[str, Meta(max_length=4000)]
 Name = Annotated[str, Meta(max_length=400)]

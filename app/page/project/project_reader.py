@@ -12,14 +12,14 @@ import numpy as np
 
 from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError, SettingError, TooLargeError
-from algorithms.common.robot_names import RobotNames
+from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.common.source_file import SourceFile
 from algorithms.files.fleet_archive import MOST_CELLS
 from algorithms.files.fleet_file import fleet_from_bytes
 from algorithms.files.map_file import map_from_bytes
 from algorithms.files.observation_file import known_from_bytes
 from algorithms.fleets.pair_hypotheses import Hypothesis, PairFinding, PairOrder
-from algorithms.maps.grid_map import GridMap
+from algorithms.maps.grid_map import COARSEST, FINEST, GridMap
 from algorithms.methods.registry import METHODS
 from algorithms.observations.fleet import Fleet
 from algorithms.observations.observation import Observation
@@ -31,10 +31,10 @@ from app.model.settings import with_value
 from app.page.project import project_parts as parts
 from app.page.undo.page_snapshot import PageSnapshot
 from app.page.undo.undo_history import SavedTab, UndoStep
+from app.report.export_frame import ExportFrame
 from app.system.cancellation import Check, never_cancelled
 
 T = TypeVar("T")
-MOST_DOCUMENT = 16_000_000  # bytes
 ANEW = "save the project anew"
 
 
@@ -48,8 +48,8 @@ def saved_tab(
     check   : is called now and then, and may leave the work by raising
     raises  : InputFileError, TooLargeError
     """
-    if len(document) > MOST_DOCUMENT:
-        raise TooLargeError(f"{source}: its document has more than {MOST_DOCUMENT / 1e6:.0f} MB")
+    if len(document) > parts.MOST_DOCUMENT:
+        raise TooLargeError(f"{source}: its document has more than {parts.MOST_DOCUMENT / 1e6:.0f} MB")
     try:
         head = msgspec.json.decode(document, type=parts.Head)
         if head.format != parts.FORMAT:
@@ -128,7 +128,7 @@ class _Reader:
         return tuple(known)
 
     def _inputs_of(self, part: parts.InputsPart) -> MergeInputs:
-        known = self._known(part.known)
+        known, names = self._known(part.known), RobotNames.of(part.names.ref, part.names.mov)
         slots = tuple(
             MapSlot(
                 None if slot.map is None else self._one(self._maps, slot.map, "map"), slot.missing, slot.doubt
@@ -146,7 +146,7 @@ class _Reader:
             tuple(one for one in known if not isinstance(one, Observation)),
             part.choice,
             self._known(part.aside),
-            RobotNames.of(part.names.ref, part.names.mov),
+            names if names != UNNAMED else UNNAMED,  # the one that documents leave out
             read,
         )
 
@@ -209,6 +209,11 @@ class _Reader:
     def _snapshot(self, step: parts.StepPart) -> PageSnapshot:
         if step.method not in METHODS:
             raise self._wrong(f"merges by {show_hidden(step.method)}, a method that there is not")
+        if step.hand is not None:
+            ExportFrame(step.hand)  # it lies where a frame may lie
+        cells = step.export.resolution
+        if cells is not None and not FINEST <= cells <= COARSEST:
+            raise self._wrong(f"gives the merged map away in cells of {cells:g} m")
         return PageSnapshot(
             self._one(self._inputs, step.inputs, "inputs"),
             self._one(self._files, step.files, "files"),

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
 from hashlib import sha256
 from typing import Any, Generic, TypeVar
 from weakref import WeakKeyDictionary
@@ -50,6 +50,14 @@ def project_of(saved: SavedTab) -> Project:
     Its comparisons and sweeps are left out.
     """
     return _Writer().project(saved)
+
+
+def bounded_project(saved: SavedTab) -> Project:
+    """The same; where its history would be too long to be read again, the step at hand alone."""
+    project = project_of(saved)
+    if len(project.document) <= parts.MOST_DOCUMENT:
+        return project
+    return project_of(replace(saved, steps=(saved.steps[saved.position],), position=0))
 
 
 class _Table(Generic[Read, Written]):
@@ -200,6 +208,7 @@ class _Writer:
         )
 
 
+@lru_cache(maxsize=256)  # those of a history are asked for at every step
 def settings_by_name(method: str, config: Any) -> dict[str, Any]:
     """The settings that are not the method's defaults, by the names of their flags; options in words."""
     defaults = METHODS[method].defaults

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from app.page.inputs_controller import InputsController
 from app.page.run_controller import RunController
 from app.page.tab import Tab
@@ -14,9 +16,14 @@ class UndoController:
     def __init__(self, tab: Tab, runs: RunController, inputs: InputsController) -> None:
         self._state, self._display, self._panels = tab.state, tab.display, tab.panels
         self._modes, self.history, self._runs, self._inputs = tab.modes, tab.history, runs, inputs
-        tab.history.changed = lambda: tab.panels.history.show(tab.history)
+        self.keep: Callable[[], None] = lambda: None  # is called after every change of the history
+        tab.history.changed = self._changed
         tab.events.on("step", self.step, by=int)
         tab.events.on("go", self.go, to=int)
+
+    def _changed(self) -> None:
+        self._panels.history.show(self.history)
+        self.keep()
 
     def step(self, by: int) -> None:
         """Undo (−1) or redo (1)."""

@@ -31,7 +31,7 @@ from app.model.fleet_state import FleetState
 from app.model.knowledge import CHOICES
 from app.model.merge_inputs import Files, MapSlot, MergeInputs, OtherFile, Upload
 from app.model.settings import settings_of, with_value
-from app.page.project import project_file
+from app.page.project import project_file, project_parts
 from app.page.project.project_file import project_from_bytes, project_name, project_to_bytes
 from app.page.undo.page_snapshot import PageSnapshot
 from app.page.undo.undo_history import SavedTab, UndoStep
@@ -242,6 +242,8 @@ BAD = {
     "what is known": (changed(put("inputs", 0, "known", value=["observer: 1"])), "observer is"),
     "robots of one name": (changed(put("inputs", 0, "names", value={"ref": "A", "mov": "A"})), "both robots"),
     "a number that is none": (changed(put("steps", 0, "hand", value={"x": "far"})), "$.steps[0].hand"),
+    "a place too far": (changed(put("steps", 0, "hand", value={"x": 1e300})), "no frame lies at 1e+300"),
+    "cells of nothing": (changed(put("steps", 0, "export", value={"resolution": 0})), "in cells of 0 m"),
     "a map's size": (changed(put("maps", 0, "text", value="image: a")), "resolution is missing"),
 }  # fmt: skip
 
@@ -258,7 +260,7 @@ def test_a_project_that_cannot_be_used_is_refused_in_one_line_that_names_it(case
 
 
 def test_a_history_that_is_too_large_is_left_out_and_a_page_that_is_too_large_is_told(monkeypatch):
-    monkeypatch.setattr(project_file, "MOST_DOCUMENT", len(unzipped(GOOD)["project.json"]) - 1)
+    monkeypatch.setattr(project_parts, "MOST_DOCUMENT", len(unzipped(GOOD)["project.json"]) - 1)
     opened = project_from_bytes("p", project_to_bytes(SAVED))
     assert [step.label for step in opened.steps] == ["merge"]
     monkeypatch.setattr(project_file, "MOST_UNPACKED", 100)
