@@ -35,6 +35,7 @@ from app.report.export_frame import ExportFrame
 from app.system.cancellation import Check, never_cancelled
 
 T = TypeVar("T")
+PGM = b"P5"  # how the images begin that are written here
 ANEW = "save the project anew"
 
 
@@ -112,6 +113,8 @@ class _Reader:
     def _map(self, part: parts.MapPart) -> GridMap:
         self._check()
         image = self._bytes(part.image)
+        if not image.startswith(PGM):  # others unpack to more than the zip does
+            raise self._wrong(f"names the file {part.image[:12]}… for the image of a map, which it is not")
         grid = map_from_bytes(f"{self._source}: a map", part.text.encode(), part.name, image)
         self._cells += grid.cells.size
         if self._cells > 2 * MOST_CELLS:

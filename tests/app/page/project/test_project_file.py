@@ -176,8 +176,11 @@ SAVED = SavedTab((UndoStep("load", START), UndoStep("merge", replace(START, goal
 GOOD = project_to_bytes(SAVED)
 
 
-def changed(change: Callable[[dict[str, Any]], object]) -> bytes:
-    """The good project with another document."""
+META = b"image: m.pgm"
+
+
+def changed(change: Callable[[dict[str, Any]], object], *more: bytes) -> bytes:
+    """The good project with another document, and with more files."""
 
     def packed(name: str, content: bytes) -> bytes:
         if name != "project.json":
@@ -186,7 +189,8 @@ def changed(change: Callable[[dict[str, Any]], object]) -> bytes:
         change(document)
         return json.dumps(document).encode()
 
-    return zipped({name: packed(name, content) for name, content in unzipped(GOOD).items()})
+    files = {f"files/{Upload('', each).digest}": each for each in more}
+    return zipped({name: packed(name, content) for name, content in unzipped(GOOD).items()} | files)
 
 
 def unzipped(content: bytes) -> dict[str, bytes]:
@@ -242,6 +246,10 @@ BAD = {
     "what is known": (changed(put("inputs", 0, "known", value=["observer: 1"])), "observer is"),
     "robots of one name": (changed(put("inputs", 0, "names", value={"ref": "A", "mov": "A"})), "both robots"),
     "a number that is none": (changed(put("steps", 0, "hand", value={"x": "far"})), "$.steps[0].hand"),
+    "another file for an image": (
+        changed(put("maps", 0, "image", value=Upload("m.yaml", META).digest), META),
+        "for the image of a map, which it is not",
+    ),
     "a place too far": (changed(put("steps", 0, "hand", value={"x": 1e300})), "no frame lies at 1e+300"),
     "cells of nothing": (changed(put("steps", 0, "export", value={"resolution": 0})), "in cells of 0 m"),
     "a map's size": (changed(put("maps", 0, "text", value="image: a")), "resolution is missing"),
