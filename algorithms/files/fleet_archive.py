@@ -25,13 +25,14 @@ ANEW = "make the zip anew"
 OF_A_SYSTEM = ("__MACOSX", ".")  # how names begin that nobody has packed by intent
 
 
-def files_of_zip(source: str, content: bytes, most: int = MOST_UNPACKED) -> dict[str, bytes]:
+def files_of_zip(source: str, content: bytes, most: int | None = None) -> dict[str, bytes]:
     """What a zip holds, by the paths in it. Nothing is ever written to one of them.
 
     source : what the zip is called before a person
-    most   : bytes that all of its files may have together
+    most   : bytes that all of its files may have together; MOST_UNPACKED unless given
     raises : InputFileError
     """
+    most = MOST_UNPACKED if most is None else most
     try:
         archive = zipfile.ZipFile(io.BytesIO(content))
     except BROKEN as error:

@@ -53,7 +53,8 @@ def entries(tab) -> list[str]:
     return tab.page.locator("button.mm-entry").evaluate_all(said)
 
 
-def test_everything_can_be_undone_and_done_again_and_a_reload_loses_nothing(tab):
+def test_everything_can_be_undone_and_done_again_and_a_reload_loses_nothing(open_tab):
+    tab = open_tab(smooth=True)
     tab.unfold("History")
     undo = tab.page.get_by_role("button", name="Undo")
     assert undo.is_disabled()

@@ -39,7 +39,8 @@ def test_the_sheet_lists_every_key_and_closes_again(tab):
     settle(sheet.is_visible, "the sheet, by its button")
 
 
-def test_files_and_folders_are_opened_by_keys_and_buttons_are_dark_in_the_dark(tab):
+def test_files_and_folders_are_opened_by_keys_and_buttons_are_dark_in_the_dark(open_tab):
+    tab = open_tab(smooth=True)
     keys, page = tab.page.keyboard, tab.page
     head, place = page.get_by_role("button", name="Names", exact=True), page.get_by_text("Robot 1 is called")
     settle(lambda: head.get_attribute("aria-expanded") == "false", "the head of the folder")
