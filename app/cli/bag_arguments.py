@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from contextlib import suppress
+from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 
@@ -18,8 +19,9 @@ from algorithms.maps.grid_map import GridMap
 from app.cli.argument_parser import Parser
 
 FRAMES = "map,base_link"
-BESIDES = ("observed_bag", "frames", "observed_frames", "image_topic", "camera_info_topic", "scan_topic")
-NEEDS_BAG = ("at", *BESIDES)
+KINDS = "give a .bag, .db3 or .mcap file, or the folder of a bag, with its metadata.yaml"
+TOPICS = ("image_topic", "camera_info_topic", "scan_topic")
+NEEDS_BAG = ("at", "observed_bag", "frames", "observed_frames", *TOPICS)
 
 
 def add_bags(parser: Parser) -> None:
@@ -29,18 +31,18 @@ def add_bags(parser: Parser) -> None:
         "Instead of --image, --camera, --scan and poses; each of these given beside counts more.",
     )
     about = "robot 1's recording: its camera, laser and transforms (.bag, .db3, .mcap, or a folder)"
-    group.add_argument("--bag", type=Path, metavar="BAG", help=about)
+    group.add_argument("--bag", metavar="BAG", help=about)
     about = "when robot 1 saw robot 2; seconds since the recording began, before its end, or since 1970"
     group.add_argument("--at", type=_time, metavar="TIME", help=about)
     about = "robot 2's recording, for its pose at that time (default: the same recording)"
-    group.add_argument("--observed-bag", type=Path, metavar="BAG", help=about)
+    group.add_argument("--observed-bag", metavar="BAG", help=about)
     about = f"frames of robot 1's map and of robot 1 (default: {FRAMES})"
     group.add_argument("--frames", type=_frames, metavar="MAP,BASE", help=about)
     about = f"frames of robot 2's map and of robot 2 (default: {FRAMES} of --observed-bag)"
     group.add_argument("--observed-frames", type=_frames, metavar="MAP,BASE", help=about)
-    for what in ("image", "camera-info", "scan"):
-        about = "its topic, where there are several"
-        group.add_argument(f"--{what}-topic", metavar="TOPIC", help=about)
+    for name in TOPICS:
+        about = "where there are several"
+        group.add_argument(f"--{name.replace('_', '-')}", metavar="TOPIC", help=about)
 
 
 def check_bags(args: argparse.Namespace) -> None:
@@ -64,14 +66,14 @@ def recorded_view(args: argparse.Namespace) -> SensorView:
     map_frame, base_frame = args.frames or tuple(FRAMES.split(","))
     choice = SensorChoice(
         args.image_topic or "",
-        args.camera_info_topic or "",
-        args.scan_topic or "",
+        None if args.camera or args.field_of_view_deg else args.camera_info_topic or "",
+        None if args.scan else args.scan_topic or "",
         None if args.camera_mounting is None else Pose2.from_array(args.camera_mounting),
         None if args.laser_mounting is None else Pose2.from_array(args.laser_mounting),
         map_frame,
         base_frame,
     )
-    with open_bag(_recording(args.bag)) as bag:
+    with open_bag(recording(args.bag).path) as bag:
         return sensor_view(bag, nanoseconds(args.at, bag.begin, bag.end), choice)
 
 
@@ -81,23 +83,23 @@ def recorded_place(args: argparse.Namespace, time: int) -> tuple[float, ...]:
     raises : InputFileError
     """
     map_frame, base_frame = args.observed_frames or tuple(FRAMES.split(","))
-    with open_bag(_recording(args.observed_bag or args.bag)) as bag:
+    with open_bag(recording(args.observed_bag or args.bag).path) as bag:
         return tuple(frames_around(bag, time).pose(map_frame, base_frame, time).array().tolist())
 
 
-def recorded_map(args: argparse.Namespace) -> GridMap | None:
-    """Robot 1's map at that time, where its recording holds one that needs no choice."""
-    with suppress(InputFileError):
-        return read_bag_map(BagPath(args.bag, time=args.at))
-    return None
+def recorded_map(args: argparse.Namespace) -> GridMap:
+    """Robot 1's map at that time; raises InputFileError where its recording holds none, or several."""
+    return read_bag_map(replace(recording(args.bag), time=args.at))
 
 
-def _recording(path: Path) -> Path:
-    found = bag_path(path)
-    if found is None or found.path != path:
-        what = "is no recording of ROS (a bag)" if path.exists() else "no such file"
-        raise InputFileError(path, what, "give a .bag, .db3 or .mcap file, or the folder of a bag")
-    return path
+def recording(text: str) -> BagPath:
+    """The recording that is named, with topic and time where they are; raises InputFileError."""
+    found = bag_path(text)
+    if found is None:
+        there = Path(text.partition("#")[0].partition("@")[0]).exists()
+        what = "is no recording of ROS (a bag)" if there else "no such file"
+        raise InputFileError(text, what, KINDS)
+    return found
 
 
 def _time(text: str) -> float:

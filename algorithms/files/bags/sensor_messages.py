@@ -23,7 +23,8 @@ from algorithms.files.scan_file import scan_from_bytes
 from algorithms.sensors.camera import Camera, check_image_size
 from algorithms.sensors.laser_scan import LaserScan
 
-LONGEST_WAIT = NANO // 2  # nanoseconds from the time that is asked for to a message
+LONGEST_WAIT = NANO // 2  # nanoseconds from the time that is asked for to an image
+LONGEST_OFF = NANO // 5  # nanoseconds from an image to the scan that is of the same moment
 MOST_TILT = 5.0  # degrees, of a camera or a laser on its robot
 
 # By encoding of ROS: bytes a pixel, and how OpenCV makes red, green, blue of them; None: they are that.
@@ -51,14 +52,15 @@ COLOURS: dict[str, tuple[int, int | None]] = {
 class SensorChoice:
     """Which sensors of a robot are asked for.
 
-    image, camera_info, scan : topics; an empty one is chosen where there is only one of its kind
+    image, camera_info, scan : topics; an empty one is chosen where there is only one of its kind; None: not
+                               wanted
     camera_mounting, laser_mounting : T_robot_camera, T_robot_laser where the recording does not say them
     map_frame, base_frame : of the robot's map, and of the robot
     """
 
     image: str = ""
-    camera_info: str = ""
-    scan: str = ""
+    camera_info: str | None = ""
+    scan: str | None = ""
     camera_mounting: Pose2 | None = None
     laser_mounting: Pose2 | None = None
     map_frame: str = "map"
@@ -91,20 +93,20 @@ def sensor_view(bag: BagReader, at: int, choice: SensorChoice) -> SensorView:
     raises : InputFileError
     """
     topic = _image_topic(bag, choice.image)
-    image = _nearest(bag, topic, at)
+    seen, image = _nearest(bag, topic, at, LONGEST_WAIT)
     name, time = f"{bag.path}#{topic.name}", stamp_of(image.header)
     frames = frames_around(bag, time)
     camera = scan = None
     info_topic = _camera_info_topic(bag, choice.camera_info, topic)
     if info_topic is not None:
-        info = _nearest(bag, info_topic, at)
+        info = _standing(bag, info_topic, seen)
         on_robot = choice.camera_mounting
         if on_robot is None:
             on_robot = _of_camera(bag, frames.transform(choice.base_frame, info.header.frame_id, time))
         camera = replace(camera_of(f"{bag.path}#{info_topic.name}", info), mounting=on_robot)
     scan_topic = _topic(bag, choice.scan, (SCAN,), "laser scans")
     if scan_topic is not None:
-        message = _nearest(bag, scan_topic, at)
+        _, message = _nearest(bag, scan_topic, seen, LONGEST_OFF)
         scan = scan_of(f"{bag.path}#{scan_topic.name}", message)
         if choice.laser_mounting is None:
             measured, frame = stamp_of(message.header), message.header.frame_id
@@ -128,16 +130,18 @@ def _image_topic(bag: BagReader, name: str) -> BagTopic:
     return topic
 
 
-def _camera_info_topic(bag: BagReader, name: str, image: BagTopic) -> BagTopic | None:
+def _camera_info_topic(bag: BagReader, name: str | None, image: BagTopic) -> BagTopic | None:
     """That beside the images, where there are several."""
     beside = f"{image.name.removesuffix('/compressed').rpartition('/')[0]}/camera_info"
-    if not name and any(topic.name == beside for topic in bag.of_type(CAMERA_INFO)):
+    if name == "" and any(topic.name == beside for topic in bag.of_type(CAMERA_INFO)):
         name = beside
     return _topic(bag, name, (CAMERA_INFO,), "calibrations of cameras")
 
 
-def _topic(bag: BagReader, name: str, types: tuple[str, ...], what: str) -> BagTopic | None:
-    """The topic of this name, or the only one of these types; None where there is none."""
+def _topic(bag: BagReader, name: str | None, types: tuple[str, ...], what: str) -> BagTopic | None:
+    """The topic of this name, or the only one of these types; None where there is none, or none is wanted."""
+    if name is None:
+        return None
     found = bag.of_type(*types)
     listed = ", ".join(topic.name for topic in found)
     if name:
@@ -150,20 +154,25 @@ def _topic(bag: BagReader, name: str, types: tuple[str, ...], what: str) -> BagT
     return found[0] if found else None
 
 
-def _nearest(bag: BagReader, topic: BagTopic, at: int) -> Any:
-    """The message nearest to a time."""
+def _nearest(bag: BagReader, topic: BagTopic, at: int, most: int) -> tuple[int, Any]:
+    """Time and message of the one nearest to a time, at most so far from it; nanoseconds."""
     found: tuple[int, Any] | None = None
-    for _, time, message in bag.messages([topic], at - LONGEST_WAIT, at + LONGEST_WAIT + 1):
+    for _, time, message in bag.messages([topic], at - most, at + most + 1):
         if found is None or abs(time - at) < abs(found[0] - at):
             found = time, message
     if found is not None:
-        return found[1]
+        return found
     before = bag.last(topic, at) or bag.first(topic)
     hint = "" if before is None else f"; one is at {bag.seconds(before[0]):.2f} s"
-    when = f"{bag.seconds(at):.2f} s after the recording began"
-    raise InputFileError(
-        bag.path, f"has nothing on {topic.name} within half a second of {when}{hint}", "ask for another time"
-    )
+    when = f"within {most / NANO:g} s of {bag.seconds(at):.2f} s after the recording began"
+    raise InputFileError(bag.path, f"has nothing on {topic.name} {when}{hint}", "ask for another time")
+
+
+def _standing(bag: BagReader, topic: BagTopic, at: int) -> Any:
+    """The message that holds at a time, of a topic on which they hold until the next: of a calibration."""
+    found = bag.last(topic, at) or bag.first(topic)
+    assert found is not None, "a topic that is chosen has a message"
+    return found[1]
 
 
 def picture_of(name: str, message: Any) -> PictureArray:

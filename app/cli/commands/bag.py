@@ -9,12 +9,11 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from algorithms.common.display_text import show_hidden
-from algorithms.common.errors import InputFileError
-from algorithms.files.bags.bag_path import BagPath, bag_path
 from algorithms.files.bags.bag_summary import BagSummary, TopicSummary, read_summary
 from algorithms.files.bags.map_messages import read_bag_map
 from algorithms.files.map_file import write_map
 from app.cli.argument_parser import Parser
+from app.cli.bag_arguments import recording
 
 USAGE = "info BAG [--json] | map BAG[#/topic][@TIME] --out FILE"
 DESCRIPTION = """\
@@ -31,7 +30,6 @@ Wherever mapmeld takes a map, it takes BAG[#/topic][@TIME] as well. TIME is in s
 began, before its end where negative, or since 1970 (what is 100,000,000 or more)."""
 
 INFO, MAP = "info", "map"
-KINDS = "give a .bag, .db3 or .mcap file, or the folder of a bag, with its metadata.yaml"
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
@@ -49,7 +47,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         parser.error("--out is missing: the YAML file to write")
     if args.what == INFO and args.out is not None:
         parser.error("--out is given, and info writes nothing; leave it out")
-    asked = _bag(args.bag)
+    asked = recording(args.bag)
     if args.what == MAP:
         grid = read_bag_map(asked)
         write_map(args.out, grid)
@@ -63,20 +61,6 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     summary = read_summary(asked.path)
     print(json.dumps(_as_data(summary), indent=2) if args.json else "\n".join(_lines(asked.path, summary)))
     return 0
-
-
-def _bag(text: str) -> BagPath:
-    """The recording that is named; raises InputFileError."""
-    found = bag_path(text)
-    if found is None:
-        path = Path(text.partition("#")[0].partition("@")[0])
-        if not path.exists():
-            raise InputFileError(
-                text, "no such file", "give a .bag, .db3 or .mcap file, or the folder of a bag"
-            )
-        remedy = "give a .bag, .db3 or .mcap file, or the folder that holds metadata.yaml of a bag"
-        raise InputFileError(text, "is no recording of ROS (a bag)", remedy)
-    return found
 
 
 def _as_data(summary: BagSummary) -> dict[str, object]:

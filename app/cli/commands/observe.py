@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -150,11 +151,17 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
 
 
 def _map_of(args: argparse.Namespace) -> GridMap | None:
-    """Robot 1's map, where it is named or lies in the folder or recording."""
+    """Robot 1's map, where it is named or lies in the folder or recording; if not in that, this is said."""
     file = args.map or _map_beside(args.table)
-    if file is None and args.bag is not None:
+    if file is not None:
+        return read_map(file)
+    if args.bag is None:
+        return None
+    try:
         return recorded_map(args)
-    return None if file is None else read_map(file)
+    except InputFileError as error:
+        print(f"mapmeld: without robot 1's map ({error})", file=sys.stderr)
+        return None
 
 
 def _encounters(args: argparse.Namespace, parser: Parser) -> list[_Encounter]:
@@ -223,7 +230,7 @@ def _look(
     if at.scan is not None:
         scan = scan_of(args, at.scan)
     if scan is None:
-        if not (args.tags and args.tag_size):
+        if told is not None and not (args.tags and args.tag_size):
             raise InputFileError(args.bag, "holds no laser scan", "record one, or give --scan FILE")
         seen, view = sight_by_tags(found, camera, body, pick), None
     else:

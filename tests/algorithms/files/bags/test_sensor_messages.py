@@ -168,7 +168,7 @@ def test_an_image_that_is_none_is_refused(tmp_path, message, found):
 
 
 def test_a_moment_without_an_image_names_the_nearest_and_two_cameras_ask_for_a_choice(tmp_path):
-    with pytest.raises(InputFileError, match=r"within half a second of 25\.00 s .* one is at 20\.00 s"):
+    with pytest.raises(InputFileError, match=r"within 0\.5 s of 25\.00 s .* one is at 20\.00 s"):
         view(tmp_path, messages(), at=25.0)
     (tmp_path / "two").mkdir()
     told = [*messages(), image_message(PICTURE, AT, "/back/image_raw")]
@@ -177,6 +177,25 @@ def test_a_moment_without_an_image_names_the_nearest_and_two_cameras_ask_for_a_c
     (tmp_path / "chosen").mkdir()
     chosen = view(tmp_path / "chosen", told, SensorChoice(image="camera/image_raw"))
     assert np.array_equal(chosen.picture, PICTURE)
+
+
+def test_a_calibration_that_was_sent_once_holds_and_a_scan_of_another_moment_does_not(tmp_path):
+    image, info, scan = messages()[-3:]
+    frames = messages()[:-3]
+    once = replace(info, at=0.0)
+    assert view(tmp_path, [*frames, image, once, scan]).camera.focal == CAMERA.focal
+    (tmp_path / "late").mkdir()
+    late = [*frames, image, info, replace(scan, at=AT + 0.3)]
+    with pytest.raises(InputFileError, match=r"/scan within 0\.2 s of 20\.00 s .* one is at 20\.30 s"):
+        view(tmp_path / "late", late)
+    (tmp_path / "without").mkdir()
+    assert view(tmp_path / "without", late, SensorChoice(scan=None)).scan is None
+
+
+def test_the_scan_is_the_one_nearest_to_the_image_and_not_to_the_time_that_is_asked_for(tmp_path):
+    other = replace(SCAN, ranges=SCAN.ranges + 1)
+    told = [*messages(), scan_message(other, AT + 0.3)]
+    assert np.allclose(view(tmp_path, told, at=AT + 0.4).scan.ranges, SCAN.ranges, atol=1e-5)
 
 
 def test_the_calibration_beside_the_images_is_taken(tmp_path):

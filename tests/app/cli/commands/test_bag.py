@@ -122,7 +122,7 @@ def test_a_sighting_comes_out_of_two_recordings(recordings, tmp_path, capsys):
     assert pose_error(made.observer, OBSERVER, np.zeros(2)) == pytest.approx((0, 0), abs=1e-6)
     assert (made.observed_x, made.observed_y) == pytest.approx((OBSERVED.x, OBSERVED.y), abs=1e-6)
     assert (tmp_path / "seen.png").exists()
-    capsys.readouterr()
+    assert "without robot 1's map" in capsys.readouterr().err  # none was recorded
     for more, found in (
         ([], "where robot 2 was is missing"),
         (["--observed-bag", str(second), "--frames", "map,base"], "no frame base"),
