@@ -8,7 +8,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-import viser
 from panels import FilesDesk
 from PIL import Image
 
@@ -67,13 +66,6 @@ class Person:
 @pytest.fixture
 def person():
     return Person()
-
-
-@pytest.fixture(scope="module")
-def server():
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    yield server
-    server.stop()
 
 
 @pytest.mark.parametrize("kind", ["pgm", "ppm", "png", "bmp"])

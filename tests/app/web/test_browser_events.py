@@ -8,7 +8,6 @@ from threading import Event
 from types import SimpleNamespace
 
 import pytest
-import viser
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -16,13 +15,6 @@ from app.web.browser_events import LONGEST, MOST_WAITING, BrowserEvents, Numbers
 from app.web.security.message_filter import acceptable, usable
 
 PATIENCE = 20
-
-
-@pytest.fixture(scope="module")
-def server():
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    yield server
-    server.stop()
 
 
 @pytest.fixture

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from unittest.mock import Mock
 
 import pytest
-import viser
 from controls import Controls
 from tabs import noting_tab
 
@@ -27,10 +25,8 @@ REF, MOV = "Robot 1 is called", "Robot 2 is called"
 
 
 @pytest.fixture
-def gui() -> Iterator[Controls]:
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    yield Controls(server.gui)
-    server.stop()
+def gui(server) -> Controls:
+    return Controls(server.gui)
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from math import atan2
 from types import SimpleNamespace
@@ -10,7 +9,6 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
-import viser
 from controls import Controls
 from tabs import event, noting_tab
 
@@ -32,10 +30,8 @@ from app.web.cell_quota import CellQuota
 
 
 @pytest.fixture
-def gui() -> Iterator[Controls]:
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    yield Controls(server.gui)
-    server.stop()
+def gui(server) -> Controls:
+    return Controls(server.gui)
 
 
 class Panel(SimpleNamespace):

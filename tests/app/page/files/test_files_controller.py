@@ -26,13 +26,6 @@ from app.page.page_state import PageState
 SEEN = Observation(Pose2(2.0, 2.0, 0.0), 3.0, 2.0, 1.0, 0.0)
 
 
-@pytest.fixture(scope="module")
-def server():
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    yield server
-    server.stop()
-
-
 @pytest.fixture
 def desk(server):
     return FilesDesk(server.gui)

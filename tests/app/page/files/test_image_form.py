@@ -6,7 +6,6 @@ from math import degrees
 
 import numpy as np
 import pytest
-import viser
 from hypothesis import given
 from hypothesis import strategies as st
 from mapfiles import image_map_from_bytes
@@ -30,13 +29,6 @@ names = st.text(st.characters(categories=("L", "N", "P", "S", "Zs")), min_size=1
 shadings = st.builds(
     Shading, st.booleans(), st.floats(0.5, 1.0), st.floats(0.0, 0.49), st.sampled_from(MODES)
 )
-
-
-@pytest.fixture(scope="module")
-def server():
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    yield server
-    server.stop()
 
 
 @pytest.fixture

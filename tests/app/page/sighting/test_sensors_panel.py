@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import pi, radians
 
 import pytest
-import viser
 from controls import Controls
 
 from algorithms.common.pose import Pose2
@@ -16,13 +15,6 @@ from app.model.sighting.look_settings import LookSettings
 from app.page.sighting.sensors_panel import FINDERS, SensorsPanel, files_html, where_html
 
 STOOD = ObservationDraft(Pose2(-28.07, -53.8, pi / 6), observed=(42.4, -39.2))
-
-
-@pytest.fixture(scope="module")
-def server():
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    yield server
-    server.stop()
 
 
 @pytest.fixture

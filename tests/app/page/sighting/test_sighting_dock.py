@@ -16,13 +16,6 @@ FOUND = SightingPage(
 )
 
 
-@pytest.fixture(scope="module")
-def server():
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    yield server
-    server.stop()
-
-
 class Dock:
     """With what is pressed in it."""
 

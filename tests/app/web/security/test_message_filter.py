@@ -7,7 +7,6 @@ from types import SimpleNamespace
 
 import msgspec
 import pytest
-import viser
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -103,10 +102,8 @@ def test_what_is_no_number_is_taken_for_none_of_a_slider(value):
 
 
 @pytest.fixture(scope="module")
-def gui():
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    yield server.gui
-    server.stop()
+def gui(server):
+    return server.gui
 
 
 def test_what_a_person_cannot_see_or_press_is_not_usable_wherever_that_is_said(gui):
