@@ -159,7 +159,6 @@ EXERCISED_BY = {
         "algorithms.verdict.ranking",
     },
     "app/cli/commands/test_merge.py": {
-        "app.cli.project_argument",
         "app.cli.output_arguments",
         "app.system.data_paths",
         "app.system.hardware",

@@ -14,23 +14,14 @@ from PIL import Image
 
 from algorithms.common.errors import NoAnswerError
 from algorithms.common.pose import Pose2
-from algorithms.common.robot_names import WORDS, RobotNames
+from algorithms.common.robot_names import WORDS
 from algorithms.files.case_folder import read_case
 from algorithms.files.map_file import read_map
 from algorithms.files.observation_file import write_observations
 from algorithms.maps.grid_map import FREE, OCCUPIED
 from algorithms.methods import registry as methods
-from algorithms.methods.merge_result import BY_HAND
 from algorithms.methods.registry import METHODS
-from algorithms.observations.fleet import Fleet
 from app.cli.main import main
-from app.model.fleet_state import FleetState
-from app.model.merge_inputs import Files, MergeInputs
-from app.model.settings import with_value
-from app.page.project.project_file import project_to_bytes, read_project
-from app.page.undo.page_snapshot import PageSnapshot
-from app.page.undo.undo_history import SavedTab, UndoStep
-from app.report.export_frame import ExportFrame
 
 ALWAYS = {"overlay.png", "report.html", "report.json"}
 ALL_FILES = {"merged.yaml", "merged.pgm", "transform.yaml"} | ALWAYS
@@ -444,69 +435,3 @@ def test_with_a_date_that_is_set_two_merges_leave_the_same_page_but_for_the_time
         pages.append(re.sub(r"<td>\d+ ms</td>", "", (folder / "report.html").read_text("utf-8")))
         assert json.loads((folder / "report.json").read_text())["made"] == "2023-11-14T22:13:20Z"
     assert pages[0] == pages[1]
-
-
-@pytest.fixture
-def project(small_case, tmp_path):
-    """A project of the pair, with settings, names and a frame of its own."""
-    inputs = replace(MergeInputs.of(small_case), names=RobotNames("Bob", "Alice"))
-    config = with_value(METHODS["spectra-swarm"].defaults, ("augment", "spread"), 4.5)
-    page = PageSnapshot(inputs, Files(), "spectra-swarm", config, 7, export=ExportFrame("mov"))
-    saved = SavedTab((UndoStep("load", page), UndoStep("seed", replace(page, seed=8))), 0)
-    path = tmp_path / "flat.mapmeld"
-    path.write_bytes(project_to_bytes(saved))
-    return path
-
-
-def merged(project, *words):
-    """What the report says, and which settings are no defaults."""
-    main(["merge", str(project), "--out", str(project.parent / "out"), *words])
-    report = json.loads((project.parent / "out" / "report.json").read_text())
-    return report, {name: pair["value"] for name, pair in report["changed_settings"].items()}
-
-
-def test_a_project_is_merged_as_it_was_left_and_what_is_given_beside_it_counts_more(project, small_case):
-    report, settings = merged(project)
-    config = with_value(METHODS["spectra-swarm"].defaults, ("augment", "spread"), 4.5)
-    pair = small_case.ref, small_case.mov, small_case.observations
-    *_, last = methods.run("spectra-swarm", *pair, config, 7)
-    assert report["T_ref_mov"] == pytest.approx(vars(last.detail.T_ref_mov))
-    assert (report["method"], report["seed"]) == ("spectra-swarm", 7)
-    assert settings == {"augment.spread": 4.5}
-    assert report["inputs"] == {"project": str(project), "robot1": "Bob", "robot2": "Alice"}
-    assert report["merged_map"]["frame"] == "alice/map"
-
-    words = "--seed 1 --swarm.particles 50 --names A B --frame ref"
-    report, settings = merged(project, *words.split())
-    assert report["seed"] == 1
-    assert settings == {"augment.spread": 4.5, "swarm.particles": 50}
-    assert report["inputs"]["robot1"] == "A"
-    assert merged(project, "--method", "spectra-proven")[1] == {}
-
-
-def test_an_answer_taken_by_hand_in_a_project_is_taken(project, capsys):
-    saved = read_project(project)
-    page = replace(saved.steps[0].snapshot, hand=Pose2(1.0, 2.0, 0.5), taken=BY_HAND)
-    project.write_bytes(project_to_bytes(SavedTab((UndoStep("take it by hand", page),))))
-    assert main(["merge", str(project), "--out", str(project.parent / "out")]) == 0
-    assert "x 1.000 m, y 2.000 m" in capsys.readouterr().out
-
-
-def test_a_project_that_cannot_be_merged_is_told_in_one_line(project, capsys):
-    words = ["merge", str(project), "--out", str(project.parent / "out")]
-    for command in (["merge", project, project, "--out", "x"], ["serve", project, project]):
-        assert usage_error(*command) == 2
-        assert "give it alone" in capsys.readouterr().err
-    page = read_project(project).steps[0].snapshot
-    unknown = {"inputs": page.inputs.knowing((), "sighting")}
-    fleet = Fleet({"a": page.inputs.ref, "b": page.inputs.mov})
-    for change, told in (
-        (unknown, "cannot be merged yet; open it with mapmeld serve. Place"),
-        ({"inputs": MergeInputs(), "fleet": FleetState(fleet)}, "shows a fleet; open it with mapmeld serve"),
-    ):
-        project.write_bytes(project_to_bytes(SavedTab((UndoStep("load", replace(page, **change)),))))
-        assert main(words) == 2
-        assert told in capsys.readouterr().err
-    project.write_bytes(b"hello")
-    assert main(words) == 2
-    assert "is no zip" in capsys.readouterr().err
