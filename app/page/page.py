@@ -100,6 +100,7 @@ class Page:
         FilesController(tab, inputs.load, fleet, seeing.sensors.take, projects)
         museum = MuseumController(tab, undo, runs, inputs, fleet.merge_fleet)
         panels.run.connect_learn(teaching.toggle, museum.toggle)
+        self._seeing = seeing
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
         self._sweep = SweepController(state, panels.sweep, messages, events, runs, deliver)
         research = self._comparison, self._sweep
@@ -147,6 +148,7 @@ class Page:
             with state.locks.drawing:
                 self._comparison.resume(saved.comparison)
                 self._sweep.resume(saved.sweep)
+                self._seeing.resume(saved.sighting)
 
     def close(self) -> None:
         """The tab is gone; what it leaves behind is kept for a while."""
@@ -166,7 +168,8 @@ class Page:
     def _saved(self) -> SavedTab:
         history, run = self._tab.history, self._tab.panels.run
         found, swept = self._comparison.found, self._sweep.swept
-        return SavedTab(history.steps, history.position, run.dark, run.speed, found, swept)
+        left = self._seeing.left
+        return SavedTab(history.steps, history.position, run.dark, run.speed, found, swept, left)
 
     def _keep(self) -> None:
         """What was done is to outlive the server, if it keeps anything."""
