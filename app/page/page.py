@@ -24,7 +24,7 @@ from app.page.fleet.fleet_controller import FleetController
 from app.page.inputs_controller import InputsController
 from app.page.lesson.lesson_controller import LessonController
 from app.page.lesson.lesson_texts import lesson_folder
-from app.page.lesson.museum_controller import MuseumController
+from app.page.lesson.museum.museum_controller import MuseumController
 from app.page.modes import ModeSwitch
 from app.page.notices import Notices
 from app.page.page_display import PageDisplay
