@@ -77,6 +77,14 @@ class LessonController:
             self._work.begin()
             self.go(min(self._index, len(self._files) - 1))
 
+    def open_at(self, number: int) -> None:
+        """Open the step that is counted as this number, or the one that is nearest to it."""
+        with self._locks.action:
+            self.enter()
+            if self.open:
+                index = number - first_number(self._files)
+                self.go(min(max(index, 0), len(self._files) - 1))
+
     def leave(self) -> None:
         """Put everything back as it was."""
         with self._locks.action:

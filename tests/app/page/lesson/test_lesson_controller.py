@@ -91,6 +91,13 @@ def test_it_goes_from_step_to_step_and_no_further_and_comes_back_to_where_it_was
     assert step(tab) == (1, "Two")
 
 
+def test_it_opens_at_the_step_of_a_number_or_at_the_nearest(lesson, tab):
+    for number, index in ((2, 1), (-7, 0), (10**6, 2)):
+        lesson.open_at(number)
+        assert lesson.open
+        assert lesson._index == index
+
+
 def test_a_broken_text_is_named_and_the_others_are_shown(lesson, tab):
     lesson.enter()
     lesson.go(2)
