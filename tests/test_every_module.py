@@ -248,6 +248,9 @@ EXERCISED_BY = {
     "app/page/lesson/figures/test_chain_figure.py": {
         "app.page.lesson.chain_runs",
     },
+    "app/page/lesson/test_handout.py": {
+        "app.page.lesson.whole_lesson",
+    },
     "app/page/lesson/test_lesson_controller.py": {
         "app.page.lesson.lesson_work",
     },

@@ -70,6 +70,11 @@ class StepText:
     body: str
     notes: str = ""
 
+    @property
+    def parts(self) -> int:
+        """How many parts of the picture have words of their own; at least 1."""
+        return len(PART.split(self.body))
+
     def words(self, part: int) -> str:
         """What stands beside a part of the picture, from 0."""
         words = PART.split(self.body)
