@@ -24,7 +24,8 @@ from app.page.fleet.fleet_controller import FleetController
 from app.page.inputs_controller import InputsController
 from app.page.lesson.lesson_controller import LessonController
 from app.page.lesson.lesson_texts import lesson_folder
-from app.page.lesson.museum_controller import MuseumController
+from app.page.lesson.link_controller import LinkController
+from app.page.lesson.museum.museum_controller import MuseumController
 from app.page.modes import ModeSwitch
 from app.page.notices import Notices
 from app.page.page_display import PageDisplay
@@ -97,7 +98,8 @@ class Page:
         deliver = DownloadTask(client, panels.task)
         fleet = FleetController(tab, runs, inputs, quota, deliver, robots.begin)
         projects = ProjectController(tab, undo, deliver)
-        FilesController(tab, inputs.load, fleet, seeing.sensors.take, projects)
+        files = FilesController(tab, inputs.load, fleet, seeing.sensors.take, projects)
+        LinkController(tab, teaching, files.take_sample)
         museum = MuseumController(tab, undo, runs, inputs, fleet.merge_fleet)
         panels.run.connect_learn(teaching.toggle, museum.toggle)
         self._seeing = seeing
