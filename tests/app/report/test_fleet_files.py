@@ -161,7 +161,7 @@ def test_whatever_robots_are_called_their_transforms_read_back_and_a_shell_runs_
     for name, robot in told["merged"]["robots"].items():
         words = shlex.split(robot["publish"])
         assert len(words) == 14
-        assert words[-3::2] == [frames[names[0]], frames[name]]
+        assert words[-3::2] == ["map" if name == names[0] else frames[names[0]], frames[name]]
 
 
 def test_a_warning_names_the_robot_whose_map_is_odd_and_who_is_alone_is_said_to_be(tmp_path, capsys):
