@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Collection, Mapping
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,6 +31,13 @@ GRAPH_FILE = "graph.g2o"
 def island_name(number: int) -> str:
     """What the map of an island is called, by its number from 1: the anchor's is the merged one."""
     return MERGED if number == 1 else f"{MERGED}_island{number}"
+
+
+def remove_other_islands(folder: Path, stems: Collection[str]) -> None:
+    """Take away maps of islands that an earlier merge left in a folder and that are not among ``stems``."""
+    for path in folder.glob(f"{MERGED}_island*"):
+        if path.stem not in stems and re.fullmatch(rf"{MERGED}_island\d+\.(yaml|pgm)", path.name):
+            path.unlink(missing_ok=True)
 
 
 def exported_maps(result: FleetResult, frame: ExportFrame = AS_MERGED) -> dict[str, ExportedMap]:
