@@ -20,7 +20,7 @@ ROWS = (
     ("app",),  # __main__
     ("app.cli",),
     ("app.page",),
-    ("app.evaluation",),
+    ("app.evaluation", "app.live"),
     ("app.report",),
     ("app.web", "app.jobs"),
     ("app.drawing",),
@@ -241,6 +241,7 @@ def test_each_library_is_known_in_its_own_place():
         "sklearn": ("algorithms.detection.svm_training",),
         "distributed": ("app.jobs.dask_executor",),
         "dask": ("app.jobs.dask_executor",),
+        "cyclonedds": ("app.live",),
     }
     for library, allowed in places.items():
         assert {module for module in importers(library) if not module.startswith(allowed)} == set(), library

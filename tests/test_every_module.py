@@ -14,6 +14,15 @@ from repository import ROOT
 
 # test file below tests/ -> what it exercises beside the module that it is named after
 EXERCISED_BY = {
+    "app/live/test_dds_link.py": {
+        "algorithms.files.bags.message_writing",
+        "app.live.dds_types",
+        "app.live.message_fields",
+        "app.live.ros_link",
+    },
+    "app/live/test_map_source.py": {
+        "app.live.live_frames",
+    },
     "algorithms/files/bags/test_map_messages.py": {
         "algorithms.files.bags.message_types",
     },
