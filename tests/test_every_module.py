@@ -20,6 +20,10 @@ EXERCISED_BY = {
         "app.live.message_fields",
         "app.live.ros_link",
     },
+    "algorithms/fleets/test_living_merge.py": {
+        "algorithms.fleets.live_answer",
+        "algorithms.fleets.live_sightings",
+    },
     "app/live/test_map_source.py": {
         "app.live.live_frames",
     },

@@ -1,70 +1,39 @@
 """A merge that goes on while the robots' maps grow: what stands is held against every newer map, and what no
 longer stands is taken back.
 
-Nothing here waits: pairs are searched by whoever ``PairSearch`` gives them to, on the maps of that moment, and
-what is found is held against the newest ones before anything rests on it.
+Nothing here waits: pairs are searched by whoever ``PairSearch`` gives them to, on the maps of that moment,
+and what is found is held against the newest ones before anything rests on it.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import degrees
 from typing import Protocol
 
 import numpy as np
 
 from algorithms.common.errors import SettingError
-from algorithms.common.pose import FloatArray, Pose2, pose_error
+from algorithms.common.pose import Pose2, pose_error
 from algorithms.fleets.fleet_merge import FleetResult, joined
+from algorithms.fleets.live_answer import CORRECTED, RESTARTED, LiveAnswer, LiveEvent, changes
+from algorithms.fleets.live_sightings import LiveSightings
 from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, known_of, pair_orders
 from algorithms.fleets.pair_recheck import correction_between, denied_share, recheck
 from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import Fleet, FleetPrior, FleetSighting
-from algorithms.observations.observation import Observation
 from algorithms.observations.pair_problem import Known
 
 MOST_OFTEN = 1.0  # seconds between two maps of one robot that are looked at
 GROWN = 1.15  # times as many known cells: from then on a pair that was not accepted is searched again
-MOST_SEEN = 12  # sightings of one robot by another that are kept, the newest
 CORRECTED_FROM = 0.03  # share of a map's walls that the next one denies: SLAM may have moved them
 ANOTHER_FROM = (
     0.1  # of walls that are denied however the map is moved: nothing of the last one can be relied on
 )
 SHRUNK = 0.5  # of the known cells: a map that has fewer, and is another, was begun anew
-MOVED, TURNED = 0.3, 0.02  # metres, radians (1.1°); by so much a robot's map moves without a word
-
-PLACED, WITHDRAWN, CORRECTED, RESTARTED, SHIFTED = "placed", "withdrawn", "corrected", "restarted", "moved"
 UNSEARCHED = PairFinding(PairOrder("", "", ()), np.zeros(2), (), "it is still being searched")
 Key = tuple[str, str, tuple[Known, ...]]
-
-
-@dataclass(frozen=True)
-class LiveEvent:
-    """What a person should know: kind is one of those above."""
-
-    robot: str
-    kind: str
-    said: str
-
-
-@dataclass(frozen=True, eq=False)
-class LiveAnswer:
-    """What stands now.
-
-    fleet, result : of the robots that have a map; None before there are two, the anchor one of them
-    events : since the answer before
-    """
-
-    fleet: Fleet | None
-    result: FleetResult | None
-    events: tuple[LiveEvent, ...]
-
-    @property
-    def placed(self) -> Mapping[str, Pose2]:
-        """T_anchor_robot of every robot that is placed, the anchor's included."""
-        return {} if self.result is None else self.result.placed
 
 
 class PairSearch(Protocol):
@@ -93,7 +62,7 @@ class LivingMerge:
     ) -> None:
         self.names, self.anchor = tuple(names), anchor or names[0]
         self._search, self._priors = search, tuple(known)
-        self._sightings = list(sightings)
+        self._sightings = LiveSightings(sightings)
         self._maps: dict[str, GridMap] = {}
         self._waiting: dict[str, GridMap] = {}
         self._looked: dict[str, float] = {}
@@ -102,7 +71,7 @@ class LivingMerge:
         self._tried: dict[Key, int] = {}
         self._searched: tuple[Fleet, Mapping[str, int]] | None = None
         self._frames = dict.fromkeys(names, 0)  # how often each robot's frame has become another
-        self._placed: Mapping[str, Pose2] = {}
+        self._last = LiveAnswer(None, None, ())
         self._events: list[LiveEvent] = []
         self._changed = False
 
@@ -117,20 +86,13 @@ class LivingMerge:
         for name in (sighting.observer, sighting.observed):
             if name not in self.names:
                 raise SettingError(f"a sighting names {name!r}, which is no robot; there are {self.names}")
-        pair = sighting.observer, sighting.observed
-        same = [each for each in self._sightings if (each.observer, each.observed) == pair]
-        if sighting in same:
-            return
-        for old in same[: max(0, len(same) + 1 - MOST_SEEN)]:
-            self._sightings.remove(old)
-        self._sightings.append(sighting)
-        self._changed = True
+        self._changed |= self._sightings.add(sighting)
 
     def restart(self, name: str, said: str = "its SLAM has begun anew") -> None:
         """A robot's frame is another from now on: nothing that was known of it holds."""
         self._maps.pop(name, None)
         self._drop(name)
-        self._sightings = [each for each in self._sightings if name not in (each.observer, each.observed)]
+        self._sightings.forget(name)
         self._events.append(LiveEvent(name, RESTARTED, f"{said}; what was known of it is given up"))
         self._changed = True
 
@@ -149,7 +111,7 @@ class LivingMerge:
         if self.anchor not in self._maps or len(self._maps) < 2:
             return self._told(None, None)
         maps = {name: self._maps[name] for name in self.names if name in self._maps}
-        seen = _one_way([each for each in self._sightings if {each.observer, each.observed} <= set(maps)])
+        seen = self._sightings.among(maps)
         priors = tuple(each for each in self._priors if {each.ref, each.mov} <= set(maps))
         fleet = Fleet(maps, seen, priors, self.anchor)
         orders = pair_orders(fleet)
@@ -176,7 +138,7 @@ class LivingMerge:
         T = correction_between(old, grid)
         if T is not None:
             self._frames[name] += 1
-            self._sightings = [_moved(each, name, T) for each in self._sightings]
+            self._sightings.move(name, T)
             for (ref, mov), answers in self._answers.items():
                 if name == mov:
                     self._answers[ref, mov] = tuple(each @ T.inverse() for each in answers)
@@ -240,7 +202,7 @@ class LivingMerge:
         for order, key in zip(orders, keys, strict=True):
             cells = sum(_known_cells(fleet.maps[name]) for name in (order.ref, order.mov))
             if key not in self._tried or (
-                not self._found[key].accepted and cells >= GROWN * self._tried[key]
+                not self._found[key].accepted and cells >= GROWN * self._tried.get(key, 0)
             ):
                 self._tried[key] = cells
                 wanted.append(order)
@@ -250,65 +212,15 @@ class LivingMerge:
 
     def _told(self, fleet: Fleet | None, result: FleetResult | None) -> LiveAnswer:
         """The answer, with what has changed since the last one."""
-        placed = {} if result is None else dict(result.placed)
-        for name, T in self._placed.items():
-            if name not in placed:
-                self._events.append(LiveEvent(name, WITHDRAWN, _why(name, result)))
-            elif fleet is not None:
-                metres, turn = pose_error(T, placed[name], _middle(fleet.maps[name]))
-                if metres > MOVED or turn > TURNED:
-                    said = f"its map moves by {metres:.2f} m and {degrees(turn):.1f}°"
-                    self._events.append(LiveEvent(name, SHIFTED, said))
-        for name in placed:
-            if name not in self._placed and name != self.anchor and result is not None:
-                likely = result.islands[0].probability[name]
-                self._events.append(LiveEvent(name, PLACED, f"its place is {likely:.1%} likely"))
-        self._placed = placed
-        events, self._events = tuple(self._events), []
-        return LiveAnswer(fleet, result, events)
+        answer = LiveAnswer(fleet, result, ())
+        answer = replace(answer, events=(*self._events, *changes(self._last, answer)))
+        self._events, self._last = [], answer
+        return answer
 
 
 def _key(fleet: Fleet, order: PairOrder) -> Key:
     return order.ref, order.mov, known_of(fleet, order)
 
 
-def _one_way(sightings: Sequence[FleetSighting]) -> tuple[FleetSighting, ...]:
-    """Those of every two robots that go the way that most of them go, on a tie that of the first.
-
-    Merged both ways, one pair of maps would weigh the same walls twice, and be twice as sure.
-    """
-    count = Counter((each.observer, each.observed) for each in sightings)  # in order of the first of each
-    ways: dict[frozenset[str], tuple[str, str]] = {}
-    for pair, _ in count.most_common():
-        ways.setdefault(frozenset(pair), pair)
-    return tuple(each for each in sightings if (each.observer, each.observed) in ways.values())
-
-
 def _known_cells(grid: GridMap) -> int:
     return int(np.count_nonzero(grid.cells >= 0))
-
-
-def _middle(grid: GridMap) -> FloatArray:
-    return grid.corners().mean(axis=0)
-
-
-def _why(name: str, result: FleetResult | None) -> str:
-    """Why a robot is no longer placed."""
-    if result is None:
-        return "the anchor has no map"
-    if name in result.refused:
-        return result.refused[name]
-    reasons = [f.said for f in result.findings if name in (f.order.ref, f.order.mov) and not f.accepted]
-    return reasons[0] if reasons else "nothing ties it to the anchor any more"
-
-
-def _moved(seen: FleetSighting, name: str, T: Pose2) -> FleetSighting:
-    """A sighting in the frame that a robot has after a correction, T_new_old."""
-    o: Observation = seen.observation
-    if seen.observer == name:
-        o = replace(o, observer=T @ o.observer)
-    if seen.observed == name:
-        x, y = T.apply(np.array([o.observed_x, o.observed_y])).tolist()
-        heading = None if o.observed_heading is None else o.observed_heading + T.theta
-        o = replace(o, observed_x=x, observed_y=y, observed_heading=heading)
-    return replace(seen, observation=o)

@@ -71,8 +71,8 @@ class Exploration:
         """T_map_robot, as it believes."""
         return _pose(self._believed(name, scan), self.done(name, scan) - 1)
 
-    def T_anchor_robot(self, name: str, scan: int) -> Pose2:
-        """Where the frame of its map truly lies in the anchor's, as corrected by then."""
+    def true_transform(self, name: str, scan: int) -> Pose2:
+        """T_anchor_robot: where the frame of its map truly lies in the anchor's, as corrected by then."""
         anchor = self.made.fleet.anchor
         T = self._turn(anchor, scan) @ self.made.T_anchor_robot[name]
         return T @ self._turn(name, scan).inverse()

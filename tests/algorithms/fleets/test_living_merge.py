@@ -10,15 +10,9 @@ from explorers import SearchNow, exploration
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2, pose_error
-from algorithms.fleets.living_merge import (
-    CORRECTED,
-    MOST_SEEN,
-    PLACED,
-    RESTARTED,
-    WITHDRAWN,
-    LiveAnswer,
-    LivingMerge,
-)
+from algorithms.fleets.live_answer import CORRECTED, PLACED, RESTARTED, WITHDRAWN, LiveAnswer
+from algorithms.fleets.live_sightings import MOST_SEEN
+from algorithms.fleets.living_merge import LivingMerge
 from algorithms.maps.grid_map import UNKNOWN, GridMap
 from algorithms.simulator.fleets.exploration import Exploration, SlamCorrection
 
@@ -46,7 +40,7 @@ class Drive:
                 self.merge.take(name, self.robots.grid(name, self.scan))
             self.step()
             for name, T in self.answer.placed.items():
-                truth = self.robots.T_anchor_robot(name, self.scan)
+                truth = self.robots.true_transform(name, self.scan)
                 off = pose_error(T, truth, self.robots.pose(name, self.scan).xy)
                 assert off[0] < CLOSE[0], (self.scan, name)
                 assert off[1] < CLOSE[1], (self.scan, name)
@@ -160,8 +154,8 @@ def test_the_poses_are_in_the_frame_of_the_anchor_that_was_asked_for():
             drive.merge.see(seen)
         for name in drive.robots.names:
             drive.merge.take(name, drive.robots.grid(name, n))
-        answer = drive.merge.step(float(n)) or answer
+        answer = drive.merge.step(float(n))
     assert answer.placed["r3"] == Pose2()
-    T = drive.robots.T_anchor_robot("r3", 33).inverse() @ drive.robots.T_anchor_robot("r1", 33)
+    T = drive.robots.true_transform("r3", 33).inverse() @ drive.robots.true_transform("r1", 33)
     off = pose_error(answer.placed["r1"], T, drive.robots.pose("r1", 33).xy)
     assert off[0] < CLOSE[0]

@@ -47,7 +47,7 @@ def test_a_map_that_grows_denies_nothing_and_one_that_is_turned_is_found_turned(
     after = turned.grid("r3", 25)
     assert denied_share(before, after) > 0.03
     T = correction_between(before, after)
-    truth = turned.T_anchor_robot("r3", 25).inverse() @ turned.T_anchor_robot("r3", 24)
+    truth = turned.true_transform("r3", 25).inverse() @ turned.true_transform("r3", 24)
     distance, angle = pose_error(T, truth, plain.pose("r3", 24).xy)
     assert distance < 0.1
     assert angle < radians(0.5)

@@ -32,7 +32,7 @@ def test_a_sighting_says_where_the_other_robot_is():
     drives = exploration()
     for n in range(drives.scans):
         for each in drives.seen(n):
-            T = drives.T_anchor_robot(each.observer, n).inverse() @ drives.T_anchor_robot(each.observed, n)
+            T = drives.true_transform(each.observer, n).inverse() @ drives.true_transform(each.observed, n)
             o = each.observation
             there = T.apply(np.array([o.observed_x, o.observed_y]))
             told = o.observer @ Pose2(o.range * np.cos(o.bearing), o.range * np.sin(o.bearing))
@@ -47,8 +47,8 @@ def test_a_correction_turns_a_map_and_the_poses_in_it_and_leaves_the_world_as_it
     assert not np.array_equal(after.points, plain.grid(robot, 20).points)
     for name in drives.names:
         pose = drives.pose(name, 20)
-        there = drives.T_anchor_robot(name, 20) @ pose
-        expected = plain.T_anchor_robot(name, 20) @ plain.pose(name, 20)
+        there = drives.true_transform(name, 20) @ pose
+        expected = plain.true_transform(name, 20) @ plain.pose(name, 20)
         if robot == "r1":  # in whose frame, turned as well, all is told
             turned = drives.pose("r1", 20) @ plain.pose("r1", 20).inverse()
             expected = turned @ expected
