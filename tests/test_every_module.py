@@ -24,6 +24,18 @@ EXERCISED_BY = {
         "algorithms.fleets.live_answer",
         "algorithms.fleets.live_sightings",
     },
+    "app/live/test_live_run.py": {
+        "app.live.live_publisher",
+        "app.live.sighting_sources",
+        "app.live.simulation",
+    },
+    "app/cli/commands/test_live.py": {
+        "app.cli.live_arguments",
+        "app.live.search_thread",
+    },
+    "app/cli/commands/test_simulate.py": {
+        "app.live.bag_writing",
+    },
     "app/live/test_map_source.py": {
         "app.live.live_frames",
     },

@@ -14,10 +14,17 @@ from typing import Protocol
 
 import numpy as np
 
-from algorithms.common.errors import SettingError
+from algorithms.common.errors import SettingError, TooLargeError
 from algorithms.common.pose import Pose2, pose_error
 from algorithms.fleets.fleet_merge import FleetResult, joined
-from algorithms.fleets.live_answer import CORRECTED, RESTARTED, LiveAnswer, LiveEvent, changes
+from algorithms.fleets.live_answer import (
+    CORRECTED,
+    RESTARTED,
+    WITHDRAWN,
+    LiveAnswer,
+    LiveEvent,
+    changes,
+)
 from algorithms.fleets.live_sightings import LiveSightings
 from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, known_of, pair_orders
 from algorithms.fleets.pair_recheck import correction_between, denied_share, recheck
@@ -121,7 +128,11 @@ class LivingMerge:
         ]
         self._found = dict(zip(keys, findings, strict=True))
         self._tried = {key: cells for key, cells in self._tried.items() if key in keys}
-        answer = self._told(fleet, joined(fleet, findings))
+        try:
+            answer = self._told(fleet, joined(fleet, findings))
+        except TooLargeError as error:
+            self._events.append(LiveEvent(self.anchor, WITHDRAWN, str(error)))
+            answer = self._told(None, None)
         self._ask(fleet, orders, keys)
         return answer
 

@@ -122,6 +122,10 @@ class _DdsPublication:
         with suppress(DDSException):  # a reader that does not keep up must not hold the others up
             self._writer.write(message)
 
+    @property
+    def listeners(self) -> int:
+        return len(self._writer.get_matched_subscriptions())
+
 
 def configuration(interface: str) -> str:
     """Cyclone's settings as XML, after those that the user has set."""

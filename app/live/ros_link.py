@@ -49,6 +49,11 @@ class Publication(Protocol):
 
     def send(self, fields: Fields) -> None: ...
 
+    @property
+    def listeners(self) -> int | None:
+        """Who listens to it now; None where that cannot be known."""
+        ...
+
 
 class RosLink(Protocol):
     """Robots within reach."""

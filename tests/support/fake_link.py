@@ -73,5 +73,9 @@ class FakeEnd:
         return found
 
     @property
+    def listeners(self) -> int:
+        return len(self._at.queues)
+
+    @property
     def publishers(self) -> int:
         return self._at.publishers
