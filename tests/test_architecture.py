@@ -242,6 +242,7 @@ def test_each_library_is_known_in_its_own_place():
         "distributed": ("app.jobs.dask_executor",),
         "dask": ("app.jobs.dask_executor",),
         "cyclonedds": ("app.live",),
+        "roslibpy": ("app.live.rosbridge_link",),
     }
     for library, allowed in places.items():
         assert {module for module in importers(library) if not module.startswith(allowed)} == set(), library

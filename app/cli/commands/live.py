@@ -42,7 +42,9 @@ Of each robot the newest map is looked at once a second. What was found is held 
 anew when it falls, or a sighting comes. A map that SLAM has moved or turned is noticed. What no longer holds
 is taken back, and told.
 
-Nothing is published without --publish. With it, latched: the merged nav_msgs/OccupancyGrid, and on /tf_static
+rosbridge reaches robots with ROS 1, or behind a firewall (pip install 'mapmeld[rosbridge]').
+
+Nothing is published without --publish. With it, wherever the robots are reached, latched: the merged nav_msgs/OccupancyGrid, and on /tf_static
 where the map of each placed robot lies in that of the anchor; and /diagnostics every second.
 
 It ends with Ctrl-C, and with 0, once what there is has been saved."""
@@ -73,17 +75,18 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     links, search = RobotLinks(args), SearchThread()
     try:
         live = LiveRun(fleet, links.link, search, args.sightings)
-        publisher = LivePublisher(links.link(), args.publish) if args.publish else None
+        ways = {robot.bridge for robot in fleet.robots.values()} if args.publish else ()
+        publishers = [LivePublisher(links.link(address), args.publish) for address in sorted(ways)]
         names = ", ".join(live.names)
-        print(f"listening to {names}; {'publishing' if publisher else 'publishing nothing'}", flush=True)
-        _listen(args, live, publisher)
+        print(f"listening to {names}; {'publishing' if publishers else 'publishing nothing'}", flush=True)
+        _listen(args, live, publishers)
     finally:
         search.close()
         links.close()
     return 0
 
 
-def _listen(args: argparse.Namespace, live: LiveRun, publisher: LivePublisher | None) -> None:
+def _listen(args: argparse.Namespace, live: LiveRun, publishers: Sequence[LivePublisher]) -> None:
     begin = saved = time.monotonic()
     unsaved: LiveAnswer | None = None
     try:
@@ -93,7 +96,7 @@ def _listen(args: argparse.Namespace, live: LiveRun, publisher: LivePublisher | 
             answer = update.answer
             for event in (*update.events, *(answer.events if answer else ())):
                 print(f"{now - begin:8.1f} s  {event.robot}: {event.kind}: {event.said}", flush=True)
-            if publisher is not None:
+            for publisher in publishers:
                 publisher.publish(live, answer, now)
             unsaved = answer or unsaved
             if args.save_every is not None and unsaved is not None and now - saved >= args.save_every:
