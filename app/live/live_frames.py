@@ -30,6 +30,11 @@ class LiveFrames:
         self._tree.sort()
         self._tree.forget(KEPT, MOST_KEPT)
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of all frames that were told of."""
+        return self._tree.frames
+
     def pose(self, target: str, source: str, time: int | None = None) -> Pose2:
         """T_target_source at a time (nanoseconds), or now; raises InputFileError."""
         return self._tree.pose(target, source, self._tree.newest(source) if time is None else time)

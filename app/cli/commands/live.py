@@ -44,8 +44,9 @@ is taken back, and told.
 
 rosbridge reaches robots with ROS 1, or behind a firewall (pip install 'mapmeld[rosbridge]').
 
-Nothing is published without --publish. With it, wherever the robots are reached, latched: the merged nav_msgs/OccupancyGrid, and on /tf_static
-where the map of each placed robot lies in that of the anchor; and /diagnostics every second.
+Nothing is published without --publish. With it, wherever the robots are reached: the merged
+nav_msgs/OccupancyGrid, latched, on /tf_static where the map of each placed robot lies in that of the anchor,
+and /diagnostics every second.
 
 It ends with Ctrl-C, and with 0, once what there is has been saved."""
 
@@ -75,7 +76,8 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     links, search = RobotLinks(args), SearchThread()
     try:
         live = LiveRun(fleet, links.link, search, args.sightings)
-        ways = {robot.bridge for robot in fleet.robots.values()} if args.publish else ()
+        robots = fleet.robots.values()
+        ways = {each.bridge for each in robots if each.grid is None} if args.publish else ()
         publishers = [LivePublisher(links.link(address), args.publish) for address in sorted(ways)]
         names = ", ".join(live.names)
         print(f"listening to {names}; {'publishing' if publishers else 'publishing nothing'}", flush=True)
