@@ -30,6 +30,8 @@ COMMANDS = {
     "serve": "watch a merge in the browser",
     "merge": "merge two maps into a folder of files",
     "fleet": "merge the maps of any number of robots into one",
+    "live": "merge the maps of robots that run, and go on while they grow",
+    "simulate": "robots that explore a building, to try live with",
     "replay": "merge two maps and save the run as one HTML page that plays offline",
     "lesson": "the whole lesson on two maps as one page to print and hand out",
     "evaluate": "run a method on every case in a folder and count what came out right",
