@@ -17,7 +17,7 @@ from app.live.live_fleet_file import read_live_fleet
 from app.live.live_publisher import MAP, LivePublisher
 from app.live.live_run import LiveRun
 from app.live.search_thread import SearchThread
-from app.report.fleet_files import TRANSFORMS_FILE, exported_maps, transforms_yaml
+from app.report.fleet_files import TRANSFORMS_FILE, exported_maps, remove_other_islands, transforms_yaml
 
 USAGE = "FLEET [--publish [TOPIC]] [--save-every SECONDS --out DIR] [--sightings DIR] [--domain N] …"
 DESCRIPTION = """\
@@ -116,11 +116,13 @@ def _save(out: Path, answer: LiveAnswer) -> LiveAnswer | None:
     if answer.result is None:
         return None
     files: dict[str, bytes] = {}
-    for stem, each in exported_maps(answer.result).items():
+    exported = exported_maps(answer.result)
+    for stem, each in exported.items():
         files |= map_to_bytes(each.cells.grid, stem)
     files[TRANSFORMS_FILE] = transforms_yaml(answer.result)
     try:
         write_files({out / name: data for name, data in files.items()})
+        remove_other_islands(out, exported)
     except MapMergeError as error:
         print(f"warning: {error}", flush=True)
         return answer
