@@ -34,9 +34,12 @@ def recheck(fleet: Fleet, order: PairOrder, answers: Sequence[Pose2]) -> PairFin
         method = registry.default_method(problem)
         config = registry.METHODS[method].defaults
         manual = ManualMerge(problem, config)
-        model = shipped_model(manual.kind)
-        others = tuple(weigh(manual.whole, T, model) for T in answers[1:])
-        result = replace(manual, others=others).weigh(manual.whole.climb(answers[0]), method=method)
+        top = manual.whole.climb(answers[0])
+        if len(answers) > 1:
+            model = shipped_model(manual.kind)
+            others = tuple(weigh(manual.whole, T, model) for T in answers[1:])
+            manual = replace(manual, others=others)
+        result = manual.weigh(top, method=method)
         return finding_of(order, problem, config, result)
     except MapMergeError as error:
         failed = not isinstance(error, NoAnswerError)

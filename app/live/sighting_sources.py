@@ -50,7 +50,7 @@ class SightingTopic:
             try:
                 if isinstance(message, InputFileError):
                     raise message
-                found.append(self._sighting(message))
+                found.append(sighting_of(self._topic, message, self._observer, self._observed))
             except MapMergeError as error:
                 if isinstance(message, InputFileError) or any(message is each for each in again):
                     wrong.append(f"a sighting on {self._topic} cannot be used: {error}")
@@ -58,32 +58,35 @@ class SightingTopic:
                     self._waiting.append(message)
         return found, wrong
 
-    def _sighting(self, message: Any) -> FleetSighting:
-        one, other = self._observer, self._observed
-        time = stamp_of(message.header)
-        place = np.array([message.pose.pose.position.x, message.pose.pose.position.y], float)
-        if not np.isfinite(place).all():
-            raise InputFileError(self._topic, f"has a robot at {place.tolist()}", "give metres")
-        observer, observed = one.pose(time), other.pose(time)
-        T_base_frame = one.frames.pose(one.base, str(message.header.frame_id), time)
-        x, y = T_base_frame.apply(place).tolist()
-        distance, bearing = hypot(x, y), atan2(y, x)
-        if not distance <= FARTHEST:
-            raise InputFileError(self._topic, f"has a robot {distance:g} m away", "give metres")
-        spread = np.asarray(message.pose.covariance, float).reshape(6, 6)[:2, :2]
-        turn = rotation(wrap_angle(T_base_frame.theta - bearing))
-        along, across = np.diag(turn @ spread @ turn.T).tolist()
-        observation = Observation(
-            observer=observer,
-            observed_x=observed.x,
-            observed_y=observed.y,
-            range=distance,
-            bearing=bearing,
-            observed_heading=observed.theta,
-            sigma_range=_deviation(along, 1.0, SIGMA_RANGE, SIGMA_RANGES),
-            sigma_bearing=_deviation(across, distance, SIGMA_BEARING, SIGMA_BEARINGS),
-        )
-        return FleetSighting(one.name, other.name, observation)
+
+def sighting_of(topic: str, message: Any, one: TopicSource, other: TopicSource) -> FleetSighting:
+    """Where one robot saw another, by a geometry_msgs/PoseWithCovarianceStamped; raises InputFileError,
+    SettingError.
+    """
+    time = stamp_of(message.header)
+    place = np.array([message.pose.pose.position.x, message.pose.pose.position.y], float)
+    if not np.isfinite(place).all():
+        raise InputFileError(topic, f"has a robot at {place.tolist()}", "give metres")
+    observer, observed = one.pose(time), other.pose(time)
+    T_base_frame = one.frames.pose(one.base, str(message.header.frame_id), time)
+    x, y = T_base_frame.apply(place).tolist()
+    distance, bearing = hypot(x, y), atan2(y, x)
+    if not distance <= FARTHEST:
+        raise InputFileError(topic, f"has a robot {distance:g} m away", "give metres")
+    spread = np.asarray(message.pose.covariance, float).reshape(6, 6)[:2, :2]
+    turn = rotation(wrap_angle(T_base_frame.theta - bearing))
+    along, across = np.diag(turn @ spread @ turn.T).tolist()
+    observation = Observation(
+        observer=observer,
+        observed_x=observed.x,
+        observed_y=observed.y,
+        range=distance,
+        bearing=bearing,
+        observed_heading=observed.theta,
+        sigma_range=_deviation(along, 1.0, SIGMA_RANGE, SIGMA_RANGES),
+        sigma_bearing=_deviation(across, distance, SIGMA_BEARING, SIGMA_BEARINGS),
+    )
+    return FleetSighting(one.name, other.name, observation)
 
 
 def _deviation(variance: float, distance: float, usual: float, limits: tuple[float, float]) -> float:

@@ -13,6 +13,7 @@ from explorers import exploration
 from repository import ROOT
 
 from algorithms.common.pose import Pose2, pose_error
+from algorithms.files.fleet_file import read_fleet
 from algorithms.files.map_file import read_map
 from algorithms.simulator.fleets.exploration import SlamCorrection
 from app.cli.main import main
@@ -57,6 +58,11 @@ def test_robots_that_explore_and_meet_are_merged_without_a_word_from_anybody(tmp
                     assert live.wait() == 0
                 finally:
                     live.kill()
+            with begun("live", file, "--out", str(tmp_path / "out"), "--resume") as again:
+                try:
+                    until(again, "r2: placed", "r3: placed")  # though nobody meets any more
+                finally:
+                    again.kill()
         finally:
             robots.kill()
     drives = exploration(SlamCorrection("r2", 28, 3.0))
@@ -68,6 +74,8 @@ def test_robots_that_explore_and_meet_are_merged_without_a_word_from_anybody(tmp
         off = pose_error(T, drives.true_transform(name, end), drives.pose(name, end).xy)
         assert off[0] < 0.3, (name, said)
         assert off[1] < np.radians(1.5), (name, said)
+    again = read_fleet(tmp_path / "out")
+    assert set(again.maps) == {"r1", "r2", "r3"}
     merged = read_map(tmp_path / "out" / "merged.yaml")  # as Nav2 would
     assert np.count_nonzero(merged.occupied) > np.count_nonzero(drives.grid("r1", drives.scans).occupied)
 
@@ -80,6 +88,8 @@ def test_robots_that_explore_and_meet_are_merged_without_a_word_from_anybody(tmp
         (["--save-every", "-1", "--out", "out"], "above 0"),
         (["--sightings", "nowhere"], "is no folder"),
         (["--out", "fleet.yaml"], "is a file"),
+        (["--resume"], "--out DIR"),
+        (["--resume", "--out", "new"], "no such file"),
     ],
 )
 def test_a_mistake_is_told_before_anything_is_opened(tmp_path, flags, said, capsys, monkeypatch):
