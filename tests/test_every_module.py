@@ -273,9 +273,15 @@ EXERCISED_BY = {
     "app/page/lesson/figures/test_chain_figure.py": {
         "app.page.lesson.chain_runs",
     },
-    "app/page/lesson/test_museum_controller.py": {
-        "app.page.lesson.exhibit_samples",
-        "app.page.lesson.exhibit_texts",
+    "app/page/lesson/test_handout.py": {
+        "app.page.lesson.whole_lesson",
+    },
+    "app/page/lesson/test_lesson_controller.py": {
+        "app.page.lesson.lesson_work",
+    },
+    "app/page/lesson/museum/test_museum_controller.py": {
+        "app.page.lesson.museum.exhibit_samples",
+        "app.page.lesson.museum.exhibit_texts",
     },
     "app/page/panels/test_panels.py": {
         "app.page.editing.observation_panel",
@@ -385,7 +391,7 @@ EXERCISED_BY = {
         "app.page.application",
         "app.page.editing.live_verdict",
         "app.page.lesson.lesson_panel",
-        "app.page.lesson.museum_panel",
+        "app.page.lesson.museum.museum_panel",
         "app.page.notices",
         "app.page.page",
         "app.drawing.scene.tab_views",

@@ -33,6 +33,7 @@ COMMANDS = {
     "live": "merge the maps of robots that run, and go on while they grow",
     "simulate": "robots that explore a building, to try live with",
     "replay": "merge two maps and save the run as one HTML page that plays offline",
+    "lesson": "the whole lesson on two maps as one page to print and hand out",
     "evaluate": "run a method on every case in a folder and count what came out right",
     "compare": "run several methods on the same cases: a table, and the merged maps side by side",
     "sweep": "run a method again and again while a setting changes: curves, heat maps, tables",

@@ -25,7 +25,7 @@ from app.evaluation.table_files import aligned
 from app.jobs.fleet_pairs import run_pairs
 from app.model import verdict_text
 from app.report.export_frame import changes_text
-from app.report.fleet_files import exported_maps, fleet_files
+from app.report.fleet_files import exported_maps, fleet_files, remove_other_islands
 from app.report.fleet_report import summary
 from app.report.result_files import REPORT_FILE
 
@@ -90,6 +90,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     exported = exported_maps(result, frame)
     files = fleet_files(fleet, result, name, exported)
     write_files({args.out / file: data for file, data in files.items()})
+    remove_other_islands(args.out, exported)
     if args.json:
         sys.stdout.write(files[REPORT_FILE].decode())
     else:
