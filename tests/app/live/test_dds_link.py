@@ -118,6 +118,19 @@ def test_who_publishes_is_counted(links):
     assert maps.publishers == 0
 
 
+def test_what_is_published_is_found_with_its_type_and_whether_it_is_latched(links):
+    here, there = links
+    there.advertise(map_topic("/r1/map"))
+    there.advertise(Topic("/tf", TF))
+    expected = {("/r1/map", GRID, True): 1, ("/tf", TF, False): 1}
+    end = time.monotonic() + 30
+    found = {}
+    while found != expected and time.monotonic() < end:
+        found = {(t.name, t.type, t.latched): count for t, count in here.published().items()}
+        time.sleep(0.02)
+    assert found == expected
+
+
 def test_bytes_that_are_no_map_cost_nothing_but_themselves(links, monkeypatch):
     here, there = links
     topic = map_topic("/map")

@@ -47,6 +47,9 @@ def test_robots_that_explore_and_meet_are_merged_without_a_word_from_anybody(tmp
     with begun("simulate", "--ros2", *home, "--fleet", file, "--correct", "r2@14:3") as robots:
         try:
             until(robots, "waiting for somebody who listens")
+            with begun("live", "--list") as listed:
+                assert "/r1/map  nav_msgs/OccupancyGrid" in listed.stdout.read()
+                assert listed.wait() == 0
             with begun(
                 "live", file, "--publish", "--out", str(tmp_path / "out"), "--save-every", "2"
             ) as live:
@@ -89,6 +92,7 @@ def test_robots_that_explore_and_meet_are_merged_without_a_word_from_anybody(tmp
         (["--sightings", "nowhere"], "is no folder"),
         (["--out", "fleet.yaml"], "is a file"),
         (["--resume"], "--out DIR"),
+        (["--out", "."], "holds the fleet's own files"),
         (["--resume", "--out", "new"], "no such file"),
     ],
 )
@@ -97,6 +101,13 @@ def test_a_mistake_is_told_before_anything_is_opened(tmp_path, flags, said, caps
     (tmp_path / "fleet.yaml").write_text("robots:\n  r1: {topic: /r1/map}\n  r2: {topic: /r2/map}\n")
     assert main(["live", "fleet.yaml", "--interface", "lo", "--domain", "177", *flags]) == 2
     assert said in capsys.readouterr().err
+
+
+def test_without_a_fleet_and_where_no_map_is_published_it_is_told(capsys):
+    assert main(["live"]) == 2
+    assert "--list tells the topics" in capsys.readouterr().err
+    assert main(["live", "--list", "--interface", "lo", "--domain", "178"]) == 1
+    assert "no maps among 0 topics" in capsys.readouterr().out
 
 
 def test_a_domain_of_the_environment_that_is_none_is_told(tmp_path, capsys, monkeypatch):
