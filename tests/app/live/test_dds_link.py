@@ -24,7 +24,6 @@ from app.live.message_fields import (
 )
 from app.live.ros_link import TF, Topic, map_topic
 
-pytest.importorskip("cyclonedds", reason="the extra ros2 is not installed")
 DOMAIN = count(140)
 GRID_MAP = GridMap(np.arange(100, dtype=np.int8).reshape(5, 20), 0.05, Pose2(1.5, -2.0, 0.3))
 

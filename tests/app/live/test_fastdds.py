@@ -35,7 +35,6 @@ def drawn() -> GridMap:
 
 @pytest.fixture(scope="module")
 def peer(tmp_path_factory):
-    pytest.importorskip("cyclonedds", reason="the extra ros2 is not installed")
     if not can_be_built():
         pytest.skip(f"Fast DDS is not here; what it has recorded is read all the same ({NEEDED})")
     return build(tmp_path_factory.mktemp("fastdds"))

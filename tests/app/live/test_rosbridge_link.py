@@ -24,7 +24,6 @@ from app.live.message_fields import grid_message
 from app.live.ros_link import map_topic
 from app.live.simulation import fleet_text, messages_of
 
-pytest.importorskip("roslibpy", reason="the extra rosbridge is not installed")
 ROOM = GridMap(np.array([[0, 100, -1], [50, 0, 0]], dtype=np.int8), 0.05, Pose2(1.0, 2.0, 0.5))
 JSON = rosbridge_link.as_json
 

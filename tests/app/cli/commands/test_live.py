@@ -41,7 +41,6 @@ def until(process, *awaited):
 
 
 def test_robots_that_explore_and_meet_are_merged_without_a_word_from_anybody(tmp_path):
-    pytest.importorskip("cyclonedds", reason="the extra ros2 is not installed")
     file = str(tmp_path / "fleet.yaml")
     home = "--building", "home", "--seed", "5", "--speed", "2"
     with begun("simulate", "--ros2", *home, "--fleet", file, "--correct", "r2@14:3") as robots:
