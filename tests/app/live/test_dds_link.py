@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import time
-from itertools import count
 
 import numpy as np
 import pytest
+from dds_domains import new_domain
 
 from algorithms.common.errors import InputFileError, SettingError
 from algorithms.common.pose import Pose2
@@ -24,13 +24,12 @@ from app.live.message_fields import (
 )
 from app.live.ros_link import TF, Topic, map_topic
 
-DOMAIN = count(140)
 GRID_MAP = GridMap(np.arange(100, dtype=np.int8).reshape(5, 20), 0.05, Pose2(1.5, -2.0, 0.3))
 
 
 @pytest.fixture
 def links():
-    domain = next(DOMAIN)
+    domain = new_domain()
     made = [DdsLink(domain, "lo") for _ in range(2)]
     yield made
     for link in made:

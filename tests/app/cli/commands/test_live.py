@@ -9,6 +9,7 @@ import sys
 import numpy as np
 import pytest
 import yaml
+from dds_domains import new_domain
 from explorers import exploration
 from repository import ROOT
 
@@ -18,7 +19,7 @@ from algorithms.files.map_file import read_map
 from algorithms.simulator.fleets.exploration import SlamCorrection
 from app.cli.main import main
 
-DDS = ("--interface", "lo", "--domain", "176")
+DDS = ("--interface", "lo", "--domain", str(new_domain()))
 
 
 def begun(*words):
@@ -98,14 +99,14 @@ def test_robots_that_explore_and_meet_are_merged_without_a_word_from_anybody(tmp
 def test_a_mistake_is_told_before_anything_is_opened(tmp_path, flags, said, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "fleet.yaml").write_text("robots:\n  r1: {topic: /r1/map}\n  r2: {topic: /r2/map}\n")
-    assert main(["live", "fleet.yaml", "--interface", "lo", "--domain", "177", *flags]) == 2
+    assert main(["live", "fleet.yaml", "--interface", "lo", "--domain", str(new_domain()), *flags]) == 2
     assert said in capsys.readouterr().err
 
 
 def test_without_a_fleet_and_where_no_map_is_published_it_is_told(capsys):
     assert main(["live"]) == 2
     assert "--list tells the topics" in capsys.readouterr().err
-    assert main(["live", "--list", "--interface", "lo", "--domain", "178"]) == 1
+    assert main(["live", "--list", "--interface", "lo", "--domain", str(new_domain())]) == 1
     assert "no maps among 0 topics" in capsys.readouterr().out
 
 
