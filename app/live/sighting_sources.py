@@ -28,6 +28,8 @@ from app.live.ros_link import RosLink, Topic
 
 SAW = "_saw_"  # in the name of an observation file, between the names of the two robots
 MOST_FILES = 1000
+PATIENCE = 1.0  # seconds for which a sighting waits for the transforms of its moment
+MOST_WAITING = 20
 FARTHEST = 100.0  # metres at which a robot is seen
 Sightings = tuple[list[FleetSighting], list[str]]
 """What came, and what was wrong with what could not be used."""
@@ -38,24 +40,25 @@ class SightingTopic:
 
     def __init__(self, link: RosLink, topic: str, observer: TopicSource, observed: TopicSource) -> None:
         self._topic, self._observer, self._observed = topic, observer, observed
-        self._messages = link.subscribe(Topic(topic, SEEN, depth=20))
-        self._waiting: list[Any] = []
+        self._messages = link.subscribe(Topic(topic, SEEN, depth=MOST_WAITING))
+        self._waiting: list[tuple[float, Any]] = []
 
-    def poll(self) -> Sightings:
-        """Those that came. One may come before the transforms of its moment: it is tried once more."""
+    def poll(self, now: float) -> Sightings:
+        """Those that came. One may come before the transforms of its moment: it is tried for a while."""
         found: list[FleetSighting] = []
         wrong: list[str] = []
-        again, self._waiting = self._waiting, []
-        for message in [*again, *self._messages.take()]:
+        tried, self._waiting = self._waiting, []
+        for came, message in [*tried, *((now, each) for each in self._messages.take())]:
             try:
                 if isinstance(message, InputFileError):
                     raise message
                 found.append(sighting_of(self._topic, message, self._observer, self._observed))
             except MapMergeError as error:
-                if isinstance(message, InputFileError) or any(message is each for each in again):
+                if isinstance(message, InputFileError) or now - came >= PATIENCE:
                     wrong.append(f"a sighting on {self._topic} cannot be used: {error}")
                 else:
-                    self._waiting.append(message)
+                    self._waiting.append((came, message))
+        self._waiting = self._waiting[-MOST_WAITING:]
         return found, wrong
 
 

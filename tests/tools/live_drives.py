@@ -1,6 +1,6 @@
 """Simulated robots drive while their maps are merged: at every moment, is what stands right? `make live`.
 
-A robot's place counts as right where it is within 0.3 m and 1.7° of the truth where the robot is. Of every drive
+A robot is right where its place is within 0.3 m and 1.7° of the truth where it stands. Of every drive
 a map is turned by 3° half-way, as a loop closure does, and some sightings lie.
 """
 
