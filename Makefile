@@ -34,12 +34,13 @@ help:
 run: $(VENV)/ready
 	@$(BIN)/mapmeld serve $(ARGS)
 
+# three processes on two cores: those that wait for a browser or a command leave a core to the third
 test: $(VENV)/ready-to-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	@chromium="$$($(BIN)/python tests/support/chromium.py)" && \
-	  echo "pytest, with $$chromium" && CHROMIUM="$$chromium" $(BIN)/python -m pytest -n 2 --dist worksteal $(ARGS)
+	  echo "pytest, with $$chromium" && CHROMIUM="$$chromium" $(BIN)/python -m pytest -n 3 --dist worksteal $(ARGS)
 
 bench: $(VENV)/ready-to-test
 	$(BIN)/python -m pytest -o addopts="" -o python_files="bench_*.py" -o python_functions="bench_*" \
