@@ -110,6 +110,21 @@ def test_without_a_fleet_and_where_no_map_is_published_it_is_told(capsys):
     assert "no maps among 0 topics" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    ("library", "more", "said"),
+    [
+        ("cyclonedds.core", "", "pip install 'mapmeld[ros2]'"),
+        ("roslibpy", ", rosbridge: 'ws://robot:9090'", "pip install 'mapmeld[rosbridge]'"),
+    ],
+)
+def test_without_its_library_it_says_what_to_install(tmp_path, library, more, said, capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, library, None)
+    robots = "".join(f"  r{n}: {{topic: /r{n}/map{more}}}\n" for n in (1, 2))
+    (tmp_path / "fleet.yaml").write_text(f"robots:\n{robots}")
+    assert main(["live", str(tmp_path)]) == 2
+    assert said in capsys.readouterr().err
+
+
 def test_a_domain_of_the_environment_that_is_none_is_told(tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("ROS_DOMAIN_ID", "home")
     (tmp_path / "fleet.yaml").write_text("robots:\n  r1: {topic: /r1/map}\n  r2: {topic: /r2/map}\n")
