@@ -120,6 +120,9 @@ class _DdsSubscription:
         from app.live.dds_types import RawMessage
 
         found: list[Any | InputFileError] = []
+        if self._reader.get_requested_incompatible_qos_status().total_count_change:
+            offered = "is published in a way that does not fit: volatile, or best effort"
+            found.append(InputFileError(self._topic.name, offered, "publish it reliable and transient-local"))
         for sample in self._reader.take(self._topic.depth):
             if isinstance(sample, RawMessage):  # else its publisher has taken it back
                 try:

@@ -129,6 +129,15 @@ def test_what_is_published_is_found_with_its_type_and_whether_it_is_latched(link
     assert found == expected
 
 
+def test_a_map_that_is_published_in_a_way_that_does_not_fit_is_told_once(links):
+    here, there = links
+    maps = here.subscribe(map_topic("/map"))
+    there.advertise(Topic("/map", GRID, latched=False))
+    (found,) = awaited(maps)
+    assert "volatile" in str(found)
+    assert maps.take() == []
+
+
 def test_bytes_that_are_no_map_cost_nothing_but_themselves(links, monkeypatch):
     here, there = links
     topic = map_topic("/map")
