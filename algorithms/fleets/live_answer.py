@@ -10,6 +10,7 @@ from algorithms.common.pose import Pose2, pose_error
 from algorithms.fleets.fleet_merge import FleetResult
 from algorithms.observations.fleet import Fleet
 
+SURE = 0.999  # more is not told: no model is as sure
 MOVED, TURNED = 0.3, 0.02  # metres, radians (1.1°); by so much a robot's map moves without a word
 PLACED, WITHDRAWN, CORRECTED, RESTARTED, SHIFTED = "placed", "withdrawn", "corrected", "restarted", "moved"
 
@@ -54,7 +55,7 @@ def changes(before: LiveAnswer, now: LiveAnswer) -> Iterator[LiveEvent]:
     for name in now.placed:
         if name not in before.placed and now.result is not None and name != now.result.islands[0].root:
             likely = now.result.islands[0].probability[name]
-            yield LiveEvent(name, PLACED, f"its place is {likely:.1%} likely")
+            yield LiveEvent(name, PLACED, f"its place is {min(likely, SURE):.1%} likely")
 
 
 def _why(name: str, result: FleetResult | None) -> str:

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from algorithms.common.pose import Pose2
-from algorithms.observations.fleet import FleetSighting
+from algorithms.observations.fleet import MOST_SIGHTINGS, FleetSighting
 
 MOST_SEEN = 12  # of one robot by another, the newest
 
@@ -47,7 +47,8 @@ class LiveSightings:
         ways: dict[frozenset[str], tuple[str, str]] = {}
         for way, _ in Counter(map(_way, known)).most_common():  # of equal ones that which came first
             ways.setdefault(frozenset(way), way)
-        return tuple(each for each in known if _way(each) in ways.values())
+        found = [each for each in known if _way(each) in ways.values()]
+        return tuple(found[-MOST_SIGHTINGS:])
 
 
 def _way(seen: FleetSighting) -> tuple[str, str]:

@@ -29,6 +29,7 @@ from algorithms.fleets.live_sightings import LiveSightings
 from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, known_of, pair_orders
 from algorithms.fleets.pair_recheck import correction_between, denied_share, recheck
 from algorithms.maps.grid_map import GridMap
+from algorithms.methods.suggestions import MOST
 from algorithms.observations.fleet import Fleet, FleetPrior, FleetSighting
 from algorithms.observations.pair_problem import Known
 
@@ -40,6 +41,7 @@ ANOTHER_FROM = (
 )
 SHRUNK = 0.5  # of the known cells: a map that has fewer, and is another, was begun anew
 UNSEARCHED = PairFinding(PairOrder("", "", ()), np.zeros(2), (), "it is still being searched")
+Pair = tuple[str, str]
 Key = tuple[str, str, tuple[Known, ...]]
 
 
@@ -73,8 +75,9 @@ class LivingMerge:
         self._maps: dict[str, GridMap] = {}
         self._waiting: dict[str, GridMap] = {}
         self._looked: dict[str, float] = {}
-        self._answers: dict[tuple[str, str], tuple[Pose2, ...]] = {}
         self._found: dict[Key, PairFinding] = {}
+        self._beginnings: dict[Key, tuple[Pose2, ...]] = {}  # of a search, not yet held against newer maps
+        self._answers: dict[Pair, tuple[Pose2, ...]] = {}  # of all that is found of a pair, for what comes
         self._tried: dict[Key, int] = {}
         self._searched: tuple[Fleet, Mapping[str, int]] | None = None
         self._frames = dict.fromkeys(names, 0)  # how often each robot's frame has become another
@@ -127,6 +130,9 @@ class LivingMerge:
             self._finding(fleet, order, key, changed) for order, key in zip(orders, keys, strict=True)
         ]
         self._found = dict(zip(keys, findings, strict=True))
+        for pair in {key[:2] for key in keys}:
+            of_pair = [each for each in findings if (each.order.ref, each.order.mov) == pair]
+            self._answers[pair] = _transforms(of_pair) or self._answers.get(pair, ())
         self._tried = {key: cells for key, cells in self._tried.items() if key in keys}
         try:
             answer = self._told(fleet, joined(fleet, findings))
@@ -148,13 +154,10 @@ class LivingMerge:
             return
         T = correction_between(old, grid)
         if T is not None:
-            self._frames[name] += 1
+            moved = {pair: _moved(each, pair, name, T) for pair, each in self._answers.items()}
+            self._drop(name)
+            self._answers = moved
             self._sightings.move(name, T)
-            for (ref, mov), answers in self._answers.items():
-                if name == mov:
-                    self._answers[ref, mov] = tuple(each @ T.inverse() for each in answers)
-                if name == ref:
-                    self._answers[ref, mov] = tuple(T @ each for each in answers)
             metres, turn = pose_error(T, Pose2(), old.points.mean(axis=0))
             said = f"SLAM has moved its map by {metres:.2f} m and {degrees(turn):.1f}°"
             self._events.append(LiveEvent(name, CORRECTED, said))
@@ -170,6 +173,7 @@ class LivingMerge:
         """Nothing that was found of a robot holds any more."""
         self._frames[name] += 1
         self._answers = {pair: each for pair, each in self._answers.items() if name not in pair}
+        self._beginnings = {key: each for key, each in self._beginnings.items() if name not in key[:2]}
         self._found = {key: each for key, each in self._found.items() if name not in key[:2]}
         self._tried = {key: each for key, each in self._tried.items() if name not in key[:2]}
 
@@ -180,27 +184,27 @@ class LivingMerge:
             return False
         (fleet, frames), self._searched = self._searched, None
         for finding in found:
-            pair = finding.order.ref, finding.order.mov
-            if any(frames[name] != self._frames[name] for name in pair):
-                self._tried.pop(_key(fleet, finding.order), None)
-            elif finding.hypotheses or pair not in self._answers:
-                self._answers[pair] = tuple(each.T_ref_mov for each in finding.hypotheses)
-                self._found.pop(_key(fleet, finding.order), None)
-                if not finding.hypotheses:
-                    self._found[_key(fleet, finding.order)] = finding
+            key = _key(fleet, finding.order)
+            if any(frames[name] != self._frames[name] for name in key[:2]):
+                self._tried.pop(key, None)
+            elif finding.hypotheses:
+                self._beginnings[key] = tuple(each.T_ref_mov for each in finding.hypotheses)
+            elif key not in self._found or not self._found[key].hypotheses:
+                self._found[key] = finding
         return True
 
     def _finding(self, fleet: Fleet, order: PairOrder, key: Key, changed: set[str]) -> PairFinding:
         """What there is to say of a pair now: as before, or held against the newest maps."""
-        before = self._found.get(key)
-        answers = self._answers.get((order.ref, order.mov), ())
+        before, searched = self._found.get(key), self._beginnings.pop(key, ())
+        if before is not None and not searched and not {order.ref, order.mov} & changed:
+            return replace(before, order=order)
+        answers = searched or (() if before is None else _transforms([before]))
+        if before is None and not searched:  # something new is known of them: what was found before may stand
+            answers = self._answers.get((order.ref, order.mov), ())
+            answers = answers or tuple(T.inverse() for T in self._answers.get((order.mov, order.ref), ()))
         if not answers:
-            answers = tuple(T.inverse() for T in self._answers.get((order.mov, order.ref), ()))
-        if not answers or (before is not None and not {order.ref, order.mov} & changed):
             return replace(before or UNSEARCHED, order=order)
         now = recheck(fleet, order, answers)
-        if now.hypotheses:
-            self._answers[order.ref, order.mov] = tuple(each.T_ref_mov for each in now.hypotheses)
         if before is not None and before.accepted and not now.accepted:
             self._tried.pop(key, None)
         return now
@@ -212,9 +216,8 @@ class LivingMerge:
         wanted = []
         for order, key in zip(orders, keys, strict=True):
             cells = sum(_known_cells(fleet.maps[name]) for name in (order.ref, order.mov))
-            if key not in self._tried or (
-                not self._found[key].accepted and cells >= GROWN * self._tried.get(key, 0)
-            ):
+            grown = cells >= GROWN * self._tried.get(key, 0)
+            if key not in self._tried or (grown and not self._found[key].accepted):
                 self._tried[key] = cells
                 wanted.append(order)
         if wanted:
@@ -231,6 +234,18 @@ class LivingMerge:
 
 def _key(fleet: Fleet, order: PairOrder) -> Key:
     return order.ref, order.mov, known_of(fleet, order)
+
+
+def _transforms(findings: Sequence[PairFinding]) -> tuple[Pose2, ...]:
+    """T_ref_mov of all answers, the likeliest first; not more than one merge gives."""
+    answers = sorted((each for f in findings for each in f.hypotheses), key=lambda each: -each.probability)
+    return tuple(each.T_ref_mov for each in answers[:MOST])
+
+
+def _moved(answers: Sequence[Pose2], pair: Pair, name: str, T: Pose2) -> tuple[Pose2, ...]:
+    """T_ref_mov of a pair in the frame that a robot has after a correction, T_new_old."""
+    ref, mov = (T if each == name else Pose2() for each in pair)
+    return tuple(ref @ each @ mov.inverse() for each in answers)
 
 
 def _known_cells(grid: GridMap) -> int:

@@ -27,16 +27,20 @@ MOST_MOVED, MOST_TURNED = 1.5, 0.15  # metres, radians (9°); standard deviation
 def recheck(fleet: Fleet, order: PairOrder, answers: Sequence[Pose2]) -> PairFinding:
     """What the fleet's maps say now of T_ref_mov that were found on others of the same frames.
 
-    answers : the likeliest first; it climbs to the top that it lies near, and is held against the others
+    answers : each climbs to the top that it lies near; the likeliest is held against the others
     """
     try:
         problem = PairProblem.of(fleet.maps[order.ref], fleet.maps[order.mov], known_of(fleet, order))
         method = registry.default_method(problem)
         config = registry.METHODS[method].defaults
         manual = ManualMerge(problem, config)
-        model = shipped_model(manual.kind)
-        others = tuple(weigh(manual.whole, T, model) for T in answers[1:])
-        result = replace(manual, others=others).weigh(manual.whole.climb(answers[0]), method=method)
+        whole, model = manual.whole, shipped_model(manual.kind)
+        best, *others = sorted(
+            (weigh(whole, whole.climb(T), model) for T in answers), key=lambda each: -each.score
+        )
+        if others:
+            manual = replace(manual, others=tuple(others))
+        result = manual.weigh(best.T_ref_mov, method=method)
         return finding_of(order, problem, config, result)
     except MapMergeError as error:
         failed = not isinstance(error, NoAnswerError)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import ipaddress
 import os
+import re
+from collections import Counter
 from contextlib import suppress
 from functools import cache
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
+from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError, SettingError
 from algorithms.files.bags.message_types import MessageReader
 from algorithms.files.bags.message_writing import Fields, MessageWriter
@@ -18,6 +21,9 @@ MOST_DOMAIN = 232  # of DDS; higher ones have no ports
 MOST_MESSAGE = "128 MiB"  # more than the largest map; what is longer is thrown away before it is put together
 LOOPBACK = ("lo", "127.0.0.1", "localhost")
 INSTALL = "pip install 'mapmeld[ros2]'"
+ROS2_TOPIC = "rt/"  # what the names of its topics begin with
+ROS2_TYPE = re.compile(r"(?P<package>\w+)::msg::dds_::(?P<name>\w+)_")
+MOST_ENDPOINTS = 10_000  # of a domain that are looked at
 SEND_WAIT = 0.1  # seconds that a writer waits for readers that do not keep up
 
 
@@ -63,6 +69,24 @@ class DdsLink:
         self._writers.append(DataWriter(self._participant, self._topic(topic), qos=_qos(topic)))
         return _DdsPublication(self._writers[-1], topic, self._writer)
 
+    def published(self) -> dict[Topic, int]:
+        """The topics of ROS 2 that are published in the domain, as far as they have been found, and by how
+        many.
+        """
+        from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
+        from cyclonedds.core import InstanceState, Policy, ReadCondition, SampleState, ViewState
+
+        reader = BuiltinDataReader(self._participant, BuiltinTopicDcpsPublication)
+        there = ReadCondition(reader, ViewState.Any | InstanceState.Alive | SampleState.Any)
+        found: Counter[Topic] = Counter()
+        for each in reader.read(MOST_ENDPOINTS, there):
+            kind = ROS2_TYPE.fullmatch(each.type_name)
+            if kind is not None and each.topic_name.startswith(ROS2_TOPIC):
+                latched = Policy.Durability.TransientLocal in each.qos
+                name = show_hidden(each.topic_name[len(ROS2_TOPIC) - 1 :])
+                found[Topic(name, f"{kind['package']}/msg/{kind['name']}", latched)] += 1
+        return dict(found)
+
     def close(self) -> None:
         """Leave the domain, once nobody holds what was made of this link any more."""
         self._writers.clear()
@@ -75,7 +99,7 @@ class DdsLink:
         from app.live.dds_types import dds_type
 
         if topic not in self._topics:
-            name = f"rt/{topic.name.strip('/')}"
+            name = f"{ROS2_TOPIC}{topic.name.strip('/')}"
             self._topics[topic] = DdsTopic(self._participant, name, dds_type(topic.type))
         return self._topics[topic]
 
@@ -96,6 +120,9 @@ class _DdsSubscription:
         from app.live.dds_types import RawMessage
 
         found: list[Any | InputFileError] = []
+        if self._reader.get_requested_incompatible_qos_status().total_count_change:
+            offered = "is published in a way that does not fit: volatile, or best effort"
+            found.append(InputFileError(self._topic.name, offered, "publish it reliable and transient-local"))
         for sample in self._reader.take(self._topic.depth):
             if isinstance(sample, RawMessage):  # else its publisher has taken it back
                 try:

@@ -66,7 +66,7 @@ class LiveRun:
             events += self._heard(name, source, now)
         found, wrong = [], []
         for topic in self._topics:
-            seen, said = topic.poll()
+            seen, said = topic.poll(now)
             found, wrong = found + seen, wrong + said
         if self._folder is not None and now - self._looked >= LOOK_EVERY:
             self._looked = now

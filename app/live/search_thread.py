@@ -7,6 +7,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 
 from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, find_pair
 from algorithms.observations.fleet import Fleet
+from app.jobs.warm_up import small_merge
 
 
 class SearchThread:
@@ -15,6 +16,10 @@ class SearchThread:
     def __init__(self) -> None:
         self._thread = ThreadPoolExecutor(1, "pair search")
         self._found: Future[list[PairFinding]] | None = None
+
+    def warm_up(self) -> None:
+        """Load and compile what the first search needs before there is one to do."""
+        self._thread.submit(lambda: list(small_merge().run({})))
 
     def start(self, fleet: Fleet, orders: Sequence[PairOrder]) -> None:
         self._found = self._thread.submit(lambda: [find_pair(fleet, order) for order in orders])

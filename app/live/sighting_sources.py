@@ -28,6 +28,8 @@ from app.live.ros_link import RosLink, Topic
 
 SAW = "_saw_"  # in the name of an observation file, between the names of the two robots
 MOST_FILES = 1000
+PATIENCE = 1.0  # seconds for which a sighting waits for the transforms of its moment
+MOST_WAITING = 20
 FARTHEST = 100.0  # metres at which a robot is seen
 Sightings = tuple[list[FleetSighting], list[str]]
 """What came, and what was wrong with what could not be used."""
@@ -38,52 +40,56 @@ class SightingTopic:
 
     def __init__(self, link: RosLink, topic: str, observer: TopicSource, observed: TopicSource) -> None:
         self._topic, self._observer, self._observed = topic, observer, observed
-        self._messages = link.subscribe(Topic(topic, SEEN, depth=20))
-        self._waiting: list[Any] = []
+        self._messages = link.subscribe(Topic(topic, SEEN, depth=MOST_WAITING))
+        self._waiting: list[tuple[float, Any]] = []
 
-    def poll(self) -> Sightings:
-        """Those that came. One may come before the transforms of its moment: it is tried once more."""
+    def poll(self, now: float) -> Sightings:
+        """Those that came. One may come before the transforms of its moment: it is tried for a while."""
         found: list[FleetSighting] = []
         wrong: list[str] = []
-        again, self._waiting = self._waiting, []
-        for message in [*again, *self._messages.take()]:
+        tried, self._waiting = self._waiting, []
+        for came, message in [*tried, *((now, each) for each in self._messages.take())]:
             try:
                 if isinstance(message, InputFileError):
                     raise message
-                found.append(self._sighting(message))
+                found.append(sighting_of(self._topic, message, self._observer, self._observed))
             except MapMergeError as error:
-                if isinstance(message, InputFileError) or any(message is each for each in again):
+                if isinstance(message, InputFileError) or now - came >= PATIENCE:
                     wrong.append(f"a sighting on {self._topic} cannot be used: {error}")
                 else:
-                    self._waiting.append(message)
+                    self._waiting.append((came, message))
+        self._waiting = self._waiting[-MOST_WAITING:]
         return found, wrong
 
-    def _sighting(self, message: Any) -> FleetSighting:
-        one, other = self._observer, self._observed
-        time = stamp_of(message.header)
-        place = np.array([message.pose.pose.position.x, message.pose.pose.position.y], float)
-        if not np.isfinite(place).all():
-            raise InputFileError(self._topic, f"has a robot at {place.tolist()}", "give metres")
-        observer, observed = one.pose(time), other.pose(time)
-        T_base_frame = one.frames.pose(one.base, str(message.header.frame_id), time)
-        x, y = T_base_frame.apply(place).tolist()
-        distance, bearing = hypot(x, y), atan2(y, x)
-        if not distance <= FARTHEST:
-            raise InputFileError(self._topic, f"has a robot {distance:g} m away", "give metres")
-        spread = np.asarray(message.pose.covariance, float).reshape(6, 6)[:2, :2]
-        turn = rotation(wrap_angle(T_base_frame.theta - bearing))
-        along, across = np.diag(turn @ spread @ turn.T).tolist()
-        observation = Observation(
-            observer=observer,
-            observed_x=observed.x,
-            observed_y=observed.y,
-            range=distance,
-            bearing=bearing,
-            observed_heading=observed.theta,
-            sigma_range=_deviation(along, 1.0, SIGMA_RANGE, SIGMA_RANGES),
-            sigma_bearing=_deviation(across, distance, SIGMA_BEARING, SIGMA_BEARINGS),
-        )
-        return FleetSighting(one.name, other.name, observation)
+
+def sighting_of(topic: str, message: Any, one: TopicSource, other: TopicSource) -> FleetSighting:
+    """Where one robot saw another, by a geometry_msgs/PoseWithCovarianceStamped; raises InputFileError,
+    SettingError.
+    """
+    time = stamp_of(message.header)
+    place = np.array([message.pose.pose.position.x, message.pose.pose.position.y], float)
+    if not np.isfinite(place).all():
+        raise InputFileError(topic, f"has a robot at {place.tolist()}", "give metres")
+    observer, observed = one.pose(time), other.pose(time)
+    T_base_frame = one.frames.pose(one.base, str(message.header.frame_id), time)
+    x, y = T_base_frame.apply(place).tolist()
+    distance, bearing = hypot(x, y), atan2(y, x)
+    if not distance <= FARTHEST:
+        raise InputFileError(topic, f"has a robot {distance:g} m away", "give metres")
+    spread = np.asarray(message.pose.covariance, float).reshape(6, 6)[:2, :2]
+    turn = rotation(wrap_angle(T_base_frame.theta - bearing))
+    along, across = np.diag(turn @ spread @ turn.T).tolist()
+    observation = Observation(
+        observer=observer,
+        observed_x=observed.x,
+        observed_y=observed.y,
+        range=distance,
+        bearing=bearing,
+        observed_heading=observed.theta,
+        sigma_range=_deviation(along, 1.0, SIGMA_RANGE, SIGMA_RANGES),
+        sigma_bearing=_deviation(across, distance, SIGMA_BEARING, SIGMA_BEARINGS),
+    )
+    return FleetSighting(one.name, other.name, observation)
 
 
 def _deviation(variance: float, distance: float, usual: float, limits: tuple[float, float]) -> float:

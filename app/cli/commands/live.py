@@ -5,25 +5,34 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from algorithms.common.errors import MapMergeError, SettingError
 from algorithms.files.atomic_write import check_folder, write_files
-from algorithms.files.map_file import map_to_bytes
+from algorithms.files.bags.message_types import GRID, SEEN, TRANSFORMS
+from algorithms.files.fleet_file import FLEET_FILE, MOST_BYTES, fleet_parts, fleet_to_bytes
+from algorithms.files.map_file import map_to_bytes, read_bytes
 from algorithms.fleets.live_answer import LiveAnswer
 from app.cli.argument_parser import Parser
-from app.cli.live_arguments import RobotLinks, add_dds
-from app.live.live_fleet_file import read_live_fleet
+from app.cli.live_arguments import RobotLinks, add_dds, domain_of
+from app.cli.output_arguments import check_apart
+from app.evaluation.table_files import aligned
+from app.live.dds_link import DdsLink
+from app.live.live_fleet_file import LiveFleet, read_live_fleet
 from app.live.live_publisher import MAP, LivePublisher
 from app.live.live_run import LiveRun
 from app.live.search_thread import SearchThread
 from app.report.fleet_files import TRANSFORMS_FILE, exported_maps, remove_other_islands, transforms_yaml
 
-USAGE = "FLEET [--publish [TOPIC]] [--save-every SECONDS --out DIR] [--sightings DIR] [--domain N] …"
+USAGE = (
+    "(FLEET | --list) [--publish [TOPIC]] [--save-every SECONDS --out DIR] [--sightings DIR] [--domain N] …"
+)
 DESCRIPTION = """\
 Merge the maps of robots that run, and go on while the maps grow. ROS need not be installed.
 
 Examples:
+  mapmeld live --list                        which maps are published
   mapmeld live fleet.yaml                    listen, and tell what becomes of it
   mapmeld live fleet.yaml --publish          tell the robots, too
   mapmeld live fleet.yaml --save-every 30 --out result
@@ -48,33 +57,51 @@ Nothing is published without --publish. With it, wherever the robots are reached
 nav_msgs/OccupancyGrid, latched, on /tf_static where the map of each placed robot lies in that of the anchor,
 and /diagnostics every second.
 
+--out leaves merged.yaml and merged.pgm, transforms.yaml, and the robots' maps and sightings as a fleet that
+mapmeld fleet takes, and from which --resume goes on.
+
 It ends with Ctrl-C, and with 0, once what there is has been saved."""
 
+USES = {
+    GRID: "topic: of a robot",
+    TRANSFORMS[0]: "tf: of a robot",
+    SEEN: "sees: of a robot",
+}
+FIND_WITHIN = 3.0  # seconds in which participants of DDS find each other
 PAUSE = 0.05  # seconds between two looks at what has come
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    parser.add_argument("fleet", type=Path, metavar="FLEET", help="fleet file, or a folder with one")
+    about = "fleet file, or a folder with one"
+    parser.add_argument("fleet", type=Path, nargs="?", metavar="FLEET", help=about)
+    about = "tell what is published, maps first, and end; needs no FLEET"
+    parser.add_argument("--list", action="store_true", help=about)
     about = f"publish the merged map (on TOPIC; default: {MAP}), the robots' frames, and diagnostics"
     parser.add_argument("--publish", nargs="?", const=MAP, metavar="TOPIC", help=about)
     about = "observation files that are put into DIR count: r2_saw_r1.yaml, r2_saw_r1_again.yaml"
     parser.add_argument("--sightings", type=Path, metavar="DIR", help=about)
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for merged.yaml, transforms.yaml")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for merged.yaml and the rest")
     about = "write them so often, whole or not at all (default: at the end alone)"
     parser.add_argument("--save-every", type=float, metavar="SECONDS", help=about)
+    about = "begin with the sightings that an earlier run has left in the folder of --out"
+    parser.add_argument("--resume", action="store_true", help=about)
     parser.add_argument("--for", type=float, dest="seconds", metavar="SECONDS", help="end after so long")
     add_dds(parser)
 
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Listen until it is ended; the exit status."""
-    if args.save_every is not None and (args.out is None or not args.save_every > 0):
-        raise SettingError("--save-every needs seconds above 0, and --out DIR to write to")
-    if args.out is not None:
-        check_folder(args.out)
+    if args.list:
+        return _list(args)
+    if args.fleet is None:
+        raise SettingError("FLEET is missing: the fleet file; --list tells the topics that may stand in it")
+    _check(args)
     fleet = read_live_fleet(args.fleet)
+    if args.resume:
+        fleet = _resumed(fleet, args.out)
     links, search = RobotLinks(args), SearchThread()
     try:
+        search.warm_up()
         live = LiveRun(fleet, links.link, search, args.sightings)
         robots = fleet.robots.values()
         ways = {each.bridge for each in robots if each.grid is None} if args.publish else ()
@@ -86,6 +113,36 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         search.close()
         links.close()
     return 0
+
+
+def _check(args: argparse.Namespace) -> None:
+    """Raise SettingError for flags that do not go together, OutputError where nothing may be written."""
+    if args.save_every is not None and (args.out is None or not args.save_every > 0):
+        raise SettingError("--save-every needs seconds above 0, and --out DIR to write to")
+    if args.resume and args.out is None:
+        raise SettingError("--resume needs --out DIR: the folder of the run before")
+    if args.out is not None:
+        check_folder(args.out)
+        check_apart(args.out, args.fleet)
+
+
+def _list(args: argparse.Namespace) -> int:
+    """Tell the topics of use that are published; 1 where there is no map among them."""
+    link = DdsLink(domain_of(args.domain), args.interface)
+    time.sleep(FIND_WITHIN)
+    published = link.published()
+    link.close()
+    rows = []
+    for topic, count in sorted(published.items(), key=lambda each: (each[0].type != GRID, each[0].name)):
+        if topic.type in USES:
+            lost = topic.type == GRID and not topic.latched
+            use = "a map, but not transient-local: SLAM's own is" if lost else USES[topic.type]
+            rows.append([topic.name, topic.type.replace("/msg/", "/"), f"{count}", use])
+    if rows:
+        print(*aligned([["topic", "type", "publishers", "use"], *rows]), sep="\n")
+    maps = sum(topic.type == GRID for topic in published)
+    print(f"{maps or 'no'} maps among {len(published)} topics of ROS 2 in this domain")
+    return 0 if maps else 1
 
 
 def _listen(args: argparse.Namespace, live: LiveRun, publishers: Sequence[LivePublisher]) -> None:
@@ -113,13 +170,17 @@ def _listen(args: argparse.Namespace, live: LiveRun, publishers: Sequence[LivePu
 
 def _save(out: Path, answer: LiveAnswer) -> LiveAnswer | None:
     """Write what stands; the answer again where it could not be written, to be tried again."""
-    if answer.result is None:
+    if answer.result is None or answer.fleet is None:
         return None
     files: dict[str, bytes] = {}
     exported = exported_maps(answer.result)
     for stem, each in exported.items():
         files |= map_to_bytes(each.cells.grid, stem)
     files[TRANSFORMS_FILE] = transforms_yaml(answer.result)
+    names = {name: f"robot_{number}" for number, name in enumerate(answer.fleet.maps, 1)}
+    for name, grid in answer.fleet.maps.items():
+        files |= map_to_bytes(grid, names[name])
+    files[FLEET_FILE] = fleet_to_bytes(answer.fleet, {name: f"{stem}.yaml" for name, stem in names.items()})
     try:
         write_files({out / name: data for name, data in files.items()})
         remove_other_islands(out, exported)
@@ -127,3 +188,12 @@ def _save(out: Path, answer: LiveAnswer) -> LiveAnswer | None:
         print(f"warning: {error}", flush=True)
         return answer
     return None
+
+
+def _resumed(fleet: LiveFleet, out: Path) -> LiveFleet:
+    """With the sightings that were saved there, of robots that are still in it."""
+    file = out / FLEET_FILE
+    saved = fleet_parts(str(file), read_bytes(file, "a saved fleet", MOST_BYTES)).sightings
+    known = [each for each in saved if {each.observer, each.observed} <= set(fleet.robots)]
+    more = (each for each in known if each not in fleet.sightings)
+    return replace(fleet, sightings=(*fleet.sightings, *more))

@@ -10,9 +10,11 @@ from explorers import SearchNow, exploration
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2, pose_error
+from algorithms.fleets import living_merge
 from algorithms.fleets.live_answer import CORRECTED, PLACED, RESTARTED, WITHDRAWN, LiveAnswer
 from algorithms.fleets.live_sightings import MOST_SEEN
 from algorithms.fleets.living_merge import LivingMerge
+from algorithms.fleets.pair_recheck import recheck
 from algorithms.maps.grid_map import UNKNOWN, GridMap
 from algorithms.simulator.fleets.exploration import Exploration, SlamCorrection
 
@@ -134,6 +136,40 @@ def test_sightings_are_bounded_and_those_of_strangers_refused():
     )
     with pytest.raises(SettingError, match="no robot"):
         drive.merge.see(replace(seen, observer="stranger"))
+
+
+def test_a_sighting_that_lies_moves_nobody_and_is_named():
+    drive = Drive().until(26)
+    (seen, *_) = [each for each in drive.answer.fleet.sightings if "r2" in (each.observer, each.observed)]
+    lie = replace(seen, observation=replace(seen.observation, range=seen.observation.range + 4.0))
+    drive.merge.see(lie)
+    drive.until(34)  # where all that is placed is right at every scan
+    assert set(drive.answer.placed) == {"r1", "r2", "r3"}
+    assert WITHDRAWN not in {kind for _, _, kind in drive.events}
+    (left,) = drive.answer.result.left_out
+    assert drive.answer.fleet.sightings[left.number] == lie
+
+
+def test_an_answer_that_is_no_longer_likely_is_withdrawn_and_searched_anew(monkeypatch):
+    drive = Drive().until(30)
+    asked = len(drive.search.asked)
+
+    def unlikely(fleet, order, answers):
+        found = recheck(fleet, order, answers)
+        if "r2" not in (order.ref, order.mov):
+            return found
+        less = [replace(each, probability=0.1, weight=-2.0) for each in found.hypotheses]
+        return replace(found, hypotheses=tuple(less), accepted=False)
+
+    monkeypatch.setattr(living_merge, "recheck", unlikely)
+    drive.merge.take("r2", drive.robots.grid("r2", 31))
+    drive.scan += 1
+    assert set(drive.step().placed) == {"r1", "r3"}
+    assert (31, "r2", WITHDRAWN) in drive.events
+    assert {("r1", "r2")} == {(each.ref, each.mov) for each in drive.search.asked[asked]}
+    monkeypatch.undo()
+    drive.until(33)
+    assert "r2" in drive.answer.placed
 
 
 def test_a_search_that_ends_after_its_robot_began_anew_places_nobody():

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import time
-from itertools import count
 
 import numpy as np
 import pytest
+from dds_domains import new_domain
 
 from algorithms.common.errors import InputFileError, SettingError
 from algorithms.common.pose import Pose2
@@ -24,13 +24,12 @@ from app.live.message_fields import (
 )
 from app.live.ros_link import TF, Topic, map_topic
 
-DOMAIN = count(140)
 GRID_MAP = GridMap(np.arange(100, dtype=np.int8).reshape(5, 20), 0.05, Pose2(1.5, -2.0, 0.3))
 
 
 @pytest.fixture
 def links():
-    domain = next(DOMAIN)
+    domain = new_domain()
     made = [DdsLink(domain, "lo") for _ in range(2)]
     yield made
     for link in made:
@@ -115,6 +114,28 @@ def test_who_publishes_is_counted(links):
     while maps.publishers and time.monotonic() < end:
         time.sleep(0.01)
     assert maps.publishers == 0
+
+
+def test_what_is_published_is_found_with_its_type_and_whether_it_is_latched(links):
+    here, there = links
+    there.advertise(map_topic("/r1/map"))
+    there.advertise(Topic("/tf", TF))
+    expected = {("/r1/map", GRID, True): 1, ("/tf", TF, False): 1}
+    end = time.monotonic() + 30
+    found = {}
+    while found != expected and time.monotonic() < end:
+        found = {(t.name, t.type, t.latched): count for t, count in here.published().items()}
+        time.sleep(0.02)
+    assert found == expected
+
+
+def test_a_map_that_is_published_in_a_way_that_does_not_fit_is_told_once(links):
+    here, there = links
+    maps = here.subscribe(map_topic("/map"))
+    there.advertise(Topic("/map", GRID, latched=False))
+    (found,) = awaited(maps)
+    assert "volatile" in str(found)
+    assert maps.take() == []
 
 
 def test_bytes_that_are_no_map_cost_nothing_but_themselves(links, monkeypatch):

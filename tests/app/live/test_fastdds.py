@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dds_domains import new_domain
 from fastdds_peer import NEEDED, build, can_be_built
 
 from algorithms.common.pose import Pose2
@@ -65,9 +66,10 @@ def test_what_was_recorded_is_what_fast_dds_sends_today(peer, tmp_path):
 
 
 def test_a_map_and_transforms_of_a_robot_on_fast_dds_arrive(peer):
-    link = DdsLink(151, "lo")
+    domain = new_domain()
+    link = DdsLink(domain, "lo")
     maps, frames = link.subscribe(map_topic("/map")), LiveFrames(link)
-    command = [peer, "publish", "151"]
+    command = [peer, "publish", str(domain)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as robot:
         try:
             assert robot.stdout.readline() == "publishing\n"
@@ -87,14 +89,17 @@ def test_a_map_and_transforms_of_a_robot_on_fast_dds_arrive(peer):
 
 
 def test_a_robot_on_fast_dds_hears_the_merged_map_and_the_frames_also_where_it_comes_late(peer):
-    link = DdsLink(152, "lo")
+    domain = new_domain()
+    link = DdsLink(domain, "lo")
     cells = np.array([[-1, 0, 1], [2, 3, 100]], dtype=np.int8)
     link.advertise(map_topic("/mapmeld/map")).send(
         grid_message(GridMap(cells, 0.05, Pose2(1.5, 0.0)), "r1/map", 0)
     )
     static = link.advertise(Topic("/tf_static", TF, latched=True, depth=1))
     static.send(transforms_message([("r1/map", "r2/map", Pose2(2.5, 0.0))], 0))
-    told = subprocess.run([peer, "listen", "152"], capture_output=True, text=True, timeout=120, check=True)
+    told = subprocess.run(
+        [peer, "listen", str(domain)], capture_output=True, text=True, timeout=120, check=True
+    )
     link.close()
     expected = 0
     for cell in cells.astype(np.uint8).ravel().tolist():

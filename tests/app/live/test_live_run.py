@@ -8,19 +8,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 from explorers import SearchNow, exploration
-from fake_link import FakeLink
+from fake_link import WRITER, FakeLink
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from algorithms.common.errors import InputFileError
-from algorithms.common.pose import Pose2, pose_error
+from algorithms.common.pose import Pose2, pose_error, rotation
+from algorithms.files.bags.message_types import SEEN
 from algorithms.files.map_file import write_map
 from algorithms.files.observation_file import write_observations
 from algorithms.fleets.live_answer import CORRECTED, PLACED, RESTARTED, WITHDRAWN
 from algorithms.simulator.fleets.exploration import SlamCorrection
 from app.live.live_fleet_file import LiveFleet, read_live_fleet
+from app.live.live_frames import LiveFrames
 from app.live.live_publisher import MAP, LivePublisher
 from app.live.live_run import REFUSED, SIGHTING, LiveRun
-from app.live.message_fields import ERROR, OK, grid_message
-from app.live.ros_link import Topic, map_topic
+from app.live.map_source import TopicSource
+from app.live.message_fields import ERROR, OK, grid_message, seen_message, transforms_message
+from app.live.ros_link import TF, Topic, map_topic
+from app.live.sighting_sources import sighting_of
 from app.live.simulation import fleet_text, messages_of
 
 SECOND = 1_000_000_000
@@ -190,6 +196,32 @@ def test_a_sighting_of_nonsense_is_told_and_the_rest_goes_on(tmp_path):
     assert sum(kind == REFUSED for _, _, kind in demo.events) == 4
     demo.until(35, 7)
     assert set(demo.transforms()) == {"r2", "r3"}
+
+
+@given(turn=st.floats(-3.0, 3.0), x=st.floats(0.5, 5.0), y=st.floats(-5.0, 5.0))
+@settings(max_examples=20, deadline=None)
+def test_a_sighting_comes_out_as_it_was_measured_in_whatever_frame_it_was_told(turn, x, y):
+    link, sources = FakeLink(), []
+    frames = LiveFrames(link)
+    T_base_camera = Pose2(0.2, -0.1, turn)
+    told = [("map", "base", Pose2(3.0, -2.0, 0.7)), ("base", "camera", T_base_camera)]
+    link.advertise(Topic("/tf", TF)).send(transforms_message(told, 0))
+    frames.poll()
+    for name in ("one", "other"):
+        link.advertise(map_topic(name)).send(grid_message(exploration().grid("r1", 5), "map", 0))
+        sources.append(TopicSource(name, link, name, frames, "base"))
+        sources[-1].poll(0.0)
+    there, bearing = np.array([x, y]), np.arctan2(y, x)
+    axes = rotation(bearing - turn)
+    spread = axes @ np.diag([0.05**2, (0.03 * np.hypot(x, y)) ** 2]) @ axes.T
+    place = T_base_camera.inverse().apply(there).tolist()
+    message = WRITER.fill(SEEN, seen_message("camera", 0, *place, spread))
+    seen = sighting_of("/it", message, *sources)
+    o = seen.observation
+    assert (seen.observer, seen.observed) == ("one", "other")
+    assert (o.range, o.bearing) == pytest.approx((np.hypot(x, y), bearing))
+    assert (o.sigma_range, o.sigma_bearing) == pytest.approx((0.05, 0.03))
+    np.testing.assert_allclose(o.observer.array(), [3.0, -2.0, 0.7], atol=1e-9)
 
 
 def test_a_robot_that_has_done_its_work_takes_part_with_its_file(tmp_path):

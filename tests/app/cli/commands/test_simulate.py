@@ -11,6 +11,7 @@ from algorithms.files.bags.bag_reader import open_bag
 from algorithms.files.bags.frame_tree import frames_around
 from algorithms.files.bags.map_messages import read_bag_map
 from app.cli.main import main
+from app.live.bag_writing import BagRecorder
 from app.live.live_fleet_file import read_live_fleet
 
 HOME = ("--building", "home", "--seed", "5")
@@ -62,6 +63,15 @@ def test_a_mistake_is_told_in_a_line_and_leaves_nothing(recorded, flags, said, c
     assert main(["simulate", *HOME, *(flag.format(here=here) for flag in flags)]) == 2
     assert said in capsys.readouterr().err
     assert not (here / "new").exists()
+
+
+def test_who_interrupts_a_recording_leaves_none(tmp_path, monkeypatch, capsys):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(BagRecorder, "write", interrupted)
+    assert main(["simulate", "--bag", str(tmp_path / "bag"), *HOME]) == 130
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("flags", [[], ["--ros2", "--bag", "x"], ["--ros2", "--correct", "r1"]])
