@@ -90,11 +90,8 @@ def floor(
     return GridPixels(_tinted(pool(cells, factor) != UNKNOWN, palette.free, alpha), factor)
 
 
-def sheet(
-    cells: CellArray, colour: Rgb, palette: Palette, most: int = MOST_PIXELS, part: CellRegion = WHOLE
-) -> GridPixels:
+def sheet(cells: CellArray, colour: Rgb, palette: Palette, most: int = MOST_PIXELS) -> GridPixels:
     """A whole map by itself: walls in a colour, floor, and what is neither."""
-    cells = cells[part]
     factor = pooling(cells.shape, most)
     pooled = pool(cells, factor)
     pixels = np.full((*pooled.shape, 4), 255, dtype=np.uint8)

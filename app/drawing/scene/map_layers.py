@@ -60,14 +60,14 @@ class MapLayers:
         self._levels = images("levels", WALLS_1, WALLS_2)
         self._merged = image("map1/merged_free", MERGED_FREE), image("map1/merged_walls", MERGED_WALLS)
         self._denied = image("map1/denied", MERGED_WALLS)
-        self._result = image("map1/result", MERGED_WALLS)
+        self._result = image("map1/result_free", MERGED_FREE), image("map1/result_walls", MERGED_WALLS)
         self._touches = images("touches", MERGED_FREE, MERGED_WALLS)
         self._ghost_frame = scene.add_frame("/world/ghost", show_axes=False)
         self._ghost = image("ghost/walls", GHOST)
         self._haunted: GridMap | None = None  # whose walls the ghost is made of
         self._ghost_at: Pose2 | None = None
         several = (*self._free, *self._walls, *self._levels, *self._merged, *self._touches)
-        self._all = (*several, self._denied, self._result, self._ghost)
+        self._all = (*several, *self._result, self._denied, self._ghost)
         self._shown: tuple[GridMap | None, ...] = (None, None)
         self._layout: SceneLayout | None = None
         self._palette: Palette | None = None
@@ -147,10 +147,13 @@ class MapLayers:
         if grid is None or self._palette is None or self._layout is None:
             return False
         if grid is not before:
-            draw = partial(render.sheet, grid.cells, self._palette.agreed, self._palette)
             same = before and before.origin == grid.origin and before.cells.shape == grid.cells.shape
-            paint = self._result.repaint if same else self._result.show
-            paint(draw, grid, self._layout.anchor_ref)
+            draws = (
+                partial(render.floor, grid.cells, self._palette),
+                partial(render.walls, grid.cells, self._palette.agreed),
+            )
+            for image, draw in zip(self._result, draws, strict=True):
+                (image.repaint if same else image.show)(draw, grid, self._layout.anchor_ref)
             self._given = grid
         return True
 
@@ -200,7 +203,7 @@ class MapLayers:
             ((floor,), ("merged", "difference")),
             ((walls,), ("merged",)),
             ((self._denied,), ("difference",)),
-            ((self._result,), ("result",)),
+            (self._result, ("result",)),
         ):
             for image in images:
                 image.visible(seen in among)
