@@ -9,7 +9,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 TOOL := PYTHONPATH=tests/support $(BIN)/python tests/tools
 
-.PHONY: help run test bench fuzz soak idle audit samples screenshots equations replays verdict unrelated detector sightings results clean
+.PHONY: help run test bench fuzz soak idle audit samples screenshots equations replays verdict unrelated detector sightings live results clean
 
 help:
 	@echo "make run          open the tool on a sample, in the browser (ARGS=--no-browser: only serve it)"
@@ -27,18 +27,20 @@ help:
 	@echo "make unrelated    merge 1,000 pairs of unrelated maps without a sighting (ARGS='--pairs 100'); about an hour"
 	@echo "make detector     train the detector of robots that ships again; about half an hour"
 	@echo "make sightings    look for robots in 2,000 rendered images and scans: found, false, errors; about an hour"
+	@echo "make live         merge simulated robots while they drive: right, wrong and unplaced at every moment; 5 minutes"
 	@echo "make results      measure the paper's section IV on the samples again: RESULTS.md; about 3 minutes on 2 cores"
 	@echo "make clean        remove the environment and everything that was made"
 
 run: $(VENV)/ready
 	@$(BIN)/mapmeld serve $(ARGS)
 
+# three processes on two cores: those that wait for a browser or a command leave a core to the third
 test: $(VENV)/ready-to-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	@chromium="$$($(BIN)/python tests/support/chromium.py)" && \
-	  echo "pytest, with $$chromium" && CHROMIUM="$$chromium" $(BIN)/python -m pytest -n 2 --dist worksteal $(ARGS)
+	  echo "pytest, with $$chromium" && CHROMIUM="$$chromium" $(BIN)/python -m pytest -n 3 --dist worksteal $(ARGS)
 
 bench: $(VENV)/ready-to-test
 	$(BIN)/python -m pytest -o addopts="" -o python_files="bench_*.py" -o python_functions="bench_*" \
@@ -90,6 +92,9 @@ verdict: $(VENV)/ready
 
 unrelated: $(VENV)/ready
 	@$(TOOL)/unrelated_pairs.py $(ARGS)
+
+live: $(VENV)/ready
+	@$(TOOL)/live_drives.py $(ARGS)
 
 results: $(VENV)/ready
 	@$(PIP) install -e '.[surf]'

@@ -14,6 +14,31 @@ from repository import ROOT
 
 # test file below tests/ -> what it exercises beside the module that it is named after
 EXERCISED_BY = {
+    "app/live/test_dds_link.py": {
+        "algorithms.files.bags.message_writing",
+        "app.live.dds_types",
+        "app.live.message_fields",
+        "app.live.ros_link",
+    },
+    "algorithms/fleets/test_living_merge.py": {
+        "algorithms.fleets.live_answer",
+        "algorithms.fleets.live_sightings",
+    },
+    "app/live/test_live_run.py": {
+        "app.live.live_publisher",
+        "app.live.sighting_sources",
+        "app.live.simulation",
+    },
+    "app/cli/commands/test_live.py": {
+        "app.cli.live_arguments",
+        "app.live.search_thread",
+    },
+    "app/cli/commands/test_simulate.py": {
+        "app.live.bag_writing",
+    },
+    "app/live/test_map_source.py": {
+        "app.live.live_frames",
+    },
     "algorithms/files/bags/test_map_messages.py": {
         "algorithms.files.bags.message_types",
     },
@@ -248,9 +273,15 @@ EXERCISED_BY = {
     "app/page/lesson/figures/test_chain_figure.py": {
         "app.page.lesson.chain_runs",
     },
-    "app/page/lesson/test_museum_controller.py": {
-        "app.page.lesson.exhibit_samples",
-        "app.page.lesson.exhibit_texts",
+    "app/page/lesson/test_handout.py": {
+        "app.page.lesson.whole_lesson",
+    },
+    "app/page/lesson/test_lesson_controller.py": {
+        "app.page.lesson.lesson_work",
+    },
+    "app/page/lesson/museum/test_museum_controller.py": {
+        "app.page.lesson.museum.exhibit_samples",
+        "app.page.lesson.museum.exhibit_texts",
     },
     "app/page/panels/test_panels.py": {
         "app.page.editing.observation_panel",
@@ -363,7 +394,7 @@ EXERCISED_BY = {
         "app.page.application",
         "app.page.editing.live_verdict",
         "app.page.lesson.lesson_panel",
-        "app.page.lesson.museum_panel",
+        "app.page.lesson.museum.museum_panel",
         "app.page.notices",
         "app.page.page",
         "app.drawing.scene.tab_views",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import ceil
 
 import cv2
 import numpy as np
@@ -120,8 +119,3 @@ class SvmDetector:
         model = self.model
         values = model.class_weights @ window_features(image, box, model.shape) + model.class_biases
         return model.labels[int(np.argmax(values))]
-
-
-def smallest_robot(model: DetectorModel, width: int) -> int:
-    """Width of the smallest robot that is found in images of a width; pixels."""
-    return ceil(model.shape.body[1] * max(1.0, width / WIDEST))

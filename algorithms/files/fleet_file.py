@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from textwrap import indent
 
@@ -58,34 +59,46 @@ def fleet_from_bytes(source: str, content: bytes, read: Callable[[str], GridMap]
     read   : reads the map of a name in it
     raises : InputFileError, TooLargeError
     """
+    parts = fleet_parts(source, content)
+    files = {}
+    for name, robot in parts.robots.items():
+        robot.refuse_unknown("map")
+        files[name] = robot.text("map", "give the map's YAML file")
+    maps = {name: read(file) for name, file in files.items()}
+    try:
+        return Fleet(maps, parts.sightings, parts.priors, parts.anchor)
+    except SettingError as error:
+        raise InputFileError(source, str(error), "correct the name, or the list of robots") from error
+
+
+@dataclass(frozen=True)
+class FleetParts:
+    """A fleet file taken apart; the fields of each robot by its name, anchor "" where none is told."""
+
+    robots: Mapping[str, Fields]
+    sightings: tuple[FleetSighting, ...]
+    priors: tuple[FleetPrior, ...]
+    anchor: str
+
+
+def fleet_parts(source: str, content: bytes) -> FleetParts:
+    """What a fleet file says, before any map is read; raises InputFileError."""
     check_foreign(source, content)
     if len(content) > fields.MAX_YAML_BYTES and b"robots" not in content:  # before seconds are spent on it
         raise InputFileError(source, "is long, and names no robots", "give a fleet's YAML file")
     f = fields.parse(source, content, "a fleet's YAML file", MOST_BYTES)
     f.refuse_unknown("anchor", "robots", "sightings", "known")
-    robots = f.section("robots", f"name the robots and their maps, as in {EXAMPLE}")
-    if len(robots.values) > MOST_ROBOTS:
-        raise f.error("robots", f"holds {len(robots.values):,} robots", f"give 2 to {MOST_ROBOTS}")
-    files = _map_files(robots)
-    sightings, priors = _sightings(f, list(files)), _priors(f, list(files))
-    anchor = f.text("anchor", "give a robot's name") if "anchor" in f.values else ""
-    maps = {name: read(file) for name, file in files.items()}
-    try:
-        return Fleet(maps, sightings, priors, anchor)
-    except SettingError as error:
-        raise InputFileError(source, str(error), "correct the name, or the list of robots") from error
-
-
-def _map_files(robots: Fields) -> dict[str, str]:
-    """The map file of each robot, by name."""
-    files = {}
-    for name in robots.values:
+    listed = f.section("robots", f"name the robots and their maps, as in {EXAMPLE}")
+    if len(listed.values) > MOST_ROBOTS:
+        raise f.error("robots", f"holds {len(listed.values):,} robots", f"give 2 to {MOST_ROBOTS}")
+    robots = {}
+    for name in listed.values:
         if not is_name(name):
-            raise robots.error(shown(name), "is no name for a robot", NAME_RULE)
-        robot = robots.section(name, "give {map: FILE.yaml}")
-        robot.refuse_unknown("map")
-        files[name] = robot.text("map", "give the map's YAML file")
-    return files
+            raise listed.error(shown(name), "is no name for a robot", NAME_RULE)
+        robots[name] = listed.section(name, "give {map: FILE.yaml}")
+    names = list(robots)
+    anchor = f.text("anchor", "give a robot's name") if "anchor" in f.values else ""
+    return FleetParts(robots, _sightings(f, names), _priors(f, names), anchor)
 
 
 def _sightings(f: Fields, names: list[str]) -> tuple[FleetSighting, ...]:

@@ -62,6 +62,7 @@ class Robot:
     tour     : the stops it visited and the walls in view of them
     true     : (N) poses; world frame
     believed : (N) poses; the robot's own frame, the frame of ``grid``
+    ranges   : (N, beams) what its scanner returned at these poses, as ``scan`` returns it; metres
     grid     : the map it made
     """
 
@@ -69,6 +70,7 @@ class Robot:
     tour: Tour
     true: Track
     believed: Track
+    ranges: FloatArray
     grid: GridMap
 
 
@@ -95,4 +97,4 @@ def drive(
     believed = believe(true, body.turn, body.shift, conditions.drift, rng)
     ranges = scan(building, true.xy, true.heading, body.lidar, rng)
     grid = build_map(believed, ranges, body.lidar, body.resolution, body.name)
-    return Robot(body, tour, true, believed, worn(grid, conditions.wear, rng))
+    return Robot(body, tour, true, believed, ranges, worn(grid, conditions.wear, rng))

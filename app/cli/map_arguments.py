@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
     from algorithms.common.robot_names import RobotNames
     from algorithms.maps.grid_map import GridMap
     from algorithms.observations.pair_problem import Known
+    from app.model.merge_inputs import MergeInputs
 
 
 def add_reading(parser: Parser) -> None:
@@ -121,6 +124,31 @@ def read_maps(args: argparse.Namespace) -> tuple[GridMap, GridMap]:
         for path, resolution, image in zip(paths, (*given, *given, None, None), plain, strict=False)
     )
     return ref, mov
+
+
+def pair_inputs(args: argparse.Namespace, parser: Parser) -> MergeInputs:
+    """What ``first``, ``map2`` and what is known name: two maps, a sample, or the folder of a case.
+
+    Doubts about how the maps are read go to stderr.
+    """
+    from algorithms.files.case_folder import read_case
+    from app.model.merge_inputs import MergeInputs
+
+    known = known_from(args)
+    if args.map2 is not None:
+        args.map1 = Path(args.first)
+        ref, mov = read_maps(args)
+        inputs = MergeInputs.pair(ref, mov, name=f"{args.map1.stem} + {args.map2.stem}").knowing(known)
+    else:
+        if args.resolution is not None or args.unknown_grey is not None:
+            parser.error("--resolution and --unknown-grey say how MAP1 and MAP2 are read: give both maps")
+        folder = case_folder(args.first, parser, "; for two maps give MAP1 and MAP2")
+        inputs = MergeInputs.of(read_case(folder))
+        inputs = inputs.knowing(known) if known else inputs
+    inputs = replace(inputs, names=names_from(args))
+    for warning in inputs.readings():
+        sys.stderr.write(f"warning: {inputs.names.told(warning)}\n")
+    return inputs
 
 
 def case_folder(name: str, parser: Parser, remedy: str = "") -> Path:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import argparse
 from contextlib import suppress
 from math import isfinite
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from algorithms.common.errors import OutputError
 from app.cli.argument_parser import Parser
 
 if TYPE_CHECKING:
@@ -63,3 +65,10 @@ def _size(text: str) -> float:
         if 0 < number < float("inf"):
             return number
     raise argparse.ArgumentTypeError(f"{text} is no positive number of metres")
+
+
+def check_apart(out: Path, fleet: Path) -> None:
+    """Raise OutputError where a result would take the place of the fleet's own folder."""
+    folder = fleet if fleet.is_dir() else fleet.parent
+    if out.resolve() == folder.resolve():
+        raise OutputError(out, "holds the fleet's own files", "choose another --out")

@@ -115,6 +115,11 @@ class BrowserMessages(ABC):
         with self._lock:
             self._pending["hand"] = what or {}
 
+    def link(self, address: str, code: str) -> None:
+        """Show an address as a QR code; an SVG. See lesson.js."""
+        with self._lock:
+            self._pending["link"] = {"address": address, "code": code}
+
     def remember(self, key: str) -> None:
         """Have the tab keep the key to what it leaves behind; see app/web/session_store.py."""
         with self._lock:

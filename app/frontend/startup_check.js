@@ -1,6 +1,10 @@
 // Stands in the page as it is served, before anything else runs: says what is wrong where the rest of the
 // page cannot. Without WebGL the server never hears of the tab; without a connection it cannot be told.
 (() => {
+  // viser connects to the page's address, in which no fragment may stand then; lesson.js puts it back
+  window.mapmeldPlace = location.hash.slice(1);
+  if (window.mapmeldPlace) history.replaceState(history.state, "", location.pathname + location.search);
+
   const style = document.createElement("style");
   style.textContent = `
     .mm-notice{position:fixed;z-index:100000;font:16px/1.5 system-ui,"Segoe UI",sans-serif;color:#111827;background:#fff}

@@ -25,7 +25,8 @@ from app.page.fleet.fleet_controller import FleetController
 from app.page.inputs_controller import InputsController
 from app.page.lesson.lesson_controller import LessonController
 from app.page.lesson.lesson_texts import lesson_folder
-from app.page.lesson.museum_controller import MuseumController
+from app.page.lesson.link_controller import LinkController
+from app.page.lesson.museum.museum_controller import MuseumController
 from app.page.modes import ModeSwitch
 from app.page.notices import Notices
 from app.page.page_display import PageDisplay
@@ -99,9 +100,11 @@ class Page:
         deliver = DownloadTask(client, panels.task)
         fleet = FleetController(tab, runs, inputs, quota, deliver, robots.begin)
         projects = ProjectController(tab, undo, deliver)
-        FilesController(tab, inputs.load, fleet, seeing.sensors.take, projects)
+        files = FilesController(tab, inputs.load, fleet, seeing.sensors.take, projects)
+        LinkController(tab, teaching, files.take_sample)
         museum = MuseumController(tab, undo, runs, inputs, fleet.merge_fleet)
         panels.run.connect_learn(teaching.toggle, museum.toggle)
+        self._seeing = seeing
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
         self._sweep = SweepController(state, panels.sweep, messages, events, runs, deliver)
         research = self._comparison, self._sweep
@@ -149,6 +152,7 @@ class Page:
             with state.locks.drawing:
                 self._comparison.resume(saved.comparison)
                 self._sweep.resume(saved.sweep)
+                self._seeing.resume(saved.sighting)
 
     def close(self) -> None:
         """The tab is gone; what it leaves behind is kept for a while."""
@@ -168,7 +172,8 @@ class Page:
     def _saved(self) -> SavedTab:
         history, run = self._tab.history, self._tab.panels.run
         found, swept = self._comparison.found, self._sweep.swept
-        return SavedTab(history.steps, history.position, run.dark, run.speed, found, swept)
+        left = self._seeing.left
+        return SavedTab(history.steps, history.position, run.dark, run.speed, found, swept, left)
 
     def _keep(self) -> None:
         """What was done is to outlive the server, if it keeps anything."""

@@ -18,7 +18,7 @@ from app.page.export.export_panel import ExportPanel
 from app.page.files.files_panel import FilesPanel
 from app.page.fleet.fleet_panel import FleetPanel
 from app.page.lesson.lesson_panel import LessonPanel
-from app.page.lesson.museum_panel import MuseumPanel
+from app.page.lesson.museum.museum_panel import MuseumPanel
 from app.page.page_state import PageState
 from app.page.panels.charts_panel import ChartsPanel
 from app.page.panels.run_panel import RunPanel

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Collection, Mapping
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,7 +20,7 @@ from app.report.export_frame import AS_MERGED, ExportedMap, ExportFrame
 from app.report.fleet_report import fleet_page
 from app.report.json_report import plain, report_json
 from app.report.result_files import MERGED, PAGE_FILE, REPORT_FILE
-from app.report.ros_transform import frame_names, publish_command
+from app.report.ros_transform import CHOSEN, frame_names, publish_command
 from app.system.clock import made_at
 from app.system.version import versions
 
@@ -29,6 +31,13 @@ GRAPH_FILE = "graph.g2o"
 def island_name(number: int) -> str:
     """What the map of an island is called, by its number from 1: the anchor's is the merged one."""
     return MERGED if number == 1 else f"{MERGED}_island{number}"
+
+
+def remove_other_islands(folder: Path, stems: Collection[str]) -> None:
+    """Take away maps of islands that an earlier merge left in a folder and that are not among ``stems``."""
+    for path in folder.glob(f"{MERGED}_island*"):
+        if path.stem not in stems and re.fullmatch(rf"{MERGED}_island\d+\.(yaml|pgm)", path.name):
+            path.unlink(missing_ok=True)
 
 
 def exported_maps(result: FleetResult, frame: ExportFrame = AS_MERGED) -> dict[str, ExportedMap]:
@@ -65,18 +74,21 @@ def transforms_yaml(result: FleetResult) -> bytes:
     """Where every robot's frame lies in its island's, and the command that publishes it in ROS 2."""
     lines = [
         "# Takes points of a robot's frame to that of the root of its map; m, m, rad. "
-        "The robots' maps are the frames NAME/map, the name in small letters."
+        "The robots' maps are the frames NAME/map, the name in small letters; "
+        "the root's lies in that of the merged map."
     ]
     robots = [name for island in result.islands for name in island.poses]
     frames = dict(zip(robots, frame_names(robots), strict=True))
     for number, island in enumerate(result.islands, 1):
+        merged = CHOSEN if number == 1 else f"{CHOSEN}_island{number}"
         lines += [f"{island_name(number)}:", f"  root: {quoted(island.root)}", "  robots:"]
         for name, T in island.poses.items():
             x, y, theta = (number_text(value) for value in (T.x, T.y, T.theta))
             lines.append(f"    {quoted(name)}:")
             lines.append(f"      T_root_robot: {{x: {x}, y: {y}, theta: {theta}}}")
-            command = publish_command(T, frames[island.root], frames[name])
-            lines.append(f"      publish: {quoted(command)}")
+            # ROS refuses a frame that is its own parent: the root's hangs below that of the merged map
+            parent = merged if name == island.root else frames[island.root]
+            lines.append(f"      publish: {quoted(publish_command(T, parent, frames[name]))}")
     return ("\n".join(lines) + "\n").encode()
 
 

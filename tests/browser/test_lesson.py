@@ -235,6 +235,49 @@ def test_merge_leaves_the_lesson_and_merges(tab):
     assert tab.page.locator(".mm-lesson:visible").count() == 0
 
 
+NOTHING_SMALLER = """() => {
+    const sheet = document.querySelector("[data-mm-sheet]");
+    return Math.min(...[...sheet.querySelectorAll("*")].map((e) => {
+        const words = [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
+        if (!words || !e.getBoundingClientRect().width) return 99;
+        const svg = e.closest("svg.mm-picture"), px = parseFloat(getComputedStyle(e).fontSize);
+        return svg ? px * svg.getScreenCTM().a : px;
+    }));
+}"""
+
+
+def test_a_link_opens_its_place_and_a_class_sees_it_large(open_tab):
+    tab = open_tab((1920, 1080))
+    address = tab.page.url
+    tab.page.goto("about:blank")
+    tab.page.goto(f"{address}#lesson=9&sample=corridor_r3_r2")
+    at_step(tab, 9)
+    settle(lambda: "corridor_r3_r2" in tab.page.locator(".mm-title").inner_text(), "its sample")
+    tab.press("Next ▶")
+    at_step(tab, 10)
+    there = "location.hash === '#lesson=10&sample=corridor_r3_r2'"
+    settle(lambda: tab.page.evaluate(there), "the address to follow")
+    tab.page.locator("button[data-mm-link]").click()
+    settle(lambda: tab.page.locator(".mm-link figure svg").count(), "the code for phones")
+    assert tab.page.get_by_label("Address of this step").input_value() == tab.page.evaluate("location.href")
+    tab.page.keyboard.press("Escape")
+    tab.page.keyboard.press("p")
+    settle(
+        lambda: tab.page.locator("svg.mm-picture").bounding_box()["width"] >= 0.6 * 1920, "the picture large"
+    )
+    box = tab.page.locator("svg.mm-picture").bounding_box()
+    assert box["y"] + box["height"] <= 1080
+    assert tab.page.evaluate(NOTHING_SMALLER) >= 24
+    tab.page.keyboard.press("PageUp")
+    at_step(tab, 9)
+    tab.page.evaluate("location.hash = 'lesson=4'")
+    at_step(tab, 4)
+    tab.page.keyboard.press("Escape")
+    settle(lambda: tab.page.locator("svg.mm-picture").bounding_box()["width"] < 500, "the dock of before")
+    tab.press("Leave")
+    settle(lambda: tab.page.evaluate("!location.hash"), "the address of before")
+
+
 def test_rewritten_texts_show_at_once_and_a_broken_one_is_named(open_tab, sample: Case, tmp_path: Path):
     folder = tmp_path / "mine"
     shutil.copytree(lesson_folder(), folder)

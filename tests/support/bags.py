@@ -16,7 +16,7 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
 
 from algorithms.common.pose import Pose2
-from algorithms.files.bags.message_types import MessageReader
+from algorithms.files.bags.message_writing import MessageWriter
 from algorithms.maps.grid_map import GridMap
 from algorithms.sensors.camera import Camera
 from algorithms.sensors.laser_scan import LaserScan
@@ -40,7 +40,7 @@ class Recorded:
 def write_bag(folder: Path, name: str, kind: str, messages: Iterable[Recorded]) -> Path:
     """A recording of one of KINDS, with these messages; its file or its folder."""
     ros1 = kind.startswith("ros1")
-    types = _types(ros1)
+    types = _writer(ros1).types
     path = folder / (f"{name}.bag" if ros1 else name)
     if ros1:
         writer: Any = Writer1(path)
@@ -63,8 +63,8 @@ def write_bag(folder: Path, name: str, kind: str, messages: Iterable[Recorded]) 
 
 
 @cache
-def _types(ros1: bool) -> Any:
-    return MessageReader(ros1).types
+def _writer(ros1: bool) -> MessageWriter:
+    return MessageWriter(ros1)
 
 
 def bag_bytes(kind: str, messages: Iterable[Recorded]) -> bytes:
@@ -77,30 +77,7 @@ def bag_bytes(kind: str, messages: Iterable[Recorded]) -> bytes:
 
 def message_bytes(message: Recorded, ros1: bool = False) -> bytes:
     """A message as ROS 1 or ROS 2 sends it."""
-    types = _types(ros1)
-    filled = _filled(types, message.type, message.fields, ros1)
-    return bytes((types.serialize_ros1 if ros1 else types.serialize_cdr)(filled, message.type))
-
-
-def _filled(types: Any, name: str, fields: dict[str, Any], ros1: bool) -> Any:
-    """A message with these fields; what is left out is 0, empty or a message of that."""
-    values: dict[str, Any] = {}
-    for field, (kind, detail) in types.fielddefs[name][1]:
-        given = fields.get(field, fields.get(field.lower()))
-        kind_name = kind.name
-        if kind_name == "BASE":
-            values[field] = given if given is not None else {"string": "", "bool": False}.get(detail[0], 0)
-        elif kind_name == "NAME":
-            values[field] = _filled(types, detail, given or {}, ros1)
-        else:
-            inner, inner_detail = detail[0]
-            if inner.name == "NAME":
-                values[field] = [_filled(types, inner_detail, each, ros1) for each in given or ()]
-            else:
-                size = detail[1] if kind_name == "ARRAY" else 0
-                dtype = np.dtype(inner_detail[0])
-                values[field] = np.asarray(given if given is not None else np.zeros(size), dtype=dtype)
-    return types.types[name](**values)
+    return _writer(ros1).write(message.type, message.fields)
 
 
 def header(at: float, frame: str = "") -> dict[str, Any]:

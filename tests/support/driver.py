@@ -42,10 +42,10 @@ READY = "() => window.mapmeld?.applied > 0 && document.querySelector('.mm-state 
 REMEMBER = """try {{ localStorage.getItem("mapmeld-mode") || localStorage.setItem("mapmeld-mode", "{}"); }}
 catch {{ /* a page without a place to remember */ }}"""
 
-# Eight pictures a second are enough: the renderer is software, and its time is that of the tests.
+# Five pictures a second are enough: the renderer is software, and its time is that of the tests.
 SLOW_FRAMES = """(() => {
     const draw = window.requestAnimationFrame.bind(window);
-    window.requestAnimationFrame = (then) => window.setTimeout(() => draw(then), 120);
+    window.requestAnimationFrame = (then) => window.setTimeout(() => draw(then), 200);
     window.cancelAnimationFrame = (wait) => window.clearTimeout(wait);
 })()"""
 
@@ -62,12 +62,13 @@ def metres(told: str) -> float:
 
 def settle(check: Callable[[], Any], what: str) -> Any:
     """Poll until ``check`` gives something true, and return it."""
-    end = monotonic() + PATIENCE
+    end, pause = monotonic() + PATIENCE, 0.03
     while monotonic() < end:
         found = check()
         if found:
             return found
-        sleep(0.03)
+        sleep(pause)
+        pause = min(1.2 * pause, 0.2)  # each look lays the page out anew
     raise AssertionError(f"waited {PATIENCE:.0f} s for {what}")
 
 

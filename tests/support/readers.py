@@ -46,9 +46,9 @@ from algorithms.sensors.laser_scan import LaserScan
 from app.model.fleet_state import FleetState
 from app.model.merge_inputs import Files, MergeInputs, OtherFile, Upload
 from app.model.settings import with_value
-from app.page.lesson.exhibit_texts import read_exhibit
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_texts import read_step
+from app.page.lesson.museum.exhibit_texts import read_exhibit
 from app.page.lesson.placeholders import NUMBERS
 from app.page.page_state import PageState
 from app.page.project.project_file import project_from_bytes, project_to_bytes

@@ -20,6 +20,7 @@ STATIC = "static"  # in the name of the topic of transforms that hold for good
 LONGEST_GAP = NANO  # nanoseconds between two transforms that a pose is taken from; slower is no SLAM
 AROUND = 5 * NANO  # nanoseconds of a recording that are read before and after a time
 MOST_TRANSFORMS = 1_000_000  # of one look; five seconds of any robot are fewer
+MOST_FRAMES = 10_000  # of one tree; a robot has a few dozen
 LEVEL = 0.999  # cosine of the tilt up to which a robot counts as level: 2.6°
 RECORD = "record /tf and /tf_static, and name the frames"
 
@@ -81,7 +82,9 @@ class FrameTree:
         for each in message.transforms:
             parent, child = _name(each.header.frame_id), _name(each.child_frame_id)
             placed = Placed.of(each.transform)
-            if placed is None or parent == child:
+            if placed is None or parent == child or not (parent and child):
+                continue
+            if child not in self._parent and len(self._parent) >= MOST_FRAMES:
                 continue
             self._parent[child] = parent
             if static:
@@ -93,6 +96,17 @@ class FrameTree:
         """By time: transforms may be recorded out of order."""
         for series in self._moving.values():
             series.sort(key=lambda each: each[0])
+
+    def forget(self, span: int, most: int) -> None:
+        """Keep of each frame that moves so much before its newest time (nanoseconds), and so many at most."""
+        for child, series in self._moving.items():
+            since = series[-1][0] - span
+            self._moving[child] = [each for each in series[-most:] if each[0] >= since]
+
+    def newest(self, frame: str) -> int:
+        """Until when a frame's way to its root is known; nanoseconds, 0 where nothing on it moves."""
+        moving = [self._moving[each] for each in self._upwards(_name(frame)) if self._moving.get(each)]
+        return min((series[-1][0] for series in moving), default=0)
 
     def transform(self, target: str, source: str, time: int) -> FloatArray:
         """(4, 4) T_target_source at a time; raises InputFileError that says which link is missing."""

@@ -14,6 +14,8 @@ TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 CAMERA_INFO = "sensor_msgs/msg/CameraInfo"
 SCAN = "sensor_msgs/msg/LaserScan"
+SEEN = "geometry_msgs/msg/PoseWithCovarianceStamped"
+DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
 
 # These have been the same for as long as there are bags: the definitions that a recording brings with it are
 # not needed, and not trusted. The library has the others.

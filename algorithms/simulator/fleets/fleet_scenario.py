@@ -19,7 +19,7 @@ from algorithms.simulator.portable_random import chance, stream, uniform, whole
 from algorithms.simulator.robot import Conditions, Robot, drive, make_body
 from algorithms.simulator.room_tours import TourPlanner
 from algorithms.simulator.scenario import USUAL, pair_up
-from algorithms.simulator.sighting import fit, in_belief, observe
+from algorithms.simulator.sighting import RobotSighting, fit, in_belief, observe
 
 OVERLAP = (0.15, 0.5)  # of two robots that met; share of the smaller map's walls
 LEAST_OVERLAP = 0.1  # robots that share less have not met
@@ -37,6 +37,9 @@ class SimulatedFleet:
     at             : (2,) the middle of each robot's drive, in its own frame; metres
     lies           : numbers of the false sightings, from 0
     tied           : names of the robots that true sightings tie to the anchor
+    building       : that they map
+    robots         : their drives and scans, by name
+    met            : observer and observed robot of every true sighting, and at which of their scans it was
     """
 
     fleet: Fleet
@@ -44,6 +47,9 @@ class SimulatedFleet:
     at: Mapping[str, tuple[float, float]]
     lies: tuple[int, ...]
     tied: frozenset[str]
+    building: Building
+    robots: Mapping[str, Robot]
+    met: tuple[tuple[str, str, RobotSighting], ...]
 
 
 def simulate_fleet(
@@ -69,6 +75,7 @@ def simulate_fleet(
     sizes = max(3, stops // 7), max(5, stops * 2 // 5)
     made: list[Robot] = []
     sightings: list[FleetSighting] = []
+    met: list[tuple[str, str, RobotSighting]] = []
     paired: set[frozenset[int]] = set()
 
     def meet(first: Robot, other: Robot, twice: bool) -> bool:
@@ -81,7 +88,9 @@ def simulate_fleet(
             true, believed = (a.true, b.true), (a.believed, b.believed)
             seen = observe(true, believed, at, rng, (SIGMA_RANGE, SIGMA_BEARING), False)
             seen = replace(seen, observed_heading=None)
-            sightings.append(FleetSighting(a.body.name.lower(), b.body.name.lower(), seen))
+            names = a.body.name.lower(), b.body.name.lower()
+            sightings.append(FleetSighting(*names, seen))
+            met.append((*names, at))
         return True
 
     for number in range(1, robots + 1):
@@ -113,7 +122,9 @@ def simulate_fleet(
     }
     fleet = Fleet({name: robot.grid for name, robot in zip(names, made, strict=True)}, tuple(told))
     tied = _tied(names, [seen for k, seen in enumerate(told) if k not in false])
-    return SimulatedFleet(fleet, {name: T["r1"].inverse() @ T[name] for name in names}, middles, false, tied)
+    T_anchor = {name: T["r1"].inverse() @ T[name] for name in names}
+    drives = dict(zip(names, made, strict=True))
+    return SimulatedFleet(fleet, T_anchor, middles, false, tied, building, drives, tuple(met))
 
 
 def _in_world(robot: Robot, planner: PathPlanner) -> Pose2:

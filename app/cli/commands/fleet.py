@@ -11,7 +11,6 @@ from math import degrees
 from pathlib import Path
 from typing import Any
 
-from algorithms.common.errors import OutputError
 from algorithms.files.atomic_write import check_folder, write_files
 from algorithms.files.fleet_file import FLEET_FILE, read_fleet
 from algorithms.fleets.fleet_merge import FleetResult, PairStep, run_fleet
@@ -19,13 +18,13 @@ from algorithms.fleets.pair_hypotheses import aligned_priors
 from algorithms.observations.fleet import Fleet
 from app.cli.argument_parser import Parser
 from app.cli.executor_flags import add_workers, executor_for
-from app.cli.output_arguments import add_output, frame_of
+from app.cli.output_arguments import add_output, check_apart, frame_of
 from app.cli.progress_bar import bar
 from app.evaluation.table_files import aligned
 from app.jobs.fleet_pairs import run_pairs
 from app.model import verdict_text
 from app.report.export_frame import changes_text
-from app.report.fleet_files import exported_maps, fleet_files
+from app.report.fleet_files import exported_maps, fleet_files, remove_other_islands
 from app.report.fleet_report import summary
 from app.report.result_files import REPORT_FILE
 
@@ -80,7 +79,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     fleet, frame = read_fleet(args.fleet), frame_of(args)
     if args.anchor is not None:
         fleet = replace(fleet, anchor=args.anchor)
-    _check_inputs(args)
+    check_apart(args.out, args.fleet)
     for name, grid in fleet.maps.items():
         for remark in grid.remarks:
             print(f"warning: {name}'s map ({grid.name}): {remark}.", file=sys.stderr)
@@ -90,6 +89,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     exported = exported_maps(result, frame)
     files = fleet_files(fleet, result, name, exported)
     write_files({args.out / file: data for file, data in files.items()})
+    remove_other_islands(args.out, exported)
     if args.json:
         sys.stdout.write(files[REPORT_FILE].decode())
     else:
@@ -98,13 +98,6 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
             print(*(f"{stem}.yaml: {changes_text(each.cells)}" for stem, each in exported.items()), sep="\n")
         print(f"written to {args.out}: {', '.join(files)}")
     return 0 if result.whole else 1
-
-
-def _check_inputs(args: argparse.Namespace) -> None:
-    """Raise OutputError where the result would take the place of the fleet's own folder."""
-    folder = args.fleet if args.fleet.is_dir() else args.fleet.parent
-    if args.out.resolve() == folder.resolve():
-        raise OutputError(args.out, "holds the fleet's own files", "choose another --out")
 
 
 def _with_bar(steps: Iterator[Any]) -> FleetResult:

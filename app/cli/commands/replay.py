@@ -3,28 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from algorithms.files.atomic_write import check_file, write_file
-from algorithms.files.case_folder import read_case
 from algorithms.methods import registry as methods
 from algorithms.observations.pair_problem import PairProblem
 from app.cli.argument_parser import Parser
-from app.cli.map_arguments import (
-    add_known,
-    add_names,
-    add_reading,
-    case_folder,
-    known_from,
-    names_from,
-    read_maps,
-)
+from app.cli.map_arguments import add_known, add_names, add_reading, pair_inputs
 from app.cli.progress_bar import with_bar
 from app.cli.setting_flags import add_method, configs_from
-from app.model.merge_inputs import MergeInputs
 from app.report.replay.html_page import ReplayMetadata, replay_html
 from app.report.replay.recorder import record
 
@@ -65,11 +53,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, record, write; the exit status."""
     if args.out.suffix.lower() not in HTML_SUFFIXES:
         parser.error(f"--out is {args.out}; let its name end in .html, or no browser will open it")
-    if args.map2 is None and (args.resolution is not None or args.unknown_grey is not None):
-        parser.error("--resolution and --unknown-grey say how MAP1 and MAP2 are read: give both maps")
-    inputs = replace(_inputs(args, parser), names=names_from(args))
-    for warning in inputs.readings():
-        print(f"warning: {inputs.names.told(warning)}", file=sys.stderr)
+    inputs = pair_inputs(args, parser)
     check_file(args.out)
     assert inputs.ref is not None
     assert inputs.mov is not None
@@ -84,15 +68,3 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     print(recording["verdict"])
     print(f"written to {args.out}: {len(page) / 1000:,.0f} kB, {recording['length']:.0f} s")
     return 0
-
-
-def _inputs(args: argparse.Namespace, parser: Parser) -> MergeInputs:
-    """What the command line names: two maps, a sample by its name, or the folder of a case."""
-    if args.map2 is not None:
-        args.map1 = Path(args.first)
-        ref, mov = read_maps(args)
-        name = f"{args.map1.stem} + {args.map2.stem}"
-        return MergeInputs.pair(ref, mov, name=name).knowing(known_from(args))
-    inputs = MergeInputs.of(read_case(case_folder(args.first, parser, "; for two maps give MAP1 and MAP2")))
-    known = known_from(args)
-    return inputs.knowing(known) if known else inputs

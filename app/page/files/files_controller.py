@@ -61,7 +61,7 @@ class FilesController:
         self._reader = FileReader()
         self._arrived: list[Upload | None] = []  # None: there was no room for it
         self._lock = Lock()
-        self._panel.connect(self._take_sample, self._gather, self._use_form, self._forget)
+        self._panel.connect(self.take_sample, self._gather, self._use_form, self._forget)
         self._robots = tab.panels.fleet.sample
         on_choice(self._robots, self._take_sample_robot)
         dates = Numbers(0, MOST_DATES)
@@ -161,7 +161,8 @@ class FilesController:
         with self._locks.action:
             self._show_pair(Files(self._panel.files.sample), "forget the files")
 
-    def _take_sample(self, name: str) -> None:
+    def take_sample(self, name: str) -> None:
+        """Show a sample in place of what is on the page; nothing where there is none of that name."""
         with self._locks.action:
             before = self._panel.files
             pair, fleet = paths.samples().get(name), paths.fleets().get(name)

@@ -15,6 +15,7 @@ from app.page.lesson.lesson_texts import StepText, filled
 from app.page.lesson.placeholders import numbers_of
 from app.page.page_display import PageDisplay
 from app.page.page_state import PageState
+from app.system import data_paths as paths
 
 OWN = "Your own settings and results come back when you leave."
 WAIT = "Working it out on these maps …"
@@ -62,7 +63,8 @@ class LessonDisplay:
     def words(self, index: int, text: StepText, lesson: LessonRun, answered: Collection[int]) -> None:
         """Show a step's title and what to try; ``answered``: numbers of those whose answers are shown."""
         numbers, told = numbers_of(lesson) if lesson.possible else {}, lesson.inputs.names.told
-        self._panel.text(index, told(text.title), OWN)
+        sample = lesson.inputs.name if lesson.inputs.name in paths.samples() else ""
+        self._panel.text(index, told(text.title), OWN, sample, filled(told(text.notes), numbers))
         answers = enumerate(filled(told(trial.answer), numbers) for trial in text.trials)
         self._panel.trials(
             [replace(trial, ask=told(trial.ask)) for trial in text.trials],

@@ -17,6 +17,12 @@ from app.page.panels.html_widgets import Action, box, on_choice, on_press, put
 
 BACK, NEXT, LEAVE = "◀ Back", "Next ▶", "Leave"
 ANSWER, HIDE, PUT_BACK = "Show the answer", "Hide the answer", "Put it back"
+NOTES = '<details class="mm-notes"><summary>For who teaches</summary>'
+BUTTONS = (  # what they do lesson.js does by itself
+    '<span class="mm-aids"><button type="button" data-mm-link title="A link to this step, and its QR code">'
+    'Link</button><button type="button" data-mm-presenter aria-pressed="false" '
+    'title="The picture large, for a class. Press P">Present</button></span>'
+)
 WIDTH = 424
 MOST_TRIALS, MOST_DIALS = 3, 2
 
@@ -91,19 +97,23 @@ class LessonPanel:
         self._titles = tuple(f"{k}. {title}" for k, title in enumerate(titles, first))
         put(self._step, options=self._titles)
 
-    def text(self, index: int, title: str, foot: str = "") -> None:
-        """Show the title of a step."""
+    def text(self, index: int, title: str, foot: str = "", sample: str = "", notes: str = "") -> None:
+        """Show the title of a step, and below it what a teacher should know.
+
+        sample : name of the one that it is shown on; empty where it is none
+        """
         put(self._step, value=self._titles[index])
         dots = "".join(f"<i{' data-on' if k <= index else ''}></i>" for k in range(len(self._titles)))
         first = self._first
         step, last = first + index, first + len(self._titles) - 1
         where = f"step {step} of {last}"
         self._title.content = (
-            f'<div class="mm-lesson" data-step="{step}" data-first="{first}" data-last="{last}">'
-            f"<h3>{escape(title)}</h3>"
+            f'<div class="mm-lesson" data-step="{step}" data-first="{first}" data-last="{last}" '
+            f'data-sample="{escape(sample)}"><h3>{escape(title)}</h3>{BUTTONS}'
             f'<span class="mm-dots" role="img" aria-label="{where}" title="{where}">{dots}</span></div>'
         )
-        self._foot.content = f'<div class="mm-foot">{escape(foot)}</div>' if foot else ""
+        told = f'<div class="mm-foot">{escape(foot)}</div>' if foot else ""
+        self._foot.content = f"{NOTES}<p>{emphasised(notes)}</p></details>{told}" if notes else told
 
     def beside(self, words: str, equations: Sequence[str]) -> None:
         """Show what stands beside a picture: Markdown, and equations by their names."""

@@ -59,6 +59,7 @@ class StepText:
     picture   : a name of ``figure_registry``, or empty
     equations : those beside each part of the picture; one group where it has no parts
     body      : Markdown; a line of three asterisks between the words for each part
+    notes     : for who teaches it; empty for none
     """
 
     source: str
@@ -67,6 +68,12 @@ class StepText:
     equations: tuple[tuple[str, ...], ...]
     trials: tuple[Exercise, ...]
     body: str
+    notes: str = ""
+
+    @property
+    def parts(self) -> int:
+        """How many parts of the picture have words of their own; at least 1."""
+        return len(PART.split(self.body))
 
     def words(self, part: int) -> str:
         """What stands beside a part of the picture, from 0."""
@@ -106,7 +113,7 @@ def read_step(path: Path, pictures: Mapping[str, Picture], numbers: Collection[s
     pictures, numbers : the pictures by their names, and the names of the placeholders that there are
     """
     fields, body = parts_of(path)
-    fields.refuse_unknown("title", "picture", "equations", "try")
+    fields.refuse_unknown("title", "picture", "equations", "try", "notes")
     picture = fields.text("picture", "name a picture, or leave it out") if "picture" in fields.values else ""
     if picture and picture not in pictures:
         raise fields.error("picture", f"is {shown(picture)}", f"known are {', '.join(sorted(pictures))}")
@@ -118,16 +125,17 @@ def read_step(path: Path, pictures: Mapping[str, Picture], numbers: Collection[s
             raise fields.error("equations", f"holds {shown(name)}", f"known are {', '.join(known)}")
     title = fields.text("title", "give the step a title")
     ways = pictures[picture].ways if picture else ()
+    notes = fields.text("notes", "say what a teacher should know") if "notes" in fields.values else ""
     entries = enumerate(_list(fields, "try", "give a list"), 1)
     trials = tuple(_trial(fields, k, entry, ways) for k, entry in entries)
-    for text in (body, *(words for trial in trials for words in (trial.ask, trial.answer))):
+    for text in (body, notes, *(words for trial in trials for words in (trial.ask, trial.answer))):
         for found in PLACEHOLDER.findall(text):
             if found not in numbers:
                 wrong = f"holds {{{found}}}, which is no number of the lesson"
                 near = get_close_matches(found, list(numbers), n=5, cutoff=0.0)
                 raise InputFileError(path, wrong, f"nearest are {', '.join(near)}")
     grouped = tuple(tuple(group) if isinstance(group, list) else (group,) for group in groups)
-    return StepText(str(path), title, picture, grouped, trials, body)
+    return StepText(str(path), title, picture, grouped, trials, body, notes)
 
 
 def with_settings(config: Any, settings: Settings) -> Any:

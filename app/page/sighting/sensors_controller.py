@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -13,9 +13,11 @@ from algorithms.files.camera_file import CAMERA_FILE
 from algorithms.files.camera_picture import MOST_BYTES
 from algorithms.files.encounter_table import ENCOUNTER_TABLE, EncounterRow
 from algorithms.files.map_file import read_bytes
+from algorithms.maps.grid_map import GridMap
 from app.model.files.map_slots import short_name
 from app.model.merge_inputs import MergeInputs, Upload
 from app.model.observation_draft import ObservationDraft
+from app.model.sighting.look_settings import LookSettings
 from app.model.sighting.sensor_files import SensorFiles
 from app.page.sighting.sighting_look import LookOrder
 from app.page.tab import Tab
@@ -23,6 +25,23 @@ from app.system import data_paths as paths
 
 TYPED = "as typed"
 OF_OBSERVATION = "as in the observation"
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedSensors:
+    """What was loaded and typed, for a tab that is reloaded.
+
+    grids         : of the maps that it belongs to
+    folder        : of the sample whose files these are
+    place, source : where the robots stood, and who says so
+    """
+
+    grids: tuple[GridMap, ...]
+    files: SensorFiles
+    folder: Path | None
+    place: ObservationDraft
+    source: str
+    settings: LookSettings
 
 
 class SensorsController:
@@ -93,6 +112,21 @@ class SensorsController:
         with self._locks.action:
             self._panel.show_settings()
             self._tell()
+
+    @property
+    def loaded(self) -> LoadedSensors:
+        grids, settings = self._pair.grids, self._panel.settings
+        return LoadedSensors(grids, self.files, self._folder, self.place, self._source, settings)
+
+    def resume(self, loaded: LoadedSensors) -> bool:
+        """Take up what was loaded before the reload; False where other maps are there now."""
+        if loaded.grids != self._pair.grids:
+            return False
+        self.files, self._folder = loaded.files, loaded.folder
+        self._panel.take_settings(loaded.settings)
+        self._stand(loaded.place, loaded.source)
+        self._tell()
+        return True
 
     # --- files ------------------------------------------------------------------------------------
 

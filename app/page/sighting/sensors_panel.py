@@ -169,6 +169,23 @@ class SensorsPanel:
             radians(float(self._view.value)),
         )
 
+    def take_settings(self, look: LookSettings) -> None:
+        """Set the widgets as they stood."""
+        body = look.body
+        put(self._finder, value=next(name for name, finder in FINDERS.items() if finder == look.finder))
+        put(self._least, value=look.least_probability)
+        put(self._family, value=look.family)
+        put(self._tag_size, value=look.tag_size)
+        put(self._shape, value=ROUND if body.round else BOXY)
+        if body.round:
+            put(self._radius, value=body.length / 2)
+        else:
+            put(self._length, value=body.length)
+            put(self._width, value=body.width)
+        put(self._use_map, value=look.use_map)
+        put(self._view, value=round(degrees(look.field_of_view), 1))
+        self.show_settings()
+
     def visible(self, yes: bool) -> None:
         """Whether there are two maps."""
         put(self._folder, visible=yes)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from threading import Event
@@ -22,7 +23,7 @@ from app.model.sighting.sighting_text import outcome_text
 from app.page.inputs_controller import InputsController
 from app.page.modes import Mode
 from app.page.run_controller import RunController
-from app.page.sighting.sensors_controller import SensorsController
+from app.page.sighting.sensors_controller import LoadedSensors, SensorsController
 from app.page.sighting.sighting_dock import SightingPage
 from app.page.sighting.sighting_html import boxes_html, gradients_html, picture_html, scan_html
 from app.page.sighting.sighting_look import Look, LookOrder, look
@@ -33,6 +34,20 @@ LABEL = "sighting from camera and scan"  # in the history
 STALE = "Files or settings have changed since: press “Look again”."
 LOOKING = "Looking for robots in {}."
 STOPPED = "Stopped: nothing was looked at."
+
+
+@dataclass(frozen=True, eq=False)
+class LeftSighting:
+    """What a tab leaves behind.
+
+    order, look : what was looked at, and what came of it; None where nothing was
+    shown       : the box that is looked at closer
+    """
+
+    loaded: LoadedSensors
+    order: LookOrder | None = None
+    look: Look | None = None
+    shown: int | None = None
 
 
 class SightingController:
@@ -68,6 +83,18 @@ class SightingController:
 
     def close(self) -> None:
         self._work.stop()
+
+    @property
+    def left(self) -> LeftSighting:
+        """What was loaded and what came of it: for a tab that is reloaded."""
+        return LeftSighting(self.sensors.loaded, self._order, self._look, self._shown)
+
+    def resume(self, left: LeftSighting | None) -> None:
+        """Take up what an earlier tab had looked at."""
+        if left is None or not self.sensors.resume(left.loaded) or left.look is None:
+            return
+        self._order, self._look, self._shown = left.order, left.look, left.shown
+        self._possible()
 
     @property
     def active(self) -> bool:

@@ -145,7 +145,9 @@ class UndoHistory:
 
 @dataclass(frozen=True, eq=False)
 class SavedTab:
-    """What a tab leaves behind: its history, how it was looked at, how fast, and what research found."""
+    """What a tab leaves behind: its history, how it was looked at, how fast, what research found, and
+    what camera and laser saw.
+    """
 
     steps: tuple[UndoStep, ...]
     position: int = 0
@@ -153,6 +155,7 @@ class SavedTab:
     speed: str = ""
     comparison: Any = None
     sweep: Any = None
+    sighting: Any = None
 
 
 def _joined(first: str, then: str) -> str:

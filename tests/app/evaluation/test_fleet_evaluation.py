@@ -6,12 +6,14 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from algorithms.common.pose import Pose2
 from algorithms.files.fleet_truth_file import FleetTruth
 from algorithms.fleets.fleet_merge import merge_fleet
 from algorithms.observations.fleet import Fleet, FleetSighting
+from algorithms.simulator.buildings.floor_plan import Building
 from algorithms.simulator.fleets.fleet_scenario import SimulatedFleet
 from algorithms.simulator.fleets.sample_fleets import fleet_files
 from app.cli.main import main
@@ -56,7 +58,8 @@ def test_the_command_prints_a_table_and_leaves_the_numbers(fleet, truth, tmp_pat
     folder = tmp_path / "fleets" / "drawn_1"
     folder.mkdir(parents=True)
     tied = frozenset({"ann", "bob"})
-    made = SimulatedFleet(fleet, truth.T_anchor_robot, truth.at, truth.lies, tied)
+    empty = Building("none", np.zeros((1, 1), np.uint8), 0.05, np.zeros((0, 2)))
+    made = SimulatedFleet(fleet, truth.T_anchor_robot, truth.at, truth.lies, tied, empty, {}, ())
     for name, data in fleet_files(made).items():
         (folder / name).write_bytes(data)
     out = tmp_path / "out.json"

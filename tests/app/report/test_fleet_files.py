@@ -26,6 +26,8 @@ from app.report.ros_transform import frame_names, publish_command
 
 ALL = {"merged.pgm", "merged.yaml", "transforms.yaml", "graph.g2o", "report.html", "report.json"}
 
+MINE = "merged_island_of_mine.yaml"
+
 
 def sighting(o, observer: str, observed: str) -> dict:
     """As the fleet file has it."""
@@ -56,12 +58,16 @@ def folder(small_case, strangers, tmp_path_factory) -> Path:
 def left(folder: Path) -> Path:
     """What a merge of it leaves."""
     out = folder.parent / "out"
+    write_files(
+        {out / name: b"of an earlier merge" for name in ("merged_island2.yaml", "merged_island2.pgm")}
+    )
+    write_files({out / MINE: b"a person's own"})
     assert main(["fleet", str(folder), "--out", str(out), "--jobs", "1"]) == 1  # Dan is not placed
     return out
 
 
 def test_the_merged_map_and_every_transform_are_left(left, small_case):
-    assert {path.name for path in left.iterdir()} == ALL
+    assert {path.name for path in left.iterdir()} == ALL | {MINE}  # of an earlier merge there is no island
     assert read_map(left / "merged.yaml").resolution == small_case.ref.resolution
     told = yaml.safe_load((left / "transforms.yaml").read_text())
     assert set(told["merged"]["robots"]) == {"ann", "bob"}
@@ -161,7 +167,7 @@ def test_whatever_robots_are_called_their_transforms_read_back_and_a_shell_runs_
     for name, robot in told["merged"]["robots"].items():
         words = shlex.split(robot["publish"])
         assert len(words) == 14
-        assert words[-3::2] == [frames[names[0]], frames[name]]
+        assert words[-3::2] == ["map" if name == names[0] else frames[names[0]], frames[name]]
 
 
 def test_a_warning_names_the_robot_whose_map_is_odd_and_who_is_alone_is_said_to_be(tmp_path, capsys):

@@ -12,8 +12,8 @@ from algorithms.methods.spectra_config import PipelineConfig
 from app.model.settings import settings_of
 from app.page.lesson import equations
 from app.page.lesson.equations import symbols, symbols_in
-from app.page.lesson.exhibit_texts import museum_folder
 from app.page.lesson.lesson_texts import files, lesson_folder
+from app.page.lesson.museum.exhibit_texts import museum_folder
 
 LAYOUT = re.compile(
     r"\\text\{[^}]*\}|\\(?:begin|end)\{[a-z]+\}|\\mathrm\{arg\}"

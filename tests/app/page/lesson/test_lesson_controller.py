@@ -17,7 +17,7 @@ from app.jobs.job_thread import JobThread
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
 from app.model.settings import with_value
-from app.page.lesson import lesson_controller
+from app.page.lesson import lesson_work
 from app.page.lesson.lesson_controller import LessonController
 from app.page.lesson.lesson_texts import lesson_folder
 from app.page.lesson.sighting_look import STAND_IN
@@ -49,7 +49,7 @@ def lesson(tab, tmp_path, monkeypatch) -> LessonController:
 
 
 def make(tab, folder, monkeypatch) -> LessonController:
-    monkeypatch.setattr(lesson_controller, "JobThread", lambda *_: Mock(JobThread))
+    monkeypatch.setattr(lesson_work, "JobThread", lambda *_: Mock(JobThread))
     runs = Mock(RunController, thread=Mock())
 
     def set_method(method, config, seed=None):
@@ -89,6 +89,13 @@ def test_it_goes_from_step_to_step_and_no_further_and_comes_back_to_where_it_was
     assert step(tab) == (1, "Two")
     lesson.go(99)
     assert step(tab) == (1, "Two")
+
+
+def test_it_opens_at_the_step_of_a_number_or_at_the_nearest(lesson, tab):
+    for number, index in ((2, 1), (-7, 0), (10**6, 2)):
+        lesson.open_at(number)
+        assert lesson.open
+        assert lesson._index == index
 
 
 def test_a_broken_text_is_named_and_the_others_are_shown(lesson, tab):
@@ -141,21 +148,21 @@ def comparing(tab, tmp_path, monkeypatch, result) -> LessonController:
 
 
 def own_run_ends(lesson: LessonController, result: MergeResult) -> None:
-    lesson._steps = [Step("verdict", result, 0.0)]
-    lesson.ended(lesson._state.job(), RunState())
+    lesson._work._steps = [Step("verdict", result, 0.0)]
+    lesson._work.ended(lesson._state.job(), RunState())
 
 
 def asked(lesson: LessonController) -> MergeJob:
     """What the thread was asked for last."""
-    return lesson._thread.request.call_args.args[0]
+    return lesson._work._thread.request.call_args.args[0]
 
 
 def ended(lesson: LessonController, result: MergeResult) -> None:
     """What it was asked for last has come to its end."""
     job, story = asked(lesson), RunState()
-    lesson.begun(job)
+    lesson._work.begun(job)
     story.add(Step("verdict", result, 0.0))
-    lesson.ended(job, story)
+    lesson._work.ended(job, story)
 
 
 def test_a_step_that_compares_begins_one_merge_after_another_once_the_lessons_own_is_over(comparing, result):
@@ -165,34 +172,34 @@ def test_a_step_that_compares_begins_one_merge_after_another_once_the_lessons_ow
         compared.append(asked(comparing))
     assert [len(job.known) for job in compared] == [0, 1, 1]
     assert compared[-1].known == comparing._state.inputs.observations
-    before = comparing._thread.request.call_count
+    before = comparing._work._thread.request.call_count
     ended(comparing, result)
-    assert comparing._thread.request.call_count == before  # all are over
+    assert comparing._work._thread.request.call_count == before  # all are over
     comparing.go(0)
     comparing.go(1)
-    assert comparing._thread.request.call_count == before  # and stay so
+    assert comparing._work._thread.request.call_count == before  # and stay so
 
 
 def test_leaving_the_step_stops_the_merge_at_work_and_coming_back_begins_that_one_anew(comparing, result):
     ended(comparing, result)
     at_work = asked(comparing)
-    comparing.begun(at_work)
-    stops = comparing._thread.stop.call_count
+    comparing._work.begun(at_work)
+    stops = comparing._work._thread.stop.call_count
     comparing.move(-1)
-    assert comparing._thread.stop.call_count > stops
-    comparing.stopped(at_work, RunState())
-    assert comparing._lesson.compared(at_work).run is None
-    requests = comparing._thread.request.call_count
+    assert comparing._work._thread.stop.call_count > stops
+    comparing._work.stopped(at_work, RunState())
+    assert comparing._work.lesson.compared(at_work).run is None
+    requests = comparing._work._thread.request.call_count
     comparing.move(1)
     assert asked(comparing) is at_work
-    assert comparing._thread.request.call_count == requests + 1
+    assert comparing._work._thread.request.call_count == requests + 1
 
 
 def test_a_merge_without_an_answer_is_told_in_its_place_and_the_next_one_begins(comparing):
     first = asked(comparing)
-    comparing.failed(first, RunState(), NoAnswerError("no walls coincide"))
+    comparing._work.failed(first, RunState(), NoAnswerError("no walls coincide"))
     assert asked(comparing) is not first
-    assert comparing._lesson.compared(first).over
+    assert comparing._work.lesson.compared(first).over
     assert "no answer" in comparing._panel.picture.call_args.args[0]
 
 
@@ -224,41 +231,41 @@ def looking(tab, tmp_path, monkeypatch) -> LessonController:
 def looked_at(lesson: LessonController) -> None:
     """The look that was asked for last is over."""
     job, story = asked(lesson), RunState()
-    lesson.begun(job)
+    lesson._work.begun(job)
     story.add(Step("observe", look_at(STAND_IN), 0.0))
-    lesson.ended(job, story)
+    lesson._work.ended(job, story)
 
 
 def test_a_look_comes_before_the_lessons_own_run_and_the_run_follows_it(looking, tab, result):
     looking.enter()
-    assert looking._lesson.compared(asked(looking))
+    assert looking._work.lesson.compared(asked(looking))
     assert "step 0 of 3" in tab.display.messages.hud.call_args.kwargs["state"]
     assert "…" in tab.panels.lesson.beside.call_args.args[0]
     looked_at(looking)
-    assert looking._lesson.compared(asked(looking)) is None  # the lesson's own
+    assert looking._work.lesson.compared(asked(looking)) is None  # the lesson's own
     assert asked(looking).steps is None
     assert "…" not in tab.panels.lesson.beside.call_args.args[0]  # its numbers are in the text
     own_run_ends(looking, result)
-    requests = looking._thread.request.call_count
+    requests = looking._work._thread.request.call_count
     looking.move(1)
     looking.move(-1)
-    assert looking._thread.request.call_count == requests  # both are over
+    assert looking._work._thread.request.call_count == requests  # both are over
 
 
 def test_a_look_that_is_left_before_it_is_over_still_lets_the_run_begin(looking):
     looking.enter()
     look = asked(looking)
-    looking.begun(look)
+    looking._work.begun(look)
     looking.move(1)
-    looking.failed(look, RunState(), NoAnswerError("no picture"))
+    looking._work.failed(look, RunState(), NoAnswerError("no picture"))
     assert asked(looking).steps is None
-    assert looking._lesson.compared(look).failed == "Refused: no picture."
+    assert looking._work.lesson.compared(look).failed == "Refused: no picture."
 
 
 def test_a_thing_to_try_may_draw_the_picture_in_another_way_and_leaves_the_settings(looking, tab):
     looking.enter()
     looked_at(looking)
-    before, requests = tab.state.config, looking._thread.request.call_count
+    before, requests = tab.state.config, looking._work._thread.request.call_count
     for put_back in (lambda: looking._try(0), lambda: looking.move(1)):
         looking.go(0)
         assert tab.panels.lesson.beside.call_args.args[1] == ("line",)
@@ -269,7 +276,7 @@ def test_a_thing_to_try_may_draw_the_picture_in_another_way_and_leaves_the_setti
         put_back()
         assert looking._display.way == ""
     assert tab.state.config is before
-    assert looking._thread.request.call_count == requests
+    assert looking._work._thread.request.call_count == requests
 
 
 def test_the_lesson_that_ships_opens_with_its_first_step(tab, monkeypatch):

@@ -117,6 +117,11 @@ def test_what_is_wrong_with_a_step_in_parts_is_told(tmp_path, old, new, said):
 
 
 @pytest.mark.parametrize("path", files(lesson_folder()), ids=lambda path: path.stem)
+def test_every_step_has_a_note_for_who_teaches_it(path):
+    assert len(read_step(path, PICTURES, NUMBERS).notes) > 40
+
+
+@pytest.mark.parametrize("path", files(lesson_folder()), ids=lambda path: path.stem)
 def test_what_there_is_to_try_shows_no_raw_markdown(path):
     for trial in read_step(path, PICTURES, NUMBERS).trials:
         assert not re.search(r"[*`\\]|\]\(", emphasised(trial.ask) + emphasised(trial.answer))

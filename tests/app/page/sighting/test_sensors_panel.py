@@ -47,6 +47,20 @@ def test_settings_are_read_as_the_widgets_stand(panel, controls):
     )
 
 
+@pytest.mark.parametrize(
+    "settings",
+    [
+        LookSettings(),
+        LookSettings("tags", 0.3, "25h9", 0.16, Footprint.disc(0.175), False, radians(60)),
+        LookSettings("own", body=Footprint(0.7, 0.3)),
+    ],
+)
+def test_settings_that_are_taken_up_are_those_that_are_read(panel, settings):
+    panel.take_settings(LookSettings("tags", 0.9, body=Footprint.disc(1.0), field_of_view=1.0))
+    panel.take_settings(settings)
+    assert panel.settings == settings
+
+
 def test_only_what_does_something_is_shown(panel, controls):
     def shown(*labels):
         panel.show_settings()

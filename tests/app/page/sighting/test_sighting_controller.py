@@ -130,6 +130,29 @@ def test_close_brings_the_charts_back_and_the_look_can_be_shown_again(seeing, ta
     assert seeing.active
 
 
+def test_a_reloaded_tab_takes_up_files_places_and_what_was_seen(seeing, tab, inputs, runs, executor):
+    load(tab, NEAR, ASIDE)
+    look(tab)
+    choose(tab, 1)
+    seeing.sensors.typed("x1", 1.5)
+    left, shown = seeing.left, page(tab)
+
+    reloaded = noting_tab(inputs)
+    reloaded.panels.sensors.settings = LOOK
+    again = SightingController(reloaded, runs, Mock(InputsController), executor, dict)
+    again.resume(left)
+    reloaded.panels.sensors.take_settings.assert_called_once_with(LOOK)
+    assert again.sensors.place == seeing.sensors.place
+    again.open()
+    assert page(reloaded) == shown
+    assert page(reloaded).usable
+
+    other = noting_tab(MergeInputs.pair(inputs.mov, inputs.ref))
+    elsewhere = SightingController(other, runs, Mock(InputsController), executor, dict)
+    elsewhere.resume(left)
+    assert not elsewhere.sensors.files.any
+
+
 def test_of_two_robots_a_person_chooses_and_that_one_is_used(seeing, tab, inputs):
     load(tab, NEAR, ASIDE)
     look(tab)

@@ -16,10 +16,10 @@ from app.model.settings import settings_of, text_for, value_at
 from app.model.status_text import apart_by
 from app.model.view_modes import MUSEUM
 from app.page.inputs_controller import InputsController
-from app.page.lesson.exhibit_samples import exhibit_fleet, exhibit_inputs, exhibit_picture
-from app.page.lesson.exhibit_texts import Exhibit, museum_folder, read_exhibit
 from app.page.lesson.figures.poster_figure import opinions, poster
 from app.page.lesson.lesson_texts import Settings, files, with_settings
+from app.page.lesson.museum.exhibit_samples import exhibit_fleet, exhibit_inputs, exhibit_picture
+from app.page.lesson.museum.exhibit_texts import Exhibit, museum_folder, read_exhibit
 from app.page.lesson.sighting_look import LookThread, SightingLook
 from app.page.run_controller import RunController
 from app.page.tab import Tab

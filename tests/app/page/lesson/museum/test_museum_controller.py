@@ -21,11 +21,11 @@ from algorithms.methods.registry import METHODS, merge
 from app.model.merge_inputs import MergeInputs
 from app.model.verdict_text import remedy
 from app.page.inputs_controller import InputsController
-from app.page.lesson import museum_controller
-from app.page.lesson.exhibit_samples import exhibit_fleet, exhibit_inputs, exhibit_picture
-from app.page.lesson.exhibit_texts import Exhibit, museum_folder, read_exhibit
 from app.page.lesson.lesson_texts import files, with_settings
-from app.page.lesson.museum_controller import MuseumController, changes, rows
+from app.page.lesson.museum import museum_controller
+from app.page.lesson.museum.exhibit_samples import exhibit_fleet, exhibit_inputs, exhibit_picture
+from app.page.lesson.museum.exhibit_texts import Exhibit, museum_folder, read_exhibit
+from app.page.lesson.museum.museum_controller import MuseumController, changes, rows
 from app.page.lesson.sighting_look import LookThread, look
 from app.page.run_controller import RunController
 from app.page.undo.undo_controller import UndoController

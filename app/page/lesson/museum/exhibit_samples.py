@@ -15,7 +15,7 @@ from algorithms.fleets.pair_hypotheses import PairOrder
 from algorithms.observations.fleet import Fleet
 from app.model.fleet_state import FleetState
 from app.model.merge_inputs import MergeInputs
-from app.page.lesson.exhibit_texts import Exhibit
+from app.page.lesson.museum.exhibit_texts import Exhibit
 from app.page.lesson.sighting_look import SightingTask
 from app.system import data_paths as paths
 

@@ -1,0 +1,1 @@
+"""The museum of failures: pairs that the method, set in a certain way, gets wrong, and their cures."""
