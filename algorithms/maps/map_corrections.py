@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import ceil, cos, floor, hypot, sin, sqrt
 from typing import Literal
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -94,6 +95,7 @@ class Corrections:
 
 
 NO_CORRECTIONS = Corrections()
+_RULED: WeakKeyDictionary[Fusion, tuple[ConflictRule, CellArray]] = WeakKeyDictionary()  # the last of each
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +110,7 @@ class Corrected:
 def corrected(fusion: Fusion, corrections: Corrections) -> Corrected:
     """The merged map of two as a person corrected it; ``fusion`` stays as it is."""
     merged = fusion.merged
-    cells = merged.cells if corrections.rule is None else fusion.merged_by(corrections.rule)
+    cells = merged.cells if corrections.rule is None else _ruled(fusion, corrections.rule)
     if corrections.edits:
         cells = cells.copy()
     for edit in corrections.edits:
@@ -117,6 +119,13 @@ def corrected(fusion: Fusion, corrections: Corrections) -> Corrected:
     changed = 0 if cells is merged.cells else int(np.count_nonzero(cells != merged.cells))
     grid = replace(merged, cells=cells) if changed else merged
     return Corrected(cropped(grid) if corrections.crop else grid, changed, corrections)
+
+
+def _ruled(fusion: Fusion, rule: ConflictRule) -> CellArray:
+    """The merged map's cells by another rule: worked out once, not for every stroke of a brush."""
+    if fusion not in _RULED or _RULED[fusion][0] is not rule:
+        _RULED[fusion] = rule, fusion.merged_by(rule)
+    return _RULED[fusion][1]
 
 
 def cropped(grid: GridMap) -> GridMap:
