@@ -344,6 +344,9 @@ EXERCISED_BY = {
     "app/page/test_cancellable_task.py": {
         "app.system.cancellation",
     },
+    "app/page/editing/test_correction_controller.py": {
+        "app.page.editing.correction_panel",
+    },
     "app/page/editing/test_names_controller.py": {
         "app.page.editing.names_panel",
     },

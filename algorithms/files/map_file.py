@@ -7,6 +7,7 @@ cells. An image has its top row first and a GridMap its bottom row: the flip liv
 from __future__ import annotations
 
 import io
+import os
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePath, PureWindowsPath
@@ -262,7 +263,7 @@ def _open(image_path: Path) -> BinaryIO:
 
 def _read_image(path: Path, meta: MapMeta, name: str) -> GridMap:
     with _open(path) as stream:
-        return _to_map(str(path), stream, meta, name)
+        return replace(_to_map(str(path), stream, meta, name), made=os.fstat(stream.fileno()).st_mtime)
 
 
 def _to_map(source: str, stream: BinaryIO, meta: MapMeta, name: str) -> GridMap:

@@ -71,6 +71,7 @@ class GridMap:
     name       : what to call it before a person
     remarks    : what a person should know of how it was read, each a clause with the cure
     files      : what it was read from: the YAML file, where there was one, and the image
+    made       : when its image was last written; seconds since 1970, None where that is not known
     """
 
     cells: CellArray
@@ -79,6 +80,7 @@ class GridMap:
     name: str = "map"
     remarks: tuple[str, ...] = ()
     files: tuple[SourceFile, ...] = ()
+    made: float | None = None
 
     def __post_init__(self) -> None:
         if self.cells.ndim != 2 or self.cells.dtype != np.int8 or self.cells.size == 0:

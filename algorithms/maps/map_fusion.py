@@ -14,7 +14,6 @@ from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import (
     FREE,
     FREE_UP_TO,
-    OCCUPIED,
     OCCUPIED_FROM,
     UNKNOWN,
     CellArray,
@@ -24,6 +23,7 @@ from algorithms.maps.grid_map import (
 from algorithms.maps.robots import NO_ROBOTS, Robots
 
 SAME_CELL = 1e-6  # of a cell's edge; what rounding in a file may make of it
+SAME_TIME = 60.0  # seconds; maps that were written so near to each other were copied together
 SAME_PLACE = 0.12  # metres; a wall that both maps show so near to each other is one, and no robot
 
 
@@ -33,6 +33,8 @@ class ConflictRule(str, Enum):
     OCCUPIED_WINS = "occupied-wins"  # no robot drives into a wall that only one robot saw
     REF_WINS = "map1-wins"
     MOV_WINS = "map2-wins"
+    NEWER_WINS = "newer-wins"  # by the dates of the files; where they do not tell, a wall wins
+    SURER_WINS = "more-often-seen"  # whose cell is further from 50 %; of equal ones the wall wins
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +48,8 @@ class Fusion:
     conflicting : cells where one is a wall and the other is free
     cleared     : wall cells of one map around the maker of the other, which were that robot: now floor
     resolutions : of every map as it was given; metres per cell
+    dates       : when each was made, as in GridMap
+    rule        : by which they were merged
     """
 
     merged: GridMap
@@ -55,6 +59,18 @@ class Fusion:
     conflicting: int
     cleared: int = 0
     resolutions: tuple[float, ...] = ()
+    dates: tuple[float | None, ...] = ()
+    rule: ConflictRule = ConflictRule.OCCUPIED_WINS
+
+    def merged_by(self, rule: ConflictRule) -> CellArray:
+        """(H, W) int8: the merged map's cells by another rule; may be those of ``merged``, not writeable."""
+        if rule is self.rule:
+            return self.merged.cells
+        merged: CellArray = self.layers[0].copy()
+        for number, layer in enumerate(self.layers[1:], 1):
+            _merge(merged, layer, merged, _code(rule, self.dates, number))
+        merged.flags.writeable = False
+        return merged
 
     @property
     def resampled(self) -> dict[int, float]:
@@ -127,7 +143,7 @@ def fuse(
         walls = (T_grid_merged.inverse() @ (to_grid @ T)).apply(grid.points) / cell
         cols, rows = np.floor(walls).astype(np.intp).T
         inside = (rows >= 0) & (rows < shape[0]) & (cols >= 0) & (cols < shape[1])
-        layer[rows[inside], cols[inside]] = OCCUPIED
+        np.maximum.at(layer, (rows[inside], cols[inside]), grid.cells[grid.occupied][inside])
     corner = ref.origin @ T_grid_merged
     cleared = 0
     for own, T, places in zip(layers, transforms, (robots.in_ref, robots.in_mov), strict=False):
@@ -136,7 +152,11 @@ def fuse(
             if other is not own:
                 cleared += _clear(other, own, at, robots.size / cell, SAME_PLACE / cell)
     merged = layers[0].copy()
-    counts = [_merge(merged, layer, merged, [*ConflictRule].index(rule)) for layer in layers[1:]]
+    dates = tuple(grid.made for grid in maps)
+    counts = [
+        _merge(merged, layer, merged, _code(rule, dates, number))
+        for number, layer in enumerate(layers[1:], 1)
+    ]
     agreed_free, agreed_walls, conflicting = (sum(count[k] for count in counts) for k in range(3))
     return Fusion(
         GridMap(merged, cell, corner, "merged"),
@@ -146,7 +166,24 @@ def fuse(
         conflicting=conflicting,
         cleared=cleared,
         resolutions=tuple(grid.resolution for grid in maps),
+        dates=dates,
+        rule=rule,
     )
+
+
+def newer(dates: Sequence[float | None], number: int = 1) -> ConflictRule | None:
+    """Which of the first map and that of a number, from 0, wins by its date; None where neither does."""
+    first, other = (dates[0], dates[number]) if len(dates) > number else (None, None)
+    if first is None or other is None or abs(first - other) <= SAME_TIME:
+        return None
+    return ConflictRule.MOV_WINS if other > first else ConflictRule.REF_WINS
+
+
+def _code(rule: ConflictRule, dates: Sequence[float | None], number: int) -> int:
+    """The rule for the first map and another as ``_merge`` takes it."""
+    if rule is ConflictRule.NEWER_WINS:
+        rule = newer(dates, number) or ConflictRule.OCCUPIED_WINS
+    return [*ConflictRule].index(rule)
 
 
 def _clear(other: CellArray, own: CellArray, places: FloatArray, size: float, same: float) -> int:
@@ -215,6 +252,9 @@ def _merge(ref: CellArray, mov: CellArray, out: CellArray, rule: int) -> tuple[i
             if (a_wall and b_free) or (a_free and b_wall):
                 conflicting += 1
                 take_mov = b_wall if rule == 0 else rule == 2
+                if rule == 4:  # both are certain alike: the wall
+                    a_sure, b_sure = abs(2 * int(a) - 100), abs(2 * int(b) - 100)
+                    take_mov = b_sure > a_sure or (a_sure == b_sure and b_wall)
             elif not (a_wall or a_free) and (b_wall or b_free):
                 take_mov = True  # one is undecided, the other knows
             out[row, col] = b if take_mov else a

@@ -17,14 +17,15 @@ if TYPE_CHECKING:
 OWNERS = ("ref", "mov")
 
 
-def add_output(parser: Parser, **frame: Any) -> None:
-    """Add ``--frame``, as ``frame`` describes it, ``--no-yaw`` and ``--merged-resolution``."""
+def add_output(parser: Parser, **frame: Any) -> Any:
+    """Add ``--frame``, as ``frame`` describes it, ``--no-yaw`` and ``--merged-resolution``; their group."""
     group = parser.add_argument_group("the merged map", "As it was merged, unless told otherwise.")
     group.add_argument("--frame", **frame)
     about = "resample it so that its origin has no yaw, as Nav2's costmap wants it"
     group.add_argument("--no-yaw", action="store_true", help=f"{about}; how many cells changed is told")
     about = "resample it to cells of M metres; no wall is lost, and how many cells changed is told"
     group.add_argument("--merged-resolution", type=_size, metavar="M", help=about)
+    return group
 
 
 def add_frame(parser: Parser) -> None:
@@ -33,7 +34,9 @@ def add_frame(parser: Parser) -> None:
         "whose frame it is in: map 1's (ref, the default), map 2's (mov), or one whose origin lies at X, Y "
         "in map 1's and whose x-axis is turned by YAW there; metres, radians"
     )
-    add_output(parser, type=_frame, default="ref", metavar="ref|mov|X,Y,YAW", help=about)
+    group = add_output(parser, type=_frame, default="ref", metavar="ref|mov|X,Y,YAW", help=about)
+    about = "end the map where nothing more is known; it comes after what a project has corrected"
+    group.add_argument("--crop", action="store_true", help=about)
 
 
 def frame_of(args: argparse.Namespace) -> ExportFrame:

@@ -74,6 +74,9 @@ def legend(
         return [*scale, _chip("line", margin, "Σ_aug, windows, box")]
     if mode in ("blink", "curtain"):
         return maps
+    if mode == "result":
+        kinds = (palette.agreed, "wall"), (palette.free, "free floor"), (palette.unknown, "unknown")
+        return [_chip("square", *kind) for kind in kinds]
     if mode == "difference":
         alone = [entry | {"t": f"{entry['t']} alone"} for entry in maps]
         return [*alone, _chip("square", _FAINT, "other walls")]

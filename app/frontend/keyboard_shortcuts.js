@@ -8,17 +8,19 @@
   const BUTTONS = {
     m: ["Merge", "merge"], 1: ["Map", "the map"], 2: ["Heights", "the levels as heights"], 3: ["Swarm space", "the swarm's space"],
     o: ["Overlay", "both maps over each other"], b: ["Blink", "the maps take turns"], c: ["Curtain", "one map beside the other"],
-    d: ["Difference", "only what differs"], r: ["Measure", "measure a distance"], f: ["Show everything", "show everything"],
+    d: ["Difference", "only what differs"], g: ["Merged map", "the merged map as it is given away"],
+    e: ["Erase with a brush", "erase with a brush"], x: ["Erase a rectangle", "erase a rectangle"], k: ["Draw a keep-out line", "draw a keep-out line"], r: ["Measure", "measure a distance"], f: ["Show everything", "show everything"],
     0: ["◀ Back to your own", "back from another method's merge"],
     l: ["Lesson", "the lesson, in and out"], p: ["Present", "the lesson large, for a class"], pagedown: ["Next ▶", "next step"], pageup: ["◀ Back", "step before"],
   };
   // key -> the tab of the dock it turns to; viser's tabs take no click of a script, but a key
   const TABS = { 4: ["Stages", "the stages of a merge"], 5: ["Compare", "compare methods"], 6: ["Sweep", "sweep a setting"] };
   const GROUPS = [
-    ["Work", [["M", BUTTONS.m[1]], ["Esc", "stop a run, end measuring or placing"], ["Ctrl Z", "undo"], ["Ctrl Y", "redo, also Ctrl Shift Z"]]],
+    ["Work", [["M", BUTTONS.m[1]], ["Esc", "stop a run; end measuring, placing or erasing"], ["Ctrl Z", "undo"], ["Ctrl Y", "redo, also Ctrl Shift Z"]]],
     ["Look", [["1", BUTTONS[1][1]], ["2", BUTTONS[2][1]], ["3", BUTTONS[3][1]], ["F", BUTTONS.f[1]], ["R", BUTTONS.r[1]],
       ["drag, wheel", "move and zoom the map"], ["click", "what both maps know of a place"]]],
-    ["Compare", [["O", BUTTONS.o[1]], ["B", BUTTONS.b[1]], ["C", BUTTONS.c[1]], ["D", BUTTONS.d[1]], ["← →", "move the curtain, once it is in focus"]]],
+    ["Compare", [["O", BUTTONS.o[1]], ["B", BUTTONS.b[1]], ["C", BUTTONS.c[1]], ["D", BUTTONS.d[1]], ["G", BUTTONS.g[1]], ["← →", "move the curtain, once it is in focus"]]],
+    ["Correct the map, once its folder is open", [["E", BUTTONS.e[1]], ["X", BUTTONS.x[1]], ["K", BUTTONS.k[1]]]],
     ["Learn", [["L", BUTTONS.l[1]], ["P", BUTTONS.p[1]], ["Page↓", BUTTONS.pagedown[1]], ["Page↑", BUTTONS.pageup[1]]]],
     ["Research", [["4", TABS[4][1]], ["5", TABS[5][1]], ["6", TABS[6][1]], ["0", BUTTONS[0][1]]]],
     ["Map 2 by hand", []],

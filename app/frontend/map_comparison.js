@@ -1,16 +1,17 @@
-// Both maps compared where they lie: overlay, blink, curtain, difference; and the places where they
+// Both maps compared where they lie: overlay, blink, curtain, difference; what came of them; and the places where they
 // contradict each other, ringed and numbered. The server shows the pictures that a mode needs and says
 // which modes there are; what moves with the hand or the clock is done here.
 (() => {
   const S = window.mapmeld;
   if (S.compare) { S.compare.reset(); return; }
   const { viewer, metre, named } = S.kit;
-  const NAMES = { overlay: "Overlay", blink: "Blink", curtain: "Curtain", difference: "Difference" };
+  const NAMES = { overlay: "Overlay", blink: "Blink", curtain: "Curtain", difference: "Difference", result: "Merged map" };
   const HINTS = {
     overlay: "What there is now.",
     blink: "Map 1 and map 2 take turns.",
     curtain: "Map 1 to the left of a line that you drag, map 2 to its right.",
     difference: "Only walls that the other map denies stand out.",
+    result: "The merged map as it is given away, with what was corrected in it.",
   };
   const TURN = 1200; // ms that each map is seen while they take turns: slow enough to look
   const PICTURES = { 1: ["/world/map1/free", "/world/map1/walls"], 2: ["/world/map2/free", "/world/map2/walls"] };
@@ -169,6 +170,8 @@
   // --- the places where the maps contradict each other ------------------------------------------
   const listed = (target) => target.closest?.("[data-mm-place]");
   document.addEventListener("click", (e) => {
+    const keep = e.target.closest?.("[data-mm-keep]");
+    if (keep) S.tell("keep", { n: Number(keep.dataset.mmAt), does: keep.dataset.mmKeep });
     const row = listed(e.target);
     if (!row || row.disabled) return;
     const n = Number(row.dataset.mmPlace), place = C.places.find((one) => one.n === n);
@@ -242,11 +245,16 @@
     .mm-turns button:focus-visible{outline:2px solid #56B4E9;outline-offset:-2px}
     .mm-places{margin:0 10px 8px;font-size:12.5px;font-variant-numeric:tabular-nums}
     .mm-places p{margin:0 0 4px;line-height:1.4}
+    .mm-places .mm-keep{display:none;gap:4px;margin:3px 0 6px 26px}
+    .mm-places [aria-pressed=true]+.mm-keep{display:flex}
     .mm-places button{display:grid;grid-template-columns:22px 50px 1fr auto;align-items:center;gap:4px;width:100%;text-align:left;font:inherit;color:inherit;padding:3px 6px 3px 3px;border:1px solid transparent;border-radius:6px;background:transparent;cursor:pointer}
     .mm-places button:hover:not(:disabled){background:rgba(213,94,0,.10)}
     .mm-places button:focus-visible{outline:2px solid #0072B2}
     .mm-places button[aria-pressed=true]{background:rgba(213,94,0,.14);border-color:#D55E00}
     .mm-places button:disabled{cursor:default}
+    .mm-places .mm-keep button{display:block;flex:1;width:auto;padding:3px 2px;font-size:12px;text-align:center;border-color:#9CA3AF88}
+    .mm-places .mm-keep button[aria-pressed=true]{background:#0072B2;border-color:#0072B2;color:#fff}
+    @media (pointer:coarse){.mm-places button{min-height:40px}}
     .mm-places i{font-style:normal;font-size:11px;font-weight:700;text-align:center;line-height:18px;width:18px;height:18px;border-radius:50%;background:#D55E00;color:#fff}
     .mm-places small{font-size:11.5px;opacity:.75}`;
   document.head.append(style);

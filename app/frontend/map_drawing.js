@@ -69,10 +69,12 @@ const mapmeldInk = (() => {
     for (const p of item.p) { const [x, y] = view.project(item.f, p); last ? g.lineTo(x, y) : g.moveTo(x, y); last = [x, y]; }
     if (item.close) g.closePath();
     if (item.fill) { g.fillStyle = item.fill; g.fill(); }
+    if (item.round) { g.lineCap = "round"; g.lineJoin = "round"; }
     if (item.c) {
       if (item.halo) { g.setLineDash([]); g.lineWidth = (item.w || 1.5) + 3; g.strokeStyle = view.dark ? "rgba(17,24,39,.8)" : "rgba(255,255,255,.85)"; g.stroke(); }
       g.setLineDash(item.d || []); g.lineWidth = item.w || 1.5; g.strokeStyle = item.c; g.stroke();
     }
+    g.lineCap = "butt";
     if (item.t && last) { const at = view.project(item.f, item.tp || item.p[0]); words(g, view, item.t, at[0] + (item.dx || 0), at[1] + (item.dy || 0), item.tc || item.c, item.size || 11, item.align); }
   }
   // A cloud glides from its last state to its new one, so that the eye can follow single particles.

@@ -46,9 +46,10 @@
   //   grips  [{id, f, p, a, vague}]: signs at p in frame f that can be carried; with a heading a, turned
   //          too; a vague one is not known before it is turned
   //   place  {id, f}: the next touch puts this sign down, and a drag from there turns it
+  //   draw   {id, r}: a drag draws: "brush", a way r metres wide on both sides, "box", a rectangle, or "line"
   // While something is held the browser draws it by itself; Python is told 15 times a second, and at the end,
   // by which of its own words on where map 2 lies the browser went.
-  const REACH = 15, ARM = 34, EVERY = 66; // px to a sign, px from it to its knob, ms between two words
+  const REACH = 15, ARM = 34, EVERY = 66, MOST = 100; // px to a sign, px from it to its knob, ms between two words, points of one word
   let hold = null, said = 0, late = null;
   const { wrap, poseOf, toFrame } = mapmeldInk;
   const inFrame = (f, point) => toFrame(poseOf(S.maps, f), point);
@@ -67,6 +68,7 @@
   function under(x, y) { // what would be taken hold of at a place of the window
     const h = S.hand;
     if (!h || S.view !== "map") return null;
+    if (h.draw) return { kind: "draw", ...h.draw };
     if (h.place) return { kind: "place", ...h.place };
     const near = ([a, b]) => Math.hypot(a - x, b - y);
     let best = null, reach = REACH;
@@ -80,7 +82,25 @@
     return h.mov && inside(inFrame("map2", S.ground(x, y)), h.mov.hull) ? { kind: h.mov.still ? "turn" : "carry" } : null;
   }
   const angleAt = (point, centre) => Math.atan2(point[1] - centre[1], point[0] - centre[0]);
+  function drawn() { // what is drawn just now
+    const c = "#D55E00", [a, b] = [hold.points[0], hold.points.at(-1)];
+    if (hold.id === "box") return { k: "path", p: [a, [b[0], a[1]], b, [a[0], b[1]]], close: true, c, fill: "rgba(213,94,0,.2)", w: 1.5 };
+    if (hold.id === "line") return { k: "path", p: [a, b], c, w: 3, halo: true };
+    const wide = Math.max(2, 2 * hold.r * S.kit.metre(S.kit.camera()));
+    return { k: "path", p: hold.points.length > 1 ? hold.points : [a, [a[0] + 1e-3, a[1]]], c: "rgba(213,94,0,.45)", w: wide, round: true };
+  }
+  function stroke(last) { // what was drawn is told; of a long way one part after another
+    S.tell("draw", { id: hold.id, points: hold.points.flat().map((number) => +number.toFixed(3)) });
+    if (!last) hold.points = [hold.points.at(-1)];
+  }
+  function hover(at) { // the brush where it would touch
+    const h = S.hand?.draw;
+    if (!h || h.id !== "brush") return;
+    S.layers.drag = [{ k: "mark", s: "ring", p: at, c: "#D55E00", r: Math.max(2, h.r * S.kit.metre(S.kit.camera())) }];
+    S.dirty = true;
+  }
   function sketch() { // the sign that is held, where it is held
+    if (hold?.kind === "draw") { S.layers.drag = [drawn()]; S.dirty = true; return; }
     if (!hold || !hold.p) { delete S.layers.drag; S.dirty = true; return; }
     const items = [{ k: "mark", s: "ring", f: hold.f, p: hold.p, c: "#D55E00", r: 12 }];
     if (hold.a !== null && hold.a !== undefined) items.push({ k: "mark", s: "robot", f: hold.f, p: hold.p, a: hold.a, c: "#D55E00", r: 8 });
@@ -111,6 +131,7 @@
     const at = S.ground(e.clientX, e.clientY);
     hold = { ...found, pointer: e.pointerId, from: at, mov: S.maps[2], moved: false, start: [e.clientX, e.clientY] };
     if (hold.kind === "carry" && (e.shiftKey || e.altKey)) hold.kind = "turn";
+    if (hold.kind === "draw") { hold.points = [at]; sketch(); }
     if (hold.kind === "place") { hold.p = inFrame(hold.f, at); hold.a = null; sketch(); }
     S.held = true;
   }, true);
@@ -119,7 +140,8 @@
       const canvas = S.surface();
       if (!canvas || e.target !== canvas) return;
       const found = S.hand ? under(e.clientX, e.clientY) : null;
-      const cursor = { place: "crosshair", knob: "grab", turn: "grab", body: "move", carry: e.shiftKey || e.altKey ? "grab" : "move" }[found?.kind] || "";
+      if (found?.kind === "draw") hover(S.ground(e.clientX, e.clientY));
+      const cursor = { place: "crosshair", draw: "crosshair", knob: "grab", turn: "grab", body: "move", carry: e.shiftKey || e.altKey ? "grab" : "move" }[found?.kind] || "";
       if (canvas.style.cursor !== cursor) canvas.style.cursor = cursor;
       return;
     }
@@ -128,6 +150,12 @@
     const at = S.ground(e.clientX, e.clientY);
     if (!hold.moved && Math.hypot(e.clientX - hold.start[0], e.clientY - hold.start[1]) < 3) return;
     hold.moved = true;
+    if (hold.kind === "draw") {
+      if (hold.id === "brush") hold.points.push(at); else hold.points[1] = at;
+      sketch();
+      if (hold.points.length >= MOST) stroke(false);
+      return;
+    }
     if (hold.kind === "carry") {
       S.carry({ x: hold.mov.x + at[0] - hold.from[0], y: hold.mov.y + at[1] - hold.from[1], theta: hold.mov.theta });
     } else if (hold.kind === "turn") { // about the seen robot, which is where map 2 hangs
@@ -147,7 +175,8 @@
   function release(e) {
     if (!hold || e.pointerId !== hold.pointer) return;
     stop(e);
-    if (hold.moved || hold.kind === "place") report(true);
+    if (hold.kind === "draw") { if (hold.moved || hold.id === "brush") stroke(true); }
+    else if (hold.moved || hold.kind === "place") report(true);
     hold = null; S.held = false; clearTimeout(late); late = null;
     sketch();
   }
@@ -160,7 +189,7 @@
   const busy = (e) => document.querySelector("dialog[open], [role=dialog]") || e && (typing(e) || e.closest?.("input, textarea, select, [role=slider], [role=listbox], [role=tablist], [role=menu]"));
   document.addEventListener("keydown", (e) => {
     if (!S.hand || S.view !== "map" || hold || e.ctrlKey || e.metaKey || e.altKey || busy(document.activeElement)) return;
-    if (e.key === "Escape" && S.hand.place) { stop(e); S.tell("cancel"); return; }
+    if (e.key === "Escape" && (S.hand.place || S.hand.draw)) { stop(e); S.tell("cancel"); return; }
     if (!S.hand.mov) return;
     const step = S.hand.mov.still ? undefined : STEPS[e.key], way = TURNS[e.key];
     if (!step && !way) return;
@@ -179,6 +208,7 @@
     S.hand = Object.keys(message.hand).length ? message.hand : null;
     document.body.toggleAttribute("data-mm-held", Boolean(S.hand?.mov));
     if (!S.hand && hold) { hold = null; S.held = false; sketch(); }
+    if (!S.hand?.draw && !hold && S.layers.drag) sketch();
     if (!S.hand && S.surface()) S.surface().style.cursor = "";
   });
   const style = document.createElement("style");

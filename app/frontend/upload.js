@@ -66,7 +66,7 @@
   F.several = (files, button) => {
     if (!files.length) return;
     if (!choices.size) { there = { size: 0, began: performance.now() }; lately = []; }
-    const choice = choices.get(button) || { rest: [], arrived: 0 };
+    const choice = choices.get(button) || { rest: [], arrived: 0, days: [] };
     choice.rest.push(...files);
     if (choices.has(button)) return;
     choices.set(button, choice);
@@ -76,7 +76,7 @@
   function done(one, arrived) { // the next one
     const choice = choices.get(one.button);
     drop(one);
-    if (arrived) { choice.arrived += 1; there.size += one.file.size; }
+    if (arrived) { choice.arrived += 1; choice.days.push(+(one.file.lastModified / 864e5).toFixed(5)); there.size += one.file.size; }
     if (choice.rest.length) send(choice.rest.shift(), one.button); else end(one.button, true);
     show();
   }
@@ -84,7 +84,7 @@
     for (const one of F.going) if (one.button === button) drop(one);
     const choice = choices.get(button);
     choices.delete(button);
-    if (choice) S.tell("sent", { button, count: choice.arrived, whole });
+    if (choice) S.tell("sent", { button, count: choice.arrived, whole, days: choice.days.length <= 200 ? choice.days : [] });
     show();
   }
   function lost(one) {

@@ -31,12 +31,14 @@ class Upload:
     """One file as the browser sent it, or made by a form.
 
     name, folder : where it was, as it is shown; never used as a path
+    modified     : when it was last written; seconds since 1970, None where that is not known
     """
 
     name: str
     content: bytes
     by_form: bool = False
     folder: str = ""
+    modified: float | None = None
 
     @property
     def path(self) -> str:

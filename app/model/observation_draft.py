@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import atan2, cos, hypot, sin
+from math import atan2, cos, hypot, radians, sin
 from typing import Literal
 
 from algorithms.common.pose import Pose2, wrap_angle
-from algorithms.observations.observation import SIGMA_BEARING, SIGMA_RANGE, Observation
+from algorithms.observations.observation import Observation
+
+# standard deviations of a robot that a person places, until they say otherwise; metres, radians
+PLACED_RANGE, PLACED_BEARING = 0.3, radians(5)
 
 Part = Literal["observer", "seen", "observed"]
 Point = tuple[float, float]
@@ -31,8 +34,8 @@ class ObservationDraft:
     bearing: float | None = None
     observed: Point | None = None
     heading: float | None = None
-    sigma_range: float = SIGMA_RANGE
-    sigma_bearing: float = SIGMA_BEARING
+    sigma_range: float = PLACED_RANGE
+    sigma_bearing: float = PLACED_BEARING
     bearing_back: float | None = None
 
     @staticmethod

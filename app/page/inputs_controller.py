@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from algorithms.common.errors import MapMergeError
 from algorithms.common.pose import Pose2
+from algorithms.maps.map_corrections import NO_CORRECTIONS
 from algorithms.methods.registry import METHODS
 from app.drawing.scene_layout import lay_out
 from app.model.merge_inputs import MergeInputs
@@ -76,4 +77,6 @@ class InputsController:
         export = self._state.export
         if isinstance(export.frame, Pose2) and inputs.ref is not self._state.inputs.ref:
             more["export"] = replace(export, frame="ref")  # it was one of the other map
+        if inputs.grids != self._state.inputs.grids:  # they were of the other maps
+            more["corrections"] = NO_CORRECTIONS
         self._state.update(inputs=inputs, run=RunState(), **gone, **more)

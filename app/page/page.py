@@ -13,6 +13,7 @@ from app.jobs.worker_pool import COMMON
 from app.model.merge_inputs import MergeInputs
 from app.model.view_modes import OPERATOR, RESEARCH
 from app.page.cancellable_task import DownloadTask
+from app.page.editing.correction_controller import CorrectionController
 from app.page.editing.knowledge_controller import KnowledgeController
 from app.page.editing.map_drag_controller import MapDragController
 from app.page.editing.names_controller import NamesController
@@ -90,6 +91,7 @@ class Page:
         SuggestionController(tab, drag)
         names = NamesController(tab, undo)
         ExportController(tab)
+        CorrectionController(tab, self._view.compare)
         robots = PlacementController(tab, undo, runs, inputs)
         KnowledgeController(tab, undo, runs, inputs, robots.begin)
         seeing = SightingController(tab, runs, inputs)

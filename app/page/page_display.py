@@ -26,7 +26,6 @@ from app.page.panel_set import Panels
 from app.page.panels.html_widgets import box
 from app.page.panels.result_panel import result_html
 from app.page.panels.suggestions_html import SuggestionPictures
-from app.report.result_files import ResultFiles
 from app.report.ros_transform import parent_of
 
 LARGE = 2_000_000  # cells of a map that takes a while to draw
@@ -125,7 +124,7 @@ class PageDisplay:
         state, panels = self._state, self._panels
         panels.charts.show(state.run, follow=True)
         panels.charts.tell(html)
-        panels.export.offer(ResultFiles(result, state.inputs, state.result_config, state.export))
+        panels.export.offer(state.files_of(result))
         panels.what_if.offer(result, state.inputs.names)
         self.draw(live=live)
         self.views.comparison.offer(state.contradictions, state.palette)
@@ -158,7 +157,7 @@ class PageDisplay:
         """The page of a result; arguments as in result_panel."""
         inputs = self._state.inputs
         suggestions = self._suggestions.html(result, inputs, self._state.palette)
-        return result_html(result, inputs, config, found, faded, suggestions)
+        return result_html(result, inputs, config, found, faded, suggestions, self._state.corrections)
 
     def mark_outdated(self) -> None:
         """A setting was changed after the result was found."""

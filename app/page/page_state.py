@@ -8,6 +8,7 @@ from threading import RLock
 from typing import Any, Literal
 
 from algorithms.common.pose import Pose2
+from algorithms.maps.map_corrections import NO_CORRECTIONS, Corrections
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from algorithms.verdict.contradictions import Contradictions
@@ -20,8 +21,9 @@ from app.model.view_modes import MAP
 from app.page.research.other_result import OtherResult
 from app.page.undo.page_snapshot import PageSnapshot
 from app.report.export_frame import AS_MERGED, ExportFrame
+from app.report.result_files import ResultFiles
 
-Topic = Literal["setup", "result", "other", "palette", "fleet", "export"]
+Topic = Literal["setup", "result", "other", "palette", "fleet", "export", "corrections"]
 """What can be subscribed to: inputs or settings; the result; what is looked at in its place; and so on."""
 
 TOPICS: dict[str, Topic] = {
@@ -34,6 +36,7 @@ TOPICS: dict[str, Topic] = {
     "palette": "palette",
     "fleet": "fleet",
     "export": "export",
+    "corrections": "corrections",
 }
 
 
@@ -62,6 +65,7 @@ class PageState:
     other         : another method's result that is looked at
     fleet         : the fleet that the page shows, or of which it shows a pair; None: there is none
     export        : in which frame and cells the merged map is given away
+    corrections   : what was corrected in it
     research      : settings, stages and comparisons are shown, and not only what operators need
     closed        : the tab is gone
     """
@@ -81,6 +85,7 @@ class PageState:
     other: OtherResult | None = None
     fleet: FleetState | None = None
     export: ExportFrame = AS_MERGED
+    corrections: Corrections = NO_CORRECTIONS
     view: str = MAP
     research: bool = False
     palette: Palette = LIGHT
@@ -118,7 +123,12 @@ class PageState:
             self.hand,
             fleet=self.fleet,
             export=self.export,
+            corrections=self.corrections,
         )
+
+    def files_of(self, result: MergeResult) -> ResultFiles:
+        """What can be taken away of a result, as it is set now."""
+        return ResultFiles(result, self.inputs, self.result_config, self.export, self.corrections)
 
     def job(self, **how: Any) -> MergeJob | None:
         """A run as it is set now; None where an input is missing."""

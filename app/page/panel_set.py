@@ -10,6 +10,7 @@ import viser
 
 from app.drawing.browser_messages import BrowserMessages
 from app.page.cancellable_task import CancellableTask
+from app.page.editing.correction_panel import CorrectionPanel
 from app.page.editing.knowledge_panel import KnowledgePanel
 from app.page.editing.names_panel import NamesPanel
 from app.page.editing.transform_panel import TransformPanel
@@ -57,6 +58,7 @@ class Panels:
         self.export = ExportPanel(client, self.task)
         self.what_if = WhatIfPanel(gui, lambda: state.config.verdict)
         self.transform = TransformPanel(gui)
+        self.correction = CorrectionPanel(gui)
         self.history = HistoryPanel(gui)
         self.charts = ChartsPanel(client, turned)
         with self.charts.add_tab("Compare", viser.Icon.SCALE):

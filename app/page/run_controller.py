@@ -16,13 +16,11 @@ from app.jobs.job_thread import JobThread
 from app.jobs.runner import Runner
 from app.jobs.worker_pool import WorkerDiedError
 from app.model import status_text
-from app.model.merge_inputs import MergeInputs
 from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
 from app.model.view_modes import MAP
 from app.page.tab import Tab
 from app.report.replay.html_page import replay_of
-from app.report.result_files import ResultFiles
 from app.web.callback_errors import words
 
 
@@ -34,7 +32,7 @@ class RunController:
         self._modes, self._history, self._notices = tab.modes, tab.history, tab.notices
         self._messages, self._comparison = tab.display.messages, tab.display.views.comparison
         self._stop_upload = stop_upload
-        self._weighed: tuple[tuple[MergeResult, MergeInputs, Any], tuple[Contradictions, str]] | None = None
+        self._weighed: tuple[tuple[Any, ...], tuple[Contradictions, str]] | None = None
         self._searched: Callable[[RunState | None], None] | None = None
         self.thread = JobThread(self, runner, tab.state.locks.drawing)
         tab.panels.run.connect_run(
@@ -241,7 +239,7 @@ class RunController:
 
     def _weigh(self, result: MergeResult, config: Any) -> tuple[Contradictions, str]:
         """Where the maps contradict each other, and the page of the result; worked out once."""
-        of = (result, self._state.inputs, config)
+        of = (result, self._state.inputs, config, self._state.corrections)
         if self._weighed is None or any(a is not b for a, b in zip(self._weighed[0], of, strict=True)):
             found = find_conflicts(result.fusion)
             self._weighed = of, (found, self._display.result_html(result, config, found))
@@ -270,8 +268,6 @@ class RunController:
             if cause.hint:
                 state.run.add(Step("explain", result, 0.0))
                 state.update(result=result)
-                self._panels.export.offer(
-                    ResultFiles(result, state.inputs, state.result_config, state.export)
-                )
+                self._panels.export.offer(state.files_of(result))
                 self._history.amend(state.run)
             self._messages.flush()

@@ -9,7 +9,9 @@ from typing import Literal
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
 from algorithms.maps.grid_map import FARTHEST, GridMap
+from algorithms.maps.map_corrections import NO_CORRECTIONS, Corrected, Corrections
 from algorithms.maps.resampling import Resampled, resampled
+from app.report import correction_text
 
 LEAST_APART = 0.01  # metres between an origin and a point on its x-axis; nearer says no direction
 
@@ -71,23 +73,39 @@ class ExportFrame:
             merged = replace(merged, origin=T_ref_frame.inverse() @ merged.origin)
         return ExportedMap(self, T_ref_frame, resampled(merged, self.resolution, self.yaw))
 
+    def given_corrected(self, made: Corrected, T_ref_mov: Pose2) -> ExportedMap:
+        """The same of a map that a person corrected."""
+        return replace(self.given(made.grid, T_ref_mov), corrections=made.by, corrected=made.changed)
+
 
 AS_MERGED = ExportFrame()
 
 
 @dataclass(frozen=True, eq=False)
 class ExportedMap:
-    """The merged map as it is given away: in which frame, where that lies in map 1's, and in which cells."""
+    """The merged map as it is given away: in which frame, where that lies in map 1's, and in which cells.
+
+    corrections : that a person made in it
+    corrected   : how many cells those changed, before any resampling
+    """
 
     frame: ExportFrame
     T_ref_frame: Pose2
     cells: Resampled
+    corrections: Corrections = NO_CORRECTIONS
+    corrected: int = 0
+
+    @property
+    def as_merged(self) -> bool:
+        """Whether nothing was done to it."""
+        return self.frame == AS_MERGED and self.corrections == NO_CORRECTIONS
 
     @property
     def said(self) -> str:
-        """In which frame it is, and what was done to its cells: a sentence on map 1 and map 2."""
+        """In which frame it is, and what was done to its cells: sentences on map 1 and map 2."""
         changes = "" if self.frame.as_merged else f": {changes_text(self.cells)}"
-        return f"The merged map is in {self.frame.how}{changes}."
+        by_hand = correction_text.said(self.corrections, self.corrected)
+        return " ".join(filter(None, [f"The merged map is in {self.frame.how}{changes}.", by_hand]))
 
 
 def changes_text(told: Resampled) -> str:

@@ -228,7 +228,7 @@ def _use(result: MergeResult, names: RobotNames, exported: ExportedMap | None) -
         "mov": "map 1's frame lies in map 2's",
     }.get(str(frame.frame), f"both maps' frames lie in {frame.said}")
     serve = f"Serve the merged map, which is in {frame.said}, to Nav2:"
-    if exported is not None and not frame.as_merged:
+    if exported is not None and not exported.as_merged:
         serve = f"{exported.said} Serve it to Nav2:"
     said = (
         f"Tell ROS 2 where {lies}, while both robots run:",

@@ -147,6 +147,8 @@ def _exported(exported: ExportedMap, names: RobotNames) -> dict[str, Any]:
         "cells_changed": cells.changed,
         "now_wall": cells.now_wall,
         "now_free": cells.now_free,
+        "corrections": exported.corrections,
+        "cells_corrected": exported.corrected,
     }
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from algorithms.files.map_file import map_to_bytes
 from algorithms.files.observation_file import OBSERVATION_FILE, known_to_bytes
+from algorithms.maps.map_corrections import NO_CORRECTIONS, Corrected, Corrections, corrected
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.suggestions import are_wanted
@@ -92,18 +93,25 @@ class ResultFiles:
     """A result, its inputs and settings; its files are made when they are first asked for.
 
     frame : in which the merged map is given away
+    corrections : that a person made in it
     """
 
     result: MergeResult
     inputs: MergeInputs
     config: Any
     frame: ExportFrame = AS_MERGED
+    corrections: Corrections = NO_CORRECTIONS
     _made: dict[str, bytes] = field(default_factory=dict, init=False)
 
     @cached_property
     def exported(self) -> ExportedMap:
         """The merged map as it is given away; raises SettingError, TooLargeError."""
-        return self.frame.given(self.result.fusion.merged, self.result.T_ref_mov)
+        return self.frame.given_corrected(self.corrected, self.result.T_ref_mov)
+
+    @cached_property
+    def corrected(self) -> Corrected:
+        """The merged map as a person corrected it, in map 1's frame."""
+        return corrected(self.result.fusion, self.corrections)
 
     @property
     def files(self) -> Mapping[str, bytes]:

@@ -46,7 +46,7 @@ def read_bag_map(asked: BagPath) -> GridMap:
         further = [each for each in bag.of_type(GRID_UPDATE) if each.name == topic.name + UPDATES]
         updates = (update for _, _, update in bag.messages(further, time, until + 1))
         grid = grid_of(name, label, message, updates)
-        return replace(grid, remarks=remarks)
+        return replace(grid, remarks=remarks, made=time / 1e9)
 
 
 def grid_of(name: str, label: str, message: Any, updates: Iterable[Any] = ()) -> GridMap:

@@ -17,6 +17,7 @@ from algorithms.common.pose import Pose2
 from algorithms.common.source_file import SourceFile
 from algorithms.files.atomic_write import check_folder, write_files
 from algorithms.files.map_file import YAML_SUFFIXES, parse_meta, read_bytes
+from algorithms.maps.map_corrections import NO_CORRECTIONS, corrected
 from algorithms.methods import registry as methods
 from algorithms.methods.manual_merge import ManualMerge, known_answers
 from algorithms.methods.merge_result import CHOSEN, MergeResult
@@ -31,7 +32,6 @@ from app.evaluation.table_files import aligned
 from app.model import verdict_text
 from app.model.merge_inputs import MergeInputs
 from app.model.objective_label import measure_of
-from app.report.export_frame import AS_MERGED
 from app.report.json_report import report_json, report_of, report_of_no_answer
 from app.report.result_files import (
     MERGED_FILES,
@@ -50,7 +50,7 @@ FILES = (*MERGED_FILES, TRANSFORM_FILE, OVERLAY_FILE, *SUGGESTION_FILES, PAGE_FI
 
 USAGE = (
     "PROJECT | MAP1 MAP2 [--observation FILE | what else is known] --out DIR [--names NAME1 NAME2] "
-    "[--frame ref|mov|X,Y,YAW] [--no-yaw] [--json] [--force] [--strict] [options]"
+    "[--frame ref|mov|X,Y,YAW] [--no-yaw] [--crop] [--json] [--force] [--strict] [options]"
 )
 DESCRIPTION = """\
 Merge two maps: from one sighting of robot 2 by robot 1 or several in one file, from a rough initial
@@ -117,6 +117,7 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
         place = frame.frame.array().tolist() if isinstance(frame.frame, Pose2) else frame.frame
         parser.set_defaults(seed=project.seed, names=(names.ref, names.mov))
         parser.set_defaults(frame=place, no_yaw=not frame.yaw, merged_resolution=frame.resolution)
+        parser.set_defaults(crop=project.corrections.crop)
 
 
 def run(args: argparse.Namespace, parser: Parser) -> int:
@@ -161,11 +162,13 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         elif project is not None and project.taken and project.hand is not None:
             result = manual.weigh(project.hand, args.seed, project.taken)
         accepted = result.verdict.accepted or result.by_person
-        exported = frame.given(result.fusion.merged, result.T_ref_mov) if accepted or args.force else None
+        corrections = NO_CORRECTIONS if project is None else project.corrections
+        made = corrected(result.fusion, replace(corrections, crop=args.crop))
+        exported = frame.given_corrected(made, result.T_ref_mov) if accepted or args.force else None
         report = report_of(result, config, load_s, named, pair, exported)
         files = result_files(result, pair, config, report, exported)
         lines, status = _summary(result, config), 0 if accepted else 1
-        if exported is not None and frame != AS_MERGED:
+        if exported is not None and not exported.as_merged:
             lines.append(exported.said)
         if not accepted:
             lines += _suggestions(result) if are_wanted(result) else []

@@ -1,4 +1,6 @@
-"""How two maps are compared where one lies over the other: overlay, blink, curtain, difference."""
+"""How two maps are compared where one lies over the other: overlay, blink, curtain, difference; and what came
+of them.
+"""
 
 from __future__ import annotations
 
@@ -36,6 +38,8 @@ class MapComparison:
         """Map 2 lies over map 1: compare them; ``conflicts`` None where their cells are not merged."""
         self._conflicts = conflicts
         self._modes = MODES if conflicts is not None else ("overlay", "blink", "curtain")
+        if self._maps.ground.corrected() is None:
+            self._modes = tuple(mode for mode in self._modes if mode != "result")
         if self.mode not in self._modes:
             self.mode = "overlay"
         found = rings(conflicts.places, self._maps.layout.anchor_ref) if conflicts is not None else []

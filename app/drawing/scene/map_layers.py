@@ -23,7 +23,8 @@ from app.drawing.scene.zoom_crop import CameraView
 from app.drawing.scene_layout import SceneLayout
 
 Which = Literal["sources", "levels", "merged", "touching"]
-Mode = Literal["overlay", "blink", "curtain", "difference"]  # how two maps are compared where they lie
+# how two maps are compared where they lie; "result" is what came of them
+Mode = Literal["overlay", "blink", "curtain", "difference", "result"]
 
 # Heights in the order they lie on each other; all floors are below all walls, so that a map that
 # slides over the other hides none of its walls.
@@ -41,6 +42,7 @@ class MapLayers:
     ) -> None:
         """stage : where excerpts of the pictures are seen."""
         self.changed: Callable[[], Any] = lambda: None  # is called after every change of what is shown
+        self.corrected: Callable[[], GridMap | None] = lambda: None  # the merged map as it is given away
 
         def image(name: str, height: float) -> GridImage:
             return GridImage(scene, f"/world/{name}", height, size, messages)
@@ -58,13 +60,14 @@ class MapLayers:
         self._levels = images("levels", WALLS_1, WALLS_2)
         self._merged = image("map1/merged_free", MERGED_FREE), image("map1/merged_walls", MERGED_WALLS)
         self._denied = image("map1/denied", MERGED_WALLS)
+        self._result = image("map1/result_free", MERGED_FREE), image("map1/result_walls", MERGED_WALLS)
         self._touches = images("touches", MERGED_FREE, MERGED_WALLS)
         self._ghost_frame = scene.add_frame("/world/ghost", show_axes=False)
         self._ghost = image("ghost/walls", GHOST)
         self._haunted: GridMap | None = None  # whose walls the ghost is made of
         self._ghost_at: Pose2 | None = None
         several = (*self._free, *self._walls, *self._levels, *self._merged, *self._touches)
-        self._all = (*several, self._denied, self._ghost)
+        self._all = (*several, *self._result, self._denied, self._ghost)
         self._shown: tuple[GridMap | None, ...] = (None, None)
         self._layout: SceneLayout | None = None
         self._palette: Palette | None = None
@@ -72,6 +75,7 @@ class MapLayers:
         self._fused: Fusion | None = None
         self._conflicts: Contradictions | None = None
         self._contrasted: Contradictions | None = None  # those that are drawn
+        self._given: GridMap | None = None  # the corrected map that is drawn
         self._mode: Mode = "overlay"
         self.which: Which = "sources"
         self._hidden = False
@@ -87,7 +91,7 @@ class MapLayers:
                 image.remove()
         self._shown = grids
         self._layout, self._palette, self._lifted, self._fused = layout, palette, None, None
-        self._haunted = self._contrasted = None
+        self._haunted = self._contrasted = self._given = None
         for k, (grid, anchor) in enumerate(zip(grids, layout.anchors, strict=True)):
             if same[k]:
                 self._free[k].move(anchor)
@@ -137,6 +141,22 @@ class MapLayers:
             self._denied.show(draw, fusion.merged, self._layout.anchor_ref)
         return True
 
+    def _draw_result(self) -> bool:
+        """Have the picture of the corrected map at hand; whether there is one."""
+        grid, before = self.corrected(), self._given
+        if grid is None or self._palette is None or self._layout is None:
+            return False
+        if grid is not before:
+            same = before and before.origin == grid.origin and before.cells.shape == grid.cells.shape
+            draws = (
+                partial(render.floor, grid.cells, self._palette),
+                partial(render.walls, grid.cells, self._palette.agreed),
+            )
+            for image, draw in zip(self._result, draws, strict=True):
+                (image.repaint if same else image.show)(draw, grid, self._layout.anchor_ref)
+            self._given = grid
+        return True
+
     def touch(
         self, walls: tuple[WallLookup, WallLookup], agreement: tuple[CellAgreement, CellAgreement]
     ) -> None:
@@ -173,6 +193,8 @@ class MapLayers:
             seen = "sources"
         elif which == "merged" and self._mode == "difference" and self._contrast():
             seen = "difference"
+        elif which == "merged" and self._mode == "result" and self._draw_result():
+            seen = "result"
         for images, among in (
             (self._free, ("sources", "levels", "touching")),
             (self._walls, ("sources", "touching")),
@@ -181,6 +203,7 @@ class MapLayers:
             ((floor,), ("merged", "difference")),
             ((walls,), ("merged",)),
             ((self._denied,), ("difference",)),
+            (self._result, ("result",)),
         ):
             for image in images:
                 image.visible(seen in among)

@@ -38,7 +38,8 @@ def maps_of_bag(upload: Upload, check: Check = never_cancelled) -> list[Upload]:
                 grid = read_bag_map(BagPath(path, topic.name))
                 name = stem if len(topics) == 1 else f"{stem}{topic.name.replace('/', '_')}"
                 files += [
-                    Upload(each, data, folder=folder) for each, data in map_to_bytes(grid, name).items()
+                    Upload(each, data, folder=folder, modified=grid.made)
+                    for each, data in map_to_bytes(grid, name).items()
                 ]
         except InputFileError as error:
             raise InputFileError(upload.name, error.found, error.remedy) from error

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import PurePath
 
 from algorithms.common.display_text import show_hidden
@@ -42,7 +43,8 @@ def map_slot(number: int, uploads: Uploads, read: ReadMaps, check: Check = never
         return MapSlot(missing=f"Map {number}'s YAML file is here. Load its image, too: {named}.")
     if (text, image) not in read:
         content = CancellableReader(image.content, check)
-        read[text, image] = map_from_bytes(text.name, text.content, image.name, content)
+        grid = map_from_bytes(text.name, text.content, image.name, content)
+        read[text, image] = replace(grid, made=image.modified)
     doubt = ""
     if named != image.name and not text.by_form:
         doubt = f"{text.name} names the image {named}; loaded is {image.name}. Do they belong together?"

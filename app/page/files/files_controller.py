@@ -28,9 +28,12 @@ from app.page.project.project_controller import ProjectController
 from app.page.tab import Tab
 from app.system import data_paths as paths
 from app.system.cancellation import Cancelled, Check, never_cancelled
+from app.web.browser_events import Numbers
 from app.web.upload import MAX_UPLOADS
 
 BY_ITSELF = "open it by itself"
+DAY, LAST_DAY = 86_400.0, 1_000_000.0  # seconds; days since 1970, the year 4700
+MOST_DATES = 200  # of files that are sent at once; more make too long a message
 LARGE = 1_000_000  # bytes, or pixels of a PNG; to read less takes no time to speak of
 Load = Callable[[MergeInputs, str], None]
 
@@ -61,7 +64,8 @@ class FilesController:
         self._panel.connect(self.take_sample, self._gather, self._use_form, self._forget)
         self._robots = tab.panels.fleet.sample
         on_choice(self._robots, self._take_sample_robot)
-        tab.events.on("sent", self._sent, button=str, count=int, whole=bool)
+        dates = Numbers(0, MOST_DATES)
+        tab.events.on("sent", self._sent, button=str, count=int, whole=bool, days=dates)
         does = ("remove", "map1", "map2", "use", "swap")
         tab.events.on("file", self._change, what=does, n=int)
         tab.state.subscribe("setup", lambda: self._panel.name(self._state.inputs.names))
@@ -77,15 +81,20 @@ class FilesController:
             if len(self._arrived) <= MOST_FILES:
                 self._arrived.append(upload_at(file.name, file.content) if room else None)
 
-    def _sent(self, button: str, count: int, whole: bool) -> None:
+    def _sent(self, button: str, count: int, whole: bool, days: list[float]) -> None:
         """All that was chosen at once has been sent, of which so many files arrived; not ``whole``: it was
         left.
+
+        days : since 1970, when each was last written; empty where there are too many
         """
         if button != self._panel.button:
             return
         with self._lock:
             count = max(0, count) if whole else len(self._arrived)
             taken, self._arrived = self._arrived[:count], self._arrived[count:]
+        if len(days) == len(taken):
+            dates = [day * DAY if 0 < day < LAST_DAY else None for day in days]
+            taken = [one and replace(one, modified=date) for one, date in zip(taken, dates, strict=True)]
         uploads = [upload for upload in taken if upload is not None]
         if whole and uploads:
             self.open(uploads)

@@ -14,6 +14,7 @@ from algorithms.common.robot_names import UNNAMED, RobotNames
 from algorithms.common.source_file import SourceFile
 from algorithms.files.truth_file import Truth
 from algorithms.fleets.pair_hypotheses import ACCEPT_FROM, PairOrder
+from algorithms.maps.map_corrections import NO_CORRECTIONS, Corrections
 from app.model.knowledge import Choice
 from app.page.undo.undo_history import MOST
 from app.report.export_frame import AS_MERGED, ExportFrame
@@ -27,6 +28,7 @@ Digest = Annotated[str, Meta(pattern="^[0-9a-f]{64}$")]
 Place = Annotated[int, Meta(ge=0)]
 Seed = Annotated[int, Meta(ge=0, lt=2**31)]
 Share = Annotated[float, Meta(ge=0, le=1)]
+Date = Annotated[float, Meta(ge=0, lt=1e11)]  # seconds since 1970
 Three = tuple[float, float, float]
 
 
@@ -42,6 +44,7 @@ class MapPart(Part):
     name: Name
     remarks: tuple[Text, ...] = ()
     files: tuple[SourceFile, ...] = ()
+    made: Date | None = None
 
 
 class UploadPart(Part):
@@ -51,6 +54,7 @@ class UploadPart(Part):
     content: Digest
     by_form: bool = False
     folder: Name = ""
+    modified: Date | None = None
 
 
 class OtherPart(Part):
@@ -143,6 +147,7 @@ class StepPart(Part):
     taken: Literal["", "by hand", "chosen by you"] = ""
     fleet: Place | None = None
     export: ExportFrame = AS_MERGED
+    corrections: Corrections = NO_CORRECTIONS
 
 
 class ProjectPart(Part, omit_defaults=False):

@@ -121,7 +121,9 @@ class _Reader:
             raise TooLargeError(f"{self._source}: its maps have more than {2 * MOST_CELLS:,} cells together")
         remarks = tuple(map(show_hidden, part.remarks))
         files = tuple(SourceFile(show_hidden(file.name), file.sha256) for file in part.files)
-        return replace(grid, name=show_hidden(part.name) or "map", remarks=remarks, files=files)
+        return replace(
+            grid, name=show_hidden(part.name) or "map", remarks=remarks, files=files, made=part.made
+        )
 
     def _known(self, texts: Sequence[str]) -> tuple[Known, ...]:
         known: list[Known] = []
@@ -155,7 +157,7 @@ class _Reader:
 
     def _upload(self, part: parts.UploadPart) -> Upload:
         name, folder = show_hidden(part.name), show_hidden(part.folder)
-        return Upload(name, self._bytes(part.content), part.by_form, folder)
+        return Upload(name, self._bytes(part.content), part.by_form, folder, part.modified)
 
     def _files_of(self, part: parts.FilesPart) -> Files:
         others = tuple(
@@ -228,6 +230,7 @@ class _Reader:
             fleet=None if step.fleet is None else self._one(self._fleets, step.fleet, "fleet"),
             export=step.export,
             taken=step.taken,
+            corrections=step.corrections,
         )
 
 

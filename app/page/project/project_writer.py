@@ -116,6 +116,7 @@ class _Writer:
             taken=s.taken,
             fleet=None if s.fleet is None else self._fleets.place(s.fleet),
             export=s.export,
+            corrections=s.corrections,
         )
 
     def _map(self, grid: GridMap) -> parts.MapPart:
@@ -129,11 +130,11 @@ class _Writer:
             _DIGESTS[grid] = sha256(files[image]).hexdigest(), files[f"{IMAGE}.yaml"].decode()
         digest, text = _DIGESTS[grid]
         self._contents[digest] = content
-        return parts.MapPart(digest, text, grid.name, grid.remarks, grid.files)
+        return parts.MapPart(digest, text, grid.name, grid.remarks, grid.files, grid.made)
 
     def _upload(self, upload: Upload) -> parts.UploadPart:
         self._contents[upload.digest] = partial(getattr, upload, "content")
-        return parts.UploadPart(upload.name, upload.digest, upload.by_form, upload.folder)
+        return parts.UploadPart(upload.name, upload.digest, upload.by_form, upload.folder, upload.modified)
 
     def _files_part(self, files: Files) -> parts.FilesPart:
         others = tuple(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from algorithms.common.pose import Pose2
+from algorithms.maps.map_corrections import NO_CORRECTIONS, Corrections
 from algorithms.methods.merge_result import MergeResult
 from algorithms.methods.registry import METHODS
 from app.model.fleet_state import FleetState
@@ -16,6 +17,7 @@ from app.model.merge_job import Goal
 from app.model.run_state import RunState
 from app.model.settings import settings_of, text_for, value_at
 from app.page.research.other_result import OtherResult
+from app.report.correction_text import step_label
 from app.report.export_frame import AS_MERGED, ExportFrame
 
 
@@ -32,6 +34,7 @@ class PageSnapshot:
     other   : another method's answer that is looked at in its place
     fleet   : the fleet that is shown, or of which a pair is
     export  : in which frame and cells the merged map is given away
+    corrections : what was corrected in it
     """
 
     inputs: MergeInputs
@@ -46,6 +49,7 @@ class PageSnapshot:
     fleet: FleetState | None = None
     export: ExportFrame = AS_MERGED
     taken: str = ""
+    corrections: Corrections = NO_CORRECTIONS
 
     @property
     def held(self) -> bool:
@@ -107,6 +111,8 @@ def change(before: PageSnapshot, after: PageSnapshot) -> tuple[str, Hashable]:
         return f"seed {before.seed} → {after.seed}", "seed"
     if before.hand != after.hand:
         return (new.names.told("map 2 by hand") if after.hand is not None else "not by hand"), "hand"
+    if before.corrections != after.corrections:
+        return new.names.told(step_label(before.corrections, after.corrections)), None
     if before.export != after.export:
         return new.names.told(f"export: {after.export.how}"), "export"
     if before.other is not after.other:

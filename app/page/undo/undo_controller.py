@@ -60,7 +60,9 @@ class UndoController:
                 self._inputs.show(s.inputs)
             if s.result is None:
                 self._display.views.comparison.clear()
-            state.update(goal=s.goal, files=s.files, fleet=s.fleet, export=s.export)
+            state.update(
+                goal=s.goal, files=s.files, fleet=s.fleet, export=s.export, corrections=s.corrections
+            )
             if s.outcome is not None and s.result is not None:
                 self._runs.show_answer(s.outcome, s.result, s.config, live=False)
                 self._display.messages.flush()

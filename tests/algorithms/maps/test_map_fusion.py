@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drawn import T_REF_MOV, drawn_map, flat_pair, poses
@@ -103,6 +105,31 @@ def test_every_pair_of_answers_is_counted_once():
 )
 def test_a_conflict_is_settled_by_the_rule(rule, expected):
     assert fuse((row(0, 100), row(100, 0)), (Pose2(), Pose2()), rule).merged.cells.tolist() == [expected]
+
+
+def test_the_newer_map_counts_by_the_dates_of_the_files_and_a_wall_where_they_do_not_tell():
+    ref, mov = row(0, 100), row(100, 0)
+
+    def merged(first, second):
+        dated = replace(ref, made=first), replace(mov, made=second)
+        return fuse(dated, (Pose2(), Pose2()), ConflictRule.NEWER_WINS).merged.cells.tolist()
+
+    assert merged(1000.0, 9000.0) == [[100, 0]]  # map 2's
+    assert merged(9000.0, 1000.0) == [[0, 100]]  # map 1's
+    assert merged(1000.0, 1020.0) == merged(None, 9000.0) == [[100, 100]]  # copied together; not known
+
+
+def test_the_map_that_saw_a_cell_more_often_counts_and_of_two_alike_the_wall():
+    ref, mov = row(2, 70, 0, 25), row(80, 3, 100, 75)
+    merged = fuse((ref, mov), (Pose2(), Pose2()), ConflictRule.SURER_WINS).merged
+    assert merged.cells.tolist() == [[2, 3, 100, 75]]
+
+
+@settings(deadline=None)
+@given(grids(), grids(), near, st.sampled_from(list(ConflictRule)), st.sampled_from(list(ConflictRule)))
+def test_a_merged_map_by_another_rule_is_that_of_a_merge_by_that_rule(ref, mov, T, rule, other):
+    fusion, again = (fuse((ref, mov), (Pose2(), T), each) for each in (rule, other))
+    assert np.array_equal(fusion.merged_by(other), again.merged.cells)
 
 
 def test_a_decided_cell_beats_an_undecided_one():

@@ -5,11 +5,15 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from commandline import usage_error
 
 from algorithms.common.pose import Pose2
 from algorithms.common.robot_names import RobotNames
+from algorithms.files.map_file import read_map
+from algorithms.maps.grid_map import OCCUPIED, UNKNOWN
+from algorithms.maps.map_corrections import Corrections, Edit
 from algorithms.methods import registry as methods
 from algorithms.methods.merge_result import BY_HAND
 from algorithms.methods.registry import METHODS
@@ -60,6 +64,22 @@ def test_a_project_is_merged_as_it_was_left_and_what_is_given_beside_it_counts_m
     assert settings == {"augment.spread": 4.5, "swarm.particles": 50}
     assert report["inputs"]["robot1"] == "A"
     assert merged(project, "--method", "spectra-proven")[1] == {}
+
+
+def test_what_was_corrected_in_a_project_is_in_its_merged_map_and_not_in_its_verdict(project):
+    plain, _ = merged(project)
+    saved = read_project(project)
+    line = Edit("keep-out", ((0.0, 0.0), (1.0, 0.0)))
+    page = replace(saved.steps[0].snapshot, corrections=Corrections(edits=(line,)))
+    project.write_bytes(project_to_bytes(SavedTab((UndoStep("keep-out line", page),))))
+    report, _ = merged(project, "--crop", "--frame", "ref")
+    grid = read_map(project.parent / "out" / "merged.yaml")
+    assert all(grid.value_at(np.array([x, 0.0])) == OCCUPIED for x in np.linspace(0, 1, 30))
+    assert (grid.cells[0] != UNKNOWN).any() and (grid.cells[:, -1] != UNKNOWN).any()  # noqa: PT018
+    assert report["verdict"]["probability"] == plain["verdict"]["probability"]
+    assert report["merged_map"]["cells_corrected"] > 0
+    assert report["merged_map"]["corrections"]["crop"] is True
+    assert "1 keep-out line" in (project.parent / "out" / "report.html").read_text()
 
 
 def test_an_answer_taken_by_hand_in_a_project_is_taken(project, capsys):

@@ -141,6 +141,7 @@ def test_each_way_of_comparing_two_maps_has_the_legend_of_what_it_shows(steps):
     story = until(steps, Fusion)
     for mode in ("blink", "curtain"):
         assert words(legend(LIGHT, "Map", story, mode=mode)) == ["map 1", "map 2"]
+    assert words(legend(LIGHT, "Map", story, mode="result")) == ["wall", "free floor", "unknown"]
     difference = legend(LIGHT, "Map", story, mode="difference")
     assert words(difference)[:2] == ["map 1 alone", "map 2 alone"]
     assert len({entry["c"] for entry in difference}) == len(difference)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import radians
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -63,3 +65,11 @@ def test_robot_1_moves_and_what_it_saw_stays(observation, elsewhere):
 def test_what_is_saved_loads_back_to_the_same(several, elsewhere):
     made = [ObservationDraft.of(o).stood(elsewhere).observation for o in several]
     assert observations_from_bytes("observation.yaml", known_to_bytes(made)) == tuple(made)
+
+
+def test_what_a_person_places_is_as_uncertain_as_a_hand_and_what_a_file_says_stays():
+    placed = ObservationDraft().stood(Pose2()).saw((2.0, 0.0)).was((1.0, 1.0), None).observation
+    assert placed is not None
+    assert (placed.sigma_range, placed.sigma_bearing) == (0.3, pytest.approx(radians(5)))
+    told = Observation(Pose2(), 1.0, 1.0, 2.0, 0.0, sigma_range=0.02, sigma_bearing=0.01)
+    assert ObservationDraft.of(told).observation == told

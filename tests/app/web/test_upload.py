@@ -66,7 +66,7 @@ def came(monkeypatch) -> dict[str, bytes]:
 
 def opened(tab: WireTab, count: int) -> None:
     """So many files were all of a choice."""
-    tab.tell("sent", button=tab.find(BUTTON), count=count, whole=True)
+    tab.tell("sent", button=tab.find(BUTTON), count=count, whole=True, days=[])
 
 
 def can_stop(tab: WireTab) -> bool:

@@ -43,7 +43,7 @@ def arrive(desk: FilesDesk, files: dict[str, bytes]) -> None:
 
 
 def sent(desk: FilesDesk, count: int, whole: bool = True, button: str = "") -> None:
-    event(desk.tab, "sent")(button=button or desk.panel.button, count=count, whole=whole)
+    event(desk.tab, "sent")(button=button or desk.panel.button, count=count, whole=whole, days=[])
 
 
 def lines(files: Files) -> list[str]:

@@ -32,7 +32,7 @@ def opened(tab: WireTab, name: str, content: bytes) -> None:
     file = WireFile(tab, "Open files…", name, content)
     file.part(len(content))
     assert file.over()
-    tab.tell("sent", button=tab.find("Open files…"), count=1, whole=True)
+    tab.tell("sent", button=tab.find("Open files…"), count=1, whole=True, days=[])
 
 
 def test_an_answer_that_was_taken_by_hand_is_there_again_in_another_tab_with_all_that_was_done(server):

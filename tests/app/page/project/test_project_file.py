@@ -22,6 +22,8 @@ from algorithms.common.source_file import SourceFile
 from algorithms.files.truth_file import Truth
 from algorithms.fleets.pair_hypotheses import Hypothesis, PairFinding, PairOrder
 from algorithms.maps.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
+from algorithms.maps.map_corrections import Corrections, Edit
+from algorithms.maps.map_fusion import ConflictRule
 from algorithms.methods.merge_result import BY_HAND, CHOSEN
 from algorithms.methods.registry import METHODS
 from algorithms.observations.fleet import Fleet, FleetPrior, FleetSighting
@@ -44,12 +46,15 @@ MAPS = [
     ),
     GridMap(
         np.full((4, 3), FREE, dtype=np.int8), 0.1, name="hall", remarks=("it is odd; see to it",),
-        files=(SourceFile.of("hall.yaml", b"x"),),
+        files=(SourceFile.of("hall.yaml", b"x"),), made=1.7e9,
     ),
     GridMap(np.full((4, 3), FREE, dtype=np.int8), 0.1, Pose2(1e6, -1e6, -3.0), "the same, elsewhere"),
 ]  # fmt: skip
 SEEN = Observation(Pose2(0.1, 0.2, 0.3), 1.0, 2.0, 2.5, -0.4, bearing_back=1.0)
-UPLOADS = [Upload("hall.pgm", b"P5"), Upload("hall.yaml", b"image: hall.pgm", by_form=True, folder="maps")]
+UPLOADS = [
+    Upload("hall.pgm", b"P5"),
+    Upload("hall.yaml", b"image: hall.pgm", by_form=True, folder="maps", modified=1.7e9),
+]
 
 metres, radians = st.floats(-100, 100), st.floats(-3, 3)
 poses = st.builds(Pose2, metres, metres, radians)
@@ -116,6 +121,20 @@ frames = st.builds(
     ExportFrame, st.sampled_from(["ref", "mov"]) | poses, st.booleans(), st.none() | st.floats(0.01, 1)
 )
 
+edits = st.builds(
+    Edit,
+    st.sampled_from(["map1", "unknown", "erase", "keep-out"]),
+    st.tuples(st.tuples(metres, metres), st.tuples(metres, metres)),
+    st.floats(0, 2),
+    st.booleans(),
+)
+corrections = st.builds(
+    Corrections,
+    st.none() | st.sampled_from(ConflictRule),
+    st.tuples() | st.tuples(edits, edits),
+    st.booleans(),
+)
+
 
 @st.composite
 def snapshots(draw: st.DrawFn) -> PageSnapshot:
@@ -129,6 +148,7 @@ def snapshots(draw: st.DrawFn) -> PageSnapshot:
         fleet=draw(st.none() | fleets()),
         export=draw(frames),
         taken=draw(st.sampled_from(["", BY_HAND, CHOSEN])),
+        corrections=draw(corrections),
     )
 
 
