@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 
-from algorithms.common.pose import FloatArray, Pose2
+from algorithms.common.pose import FloatArray, Pose2, wrap_angle
 from algorithms.maps.grid_map import UNKNOWN, GridMap
 from algorithms.observations.observation import Encounter
 
@@ -97,6 +97,21 @@ class SceneLayout:
         turned = Pose2(0.0, 0.0, at.theta).apply(self.anchor_mov)
         x, y = (at.xy + self.anchor_ref - turned).tolist()
         return Pose2(x, y, at.theta)
+
+    def with_number(self, at: Pose2, field: str, value: float, of_origin: bool) -> Pose2:
+        """Where map 2 lies once one of its three numbers is another, and the two others are what they were.
+
+        at        : where ``anchor_mov`` lies; scene
+        field     : x, y or theta; metres, radians, map 1
+        of_origin : whether the numbers are of map 2's origin; else of ``anchor_mov``
+        """
+        if of_origin:
+            at = self.placed(replace(self.transform(at), **{field: value}))
+        elif field == "theta":
+            at = replace(at, theta=value)
+        else:
+            at = replace(at, **{field: value - float(self.anchor_ref["xy".index(field)])})
+        return replace(at, theta=wrap_angle(at.theta))
 
     def view(self, mov_at: Pose2 | None = None) -> Rect:
         """Rectangle that holds map 1 and map 2 with its anchor at ``mov_at`` (apart if None)."""

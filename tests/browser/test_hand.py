@@ -136,6 +136,7 @@ def test_map_2_is_dragged_turned_typed_and_stepped_and_the_verdict_goes_along(op
     first = settle(lambda: tab.number("T: Δx"), "the answer")
     tab.press("Move map 2 by hand")
     settle(lambda: tab.state.startswith("By hand, would be merged: "), "the method's own answer, by hand")
+    tab.choose("Numbers are of", "the origin of map 2")
     settle(lambda: field(tab, "T: Δx (m)") == pytest.approx(metres(first), abs=0.01), "numbers")
     x, y = field(tab, "T: Δx (m)"), field(tab, "T: Δy (m)")
 
@@ -215,6 +216,7 @@ def test_a_hand_is_refined_snapped_left_and_a_reload_keeps_it(tab):
     proven = settle(lambda: tab.number("T: Δx"), "the answer")
     tab.press("Move map 2 by hand")
     settle(lambda: tab.state.startswith("By hand, would be merged: "), "map 2 in the hand")
+    tab.choose("Numbers are of", "the origin of map 2")
     tab.press("Heights")
     settle(lambda: tab.layer("floor"), "the heights")
     tab.press("Map")
@@ -235,6 +237,7 @@ def test_a_hand_is_refined_snapped_left_and_a_reload_keeps_it(tab):
     tab.page.reload()
     tab.page.wait_for_function(READY)
     settle(lambda: tab.state.startswith("By hand, would be refused: "), "the hand after a reload")
+    tab.choose("Numbers are of", "the origin of map 2")
     settle(lambda: field(tab, "T: Δx (m)") == moved, "the number")
     tab.press("Snap to proven optimum")
     settle(lambda: tab.mood == "accepted" and tab.number("T: Δx") == proven, "the proven optimum")

@@ -42,7 +42,7 @@ class MapDragController:
             Mode(self._end, redraw=self._redraw, changed=self._settings_changed, resume=self._resume)
         )
         typed = partial(tab.events.then, self._type)  # in order with what the page tells of the hand
-        self._panel.connect(self._toggle, typed, self._refine, self._snap, self._take)
+        self._panel.connect(self._toggle, typed, self._refine, self._snap, self._take, self._about_another)
         where = {"x": float, "y": float, "theta": float}
         tab.events.on("carry", lambda **at: self._carry(Pose2(**at)), latest=True, **where)
         tab.events.on("put", lambda knew, **at: self._put(Pose2(**at), knew), knew=int, **where)
@@ -85,7 +85,8 @@ class MapDragController:
         self._state.update(hand=self._maps.layout.transform(self._at))
         proves = isinstance(manual.config, PipelineConfig)
         climbs = isinstance(manual.config, PlaneMethodConfig)
-        self._panel.open(True, refine=proves or climbs, prove=proves)
+        seen = self._state.inputs.at is not None
+        self._panel.open(True, refine=proves or climbs, prove=proves, seen=seen)
         self._display.views.comparison.offer(None, self._state.palette)
         if self._state.turn_to_map():
             self._display.show_view(self._redraw)
@@ -124,7 +125,7 @@ class MapDragController:
 
     def _redraw(self) -> None:
         self._maps.hold(self._at)
-        self._panel.show(self._maps.layout.transform(self._at))
+        self._show_numbers()
         self._messages.flush()
         self._verdict.ask(self._at, rests=True)
 
@@ -179,7 +180,7 @@ class MapDragController:
         with self._locks.action:
             if self.active:
                 self._move(at)
-                self._panel.show(self._maps.layout.transform(at))
+                self._show_numbers()
                 self._verdict.ask(at, rests=False)
 
     def _put(self, at: Pose2, knew: int) -> None:
@@ -197,16 +198,21 @@ class MapDragController:
                 self._rest(at, self._known(knew), look=True)
 
     def _type(self, field: str, value: float) -> None:
-        """One number of T was typed; a turn is about robot 2, so it leaves robot 2 where it is."""
+        """One number was typed; the others stay."""
         with self._locks.action:
-            if not self.active:
-                return
-            if field == "theta":
-                at = replace(self._at, theta=wrap_angle(value))
-            else:
-                T = self._maps.layout.transform(self._at)
-                at = self._maps.layout.placed(replace(T, **{field: value}))
-            self._rest(at, GLIDE, look=True)
+            if self.active:
+                at = self._maps.layout.with_number(self._at, field, value, self._panel.of_origin)
+                self._rest(at, GLIDE, look=True)
+
+    def _show_numbers(self) -> None:
+        layout = self._maps.layout
+        self._panel.show(layout.transform(self._at), self._at.xy + layout.anchor_ref)
+
+    def _about_another(self) -> None:
+        """The numbers are to be those of another point; map 2 stays."""
+        with self._locks.action:
+            if self.active:
+                self._show_numbers()
 
     def _known(self, knew: int) -> float | None:
         """The time in which the page has to be put right, if it went by an older message than the last."""
@@ -230,7 +236,7 @@ class MapDragController:
             if look and self._panels.run.follow:
                 self._messages.look_down(self._maps.extent(), need=True)
             self._messages.flush()
-        self._panel.show(self._maps.layout.transform(at))
+        self._show_numbers()
         self._verdict.ask(at, rests=True)
         self._note()
 

@@ -16,7 +16,8 @@ from app.drawing.scene_layout import SceneLayout, lay_out
 from app.model.merge_inputs import MergeInputs
 from app.page.application import make_server
 
-X, Y, TURN = "T: Δx (m)", "T: Δy (m)", "T: Δθ (°)"
+X, Y, TURN = "x in map 1 (m)", "y in map 1 (m)", "turn Δθ (°)"
+OF_ORIGIN = "T: Δx (m)", "T: Δy (m)", "T: Δθ (°)"
 
 
 @pytest.fixture(scope="module")
@@ -35,16 +36,15 @@ def tab(server) -> Iterator[WireTab]:
     tab.close()
 
 
-def shown(tab: WireTab) -> tuple[float, float, float]:
+def shown(tab: WireTab, labels: tuple[str, ...] = (X, Y, TURN)) -> tuple[float, ...]:
     """The numbers beside map 2."""
-    x, y, turn = (tab.props[tab.find(label)]["value"] for label in (X, Y, TURN))
-    return x, y, turn
+    return tuple(tab.props[tab.find(label)]["value"] for label in labels)
 
 
 def numbers(layout: SceneLayout, at: Pose2) -> Any:
     """What the numbers are for map 2 at a place of the scene."""
-    T = layout.transform(at)
-    return pytest.approx((T.x, T.y, T.theta / radians(1)), abs=2e-3)
+    x, y = at.xy + layout.anchor_ref
+    return pytest.approx((x, y, at.theta / radians(1)), abs=2e-3)
 
 
 def told(tab: WireTab) -> Pose2:
@@ -90,3 +90,21 @@ def test_a_drag_of_what_the_page_knew_brings_no_word_back(tab, layout):
     tab.tell("put", x=3.0, y=4.0, theta=0.5, knew=knew)
     until(lambda: shown(tab) == numbers(layout, Pose2(3.0, 4.0, 0.5)), "the numbers")
     assert tab.words["maps"]["2"]["placed"] == knew
+
+
+def test_a_typed_turn_leaves_the_two_other_numbers_whatever_they_are_of(tab, layout):
+    x, y, _ = shown(tab)
+    tab.write(TURN, 30.0)
+    until(lambda: told(tab).theta == pytest.approx(radians(30)), "a turn about robot 2")
+    assert shown(tab) == pytest.approx((x, y, 30.0))
+    assert shown(tab) == numbers(layout, told(tab))
+
+    tab.write("Numbers are of", "the origin of map 2")
+    T = layout.transform(told(tab))
+    until(lambda: OF_ORIGIN[0] in {props.get("label") for props in tab.props.values()}, "other numbers")
+    until(lambda: shown(tab, OF_ORIGIN) == pytest.approx((T.x, T.y, 30.0), abs=2e-3), "where its origin is")
+    tab.write(OF_ORIGIN[2], -60.0)
+    until(lambda: told(tab).theta == pytest.approx(radians(-60)), "a turn about map 2's origin")
+    after = layout.transform(told(tab))
+    assert (after.x, after.y) == pytest.approx((T.x, T.y), abs=2e-3)
+    assert shown(tab, OF_ORIGIN) == pytest.approx((T.x, T.y, -60.0), abs=2e-3)

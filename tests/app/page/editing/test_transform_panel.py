@@ -6,11 +6,13 @@ from dataclasses import replace
 from math import degrees, radians
 from queue import Empty, Queue
 
+import numpy as np
 import pytest
 from controls import Controls
 from strangers import PATIENCE, Visitor
 
 from algorithms.common.pose import Pose2
+from algorithms.common.robot_names import RobotNames
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from algorithms.verdict.decision import Outcome
 from app.page.editing.transform_panel import TransformPanel, weighed_html
@@ -18,7 +20,10 @@ from app.page.editing.transform_panel import TransformPanel, weighed_html
 DEFAULTS = METHODS[DEFAULT_METHOD].defaults
 BEGIN, REFINE, SNAP = "Move map 2 by hand", "Refine from here", "Snap to proven optimum"
 TAKE, LEAVE = "Take this as the answer", "Leave it as it was"
-FIELDS = ("T: Δx (m)", "T: Δy (m)", "T: Δθ (°)")
+ABOUT = "Numbers are of"
+FIELDS = ("x in map 1 (m)", "y in map 1 (m)", "turn Δθ (°)")
+OF_ORIGIN = ("T: Δx (m)", "T: Δy (m)", "T: Δθ (°)")
+SEEN, MIDDLE, ORIGIN = "robot 2, where it was seen", "the middle of map 2", "the origin of map 2"
 
 
 class Hand:
@@ -30,13 +35,15 @@ class Hand:
         self.panel = TransformPanel(self.controls)
         ask = lambda name: lambda *value: self.asked.put((name, *value))  # noqa: E731
         self.panel.connect(
-            ask("toggle"), lambda *typed: self.asked.put(typed), ask("refine"), ask("snap"), ask("take")
+            ask("toggle"),
+            lambda *typed: self.asked.put(typed),
+            *(ask(each) for each in ("refine", "snap", "take", "about")),
         )
 
     def shown(self) -> set[str]:
         """Labels of the controls that can be seen."""
         begin = self.controls.find(BEGIN)
-        others = {name for name in (*FIELDS, REFINE, SNAP, TAKE) if self.controls.find(name).visible}
+        others = {name for name in (ABOUT, *FIELDS, REFINE, SNAP, TAKE) if self.controls.find(name).visible}
         return others | {begin.label}
 
     def field(self, name: str) -> float:
@@ -62,7 +69,7 @@ def test_it_is_offered_only_where_there_is_something_to_move(hand):
 def test_what_a_method_cannot_do_has_no_button(hand, refine, prove):
     assert hand.shown() == {BEGIN}
     hand.panel.open(True, refine, prove)
-    usual = {LEAVE, TAKE, *FIELDS}
+    usual = {LEAVE, TAKE, ABOUT, *FIELDS}
     assert hand.shown() == usual | ({REFINE} if refine else set()) | ({SNAP} if prove else set())
     hand.panel.open(False, refine, prove)
     assert hand.shown() == {BEGIN}
@@ -76,10 +83,33 @@ def test_each_button_asks_for_its_own(hand):
 
 
 def test_a_transform_is_shown_in_metres_and_degrees_and_not_taken_for_what_was_typed(hand):
-    hand.panel.show(Pose2(1.23456, -2.0, radians(33.3)))
-    assert [hand.field(name) for name in FIELDS] == [1.235, -2.0, pytest.approx(33.3)]
+    hand.panel.show(Pose2(1.23456, -2.0, radians(33.3)), np.array([7.0, 8.12349]))
+    assert [hand.field(name) for name in FIELDS] == [7.0, 8.123, pytest.approx(33.3)]
     with pytest.raises(Empty):
         hand.asked.get(timeout=0.3)
+
+
+def test_the_numbers_are_of_robot_2_or_of_map_2s_origin_and_say_so(stock, hand):
+    hand.panel.open(True)
+    about = hand.controls.find(ABOUT)
+    assert (about.options, about.value) == ((SEEN, ORIGIN), SEEN)
+    visitor = Visitor(stock)
+    visitor.write(about, value=ORIGIN)
+    assert hand.asked.get(timeout=PATIENCE) == ("about",)
+    visitor.socket.close()
+    assert hand.panel.of_origin
+    hand.panel.show(Pose2(1.23456, -2.0, radians(33.3)), np.array([7.0, 8.12349]))
+    assert [hand.field(name) for name in FIELDS] == [1.235, -2.0, pytest.approx(33.3)]
+    assert tuple(hand.controls.find(name).label for name in FIELDS) == OF_ORIGIN
+    hand.panel.offer(True, RobotNames("Bob", "Alice"))
+    assert about.options == ("Alice, where it was seen", "the origin of Alice's map")
+    assert about.value == about.options[1]
+
+
+def test_where_nobody_saw_robot_2_the_numbers_are_of_the_middle_of_its_map(hand):
+    hand.panel.open(True, seen=False)
+    about = hand.controls.find(ABOUT)
+    assert (about.options, about.value) == ((MIDDLE, ORIGIN), MIDDLE)
 
 
 def test_what_a_person_types_arrives_as_it_was_meant_in_metres_and_radians(stock, hand):
