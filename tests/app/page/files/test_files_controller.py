@@ -132,7 +132,7 @@ def test_maps_are_swapped_replaced_and_removed_by_the_buttons_of_their_lines(des
 
 
 def test_a_sample_lists_no_files_and_gives_way_to_them(desk, case):
-    desk.controller._take_sample("office_r2_r1")
+    desk.controller.take_sample("office_r2_r1")
     assert lines(desk.panel.files) == []
     assert "missing" not in desk.panel._list.content
     assert "drop them anywhere" in desk.panel._list.content
