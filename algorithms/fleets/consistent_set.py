@@ -11,11 +11,15 @@ consistency (Mangelson et al., ICRA 2018) asks less, and takes loops of two answ
 with one sighting a pair has none. It is solved by building forests, the likeliest answer first, and again
 with each answer that was left out put in first, as long as that makes the set likelier: the graph has few
 more edges than robots, and what is left out are the few lies.
+
+Findings of the same two robots weigh the same walls: they outvote a lie, each by a sighting of its own, but
+none makes another likelier: see ``fleet_merge.probability_of``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 from math import log, pi, radians
 
@@ -85,6 +89,22 @@ class AnswerGraph:
             best = better
         return best
 
+    def same_pair(self, number: int) -> frozenset[int]:
+        """The findings of the same two robots, whoever of them saw the other; this one, too."""
+        pair = self._pair(number)
+        return frozenset(other for other, _ in self._edges if self._pair(other) == pair)
+
+    def without(self, numbers: Collection[int]) -> AnswerGraph:
+        """The same graph without the answers of some findings; numbers stay as they are."""
+        rest = copy(self)
+        rest._edges = {key: edge for key, edge in self._edges.items() if key[0] not in numbers}
+        return rest
+
+    def holding(self, key: Answer) -> ConsistentSet:
+        """The likeliest set that begins with an answer."""
+        order = sorted(self._edges, key=lambda key: (-self._weight(key), self._called(key)))
+        return self._built([key, *order], forced=key, keep=True)
+
     def others(self, number: int, like: ConsistentSet) -> list[ConsistentSet]:
         """The likeliest set without a finding, and those with each of its answers that ``like`` has not."""
         order = sorted(self._edges, key=lambda key: (-self._weight(key), self._called(key)))
@@ -114,6 +134,10 @@ class AnswerGraph:
             number = min(ties[near][far])
             tree.link(near, far, (number, chosen[number]))
         return {name: self._chain(tree, root, name).T for name in names}
+
+    def _pair(self, number: int) -> frozenset[str]:
+        order = self._findings[number].order
+        return frozenset((order.ref, order.mov))
 
     def _weight(self, key: Answer) -> float:
         return self._findings[key[0]].hypotheses[key[1]].weight
@@ -156,8 +180,7 @@ class AnswerGraph:
         while any(self._weight(key) <= 0 for key in chosen.items()):
             links: dict[frozenset[str], list[int]] = {}
             for number in chosen:
-                pair = self._findings[number].order
-                links.setdefault(frozenset((pair.ref, pair.mov)), []).append(number)
+                links.setdefault(self._pair(number), []).append(number)
             bridges = nx.bridges(nx.Graph(tuple(pair) for pair in links))
             alone = [links[frozenset(bridge)] for bridge in bridges]
             weak = [numbers[0] for numbers in alone if len(numbers) == 1]

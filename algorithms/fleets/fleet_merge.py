@@ -216,8 +216,26 @@ def _area(fleet: Fleet) -> float:
 
 
 def probability_of(graph: AnswerGraph, best: ConsistentSet, number: int) -> float:
-    """That a chosen answer is right: the set with it against those with none of its pair, or another."""
-    odds = (exp(min(700.0, other.score - best.score)) for other in graph.others(number, best))
+    """That a chosen answer is right: the set with it against those with none of its finding, or another.
+
+    Where other findings of the same two robots are chosen, too, it is at most as likely as the likeliest of
+    them without the others: where walls look alike in one of them, they do so in all.
+    """
+    likely = _against_others(graph, best, number)
+    same = graph.same_pair(number)
+    together = [each for each in same if each in best.chosen]
+    if len(together) == 1:
+        return likely
+    return min(likely, max(_by_itself(graph.without(same - {each}), best, each) for each in together))
+
+
+def _by_itself(graph: AnswerGraph, best: ConsistentSet, number: int) -> float:
+    """That a chosen answer is right where its finding is the only one of its two robots."""
+    return _against_others(graph, graph.holding((number, best.chosen[number])), number)
+
+
+def _against_others(graph: AnswerGraph, like: ConsistentSet, number: int) -> float:
+    odds = (exp(min(700.0, other.score - like.score)) for other in graph.others(number, like))
     return 1.0 / (1.0 + sum(odds))
 
 

@@ -118,3 +118,38 @@ def test_unlikely_answers_that_close_a_loop_are_likely_together():
     best = graph.best()
     assert set(best.chosen) == {0, 1, 2}
     assert min(probability_of(graph, best, number) for number in range(3)) > 0.99
+
+
+@given(st.floats(0.3, 0.97), st.floats(0.3, 0.97))
+def test_two_findings_of_the_same_two_robots_are_no_surer_together_than_the_surer_one(one, other):
+    """They weigh the same walls, whoever of the robots saw the other."""
+    _, poses = world(13, 2)
+    found = [
+        finding(0, "r0", "r1", hypothesis(true(poses, "r0", "r1"), one)),
+        finding(1, "r1", "r0", hypothesis(true(poses, "r1", "r0"), other)),
+    ]
+    graph = AnswerGraph(list(poses), found, AREA)
+    best = graph.best()
+    for number in best.chosen:
+        assert probability_of(graph, best, number) == pytest.approx(max(one, other))
+
+
+@settings(max_examples=20)
+@given(st.integers(0, 10_000), st.floats(0.6, 0.97))
+def test_two_findings_that_agree_outvote_a_lie_of_the_same_robots_and_a_third_robot_makes_them_surer(seed, p):
+    rng, poses = world(seed, 3)
+    found = [
+        finding(0, "r0", "r1", hypothesis(true(poses, "r0", "r1"), p)),
+        finding(1, "r0", "r1", hypothesis(anywhere(rng), 0.98)),
+        finding(2, "r1", "r0", hypothesis(true(poses, "r1", "r0"), p)),
+    ]
+    graph = AnswerGraph(list(poses), found, AREA)
+    assert set(graph.best().chosen) == {0, 2}
+    found += [
+        finding(3, "r1", "r2", hypothesis(true(poses, "r1", "r2"), 0.9)),
+        finding(4, "r2", "r0", hypothesis(true(poses, "r2", "r0"), 0.9)),
+    ]
+    graph = AnswerGraph(list(poses), found, AREA)
+    best = graph.best()
+    assert set(best.chosen) == {0, 2, 3, 4}
+    assert min(probability_of(graph, best, number) for number in best.chosen) > 0.99
