@@ -4,28 +4,29 @@
   if (S.keys) return;
   const K = {};
   S.keys = K;
-  // key -> the name of the button it presses, which must be there and not be greyed; and its words in the list
-  const BUTTONS = {
-    m: ["Merge", "merge"], 1: ["Map", "the map"], 2: ["Heights", "the levels as heights"], 3: ["Swarm space", "the swarm's space"],
-    o: ["Overlay", "both maps over each other"], b: ["Blink", "the maps take turns"], c: ["Curtain", "one map beside the other"],
-    d: ["Difference", "only what differs"], g: ["Merged map", "the merged map as it is given away"],
-    e: ["Erase with a brush", "erase with a brush"], x: ["Erase a rectangle", "erase a rectangle"], k: ["Draw a keep-out line", "draw a keep-out line"], r: ["Measure", "measure a distance"], f: ["Show everything", "show everything"],
-    0: ["◀ Back to your own", "back from another method's merge"],
-    l: ["Lesson", "the lesson, in and out"], p: ["Present", "the lesson large, for a class"], pagedown: ["Next ▶", "next step"], pageup: ["◀ Back", "step before"],
-  };
-  // key -> the tab of the dock it turns to; viser's tabs take no click of a script, but a key
-  const TABS = { 4: ["Stages", "the stages of a merge"], 5: ["Compare", "compare methods"], 6: ["Sweep", "sweep a setting"] };
+  // All keys of the page, as they are listed: key, what it does, and, where it presses a button or turns to a tab of
+  // the dock, by what name that goes; a button must be there and not be greyed.
   const GROUPS = [
-    ["Work", [["M", BUTTONS.m[1]], ["Esc", "stop a run; end measuring, placing or erasing"], ["Ctrl Z", "undo"], ["Ctrl Y", "redo, also Ctrl Shift Z"]]],
-    ["Look", [["1", BUTTONS[1][1]], ["2", BUTTONS[2][1]], ["3", BUTTONS[3][1]], ["F", BUTTONS.f[1]], ["R", BUTTONS.r[1]],
+    ["Work", [["M", "merge", "Merge"], ["Esc", "stop a run; end measuring, placing or erasing; leave the large lesson"],
+      ["Ctrl Z", "undo"], ["Ctrl Y", "redo, also Ctrl Shift Z"], ["Enter", "open or close the folder in focus"], ["?", "this list"]]],
+    ["Look", [["1", "the map", "Map"], ["2", "the levels as heights", "Heights"], ["3", "the swarm's space", "Swarm space"],
+      ["F", "show everything", "Show everything"], ["R", "measure a distance", "Measure"],
       ["drag, wheel", "move and zoom the map"], ["click", "what both maps know of a place"]]],
-    ["Compare", [["O", BUTTONS.o[1]], ["B", BUTTONS.b[1]], ["C", BUTTONS.c[1]], ["D", BUTTONS.d[1]], ["G", BUTTONS.g[1]], ["← →", "move the curtain, once it is in focus"]]],
-    ["Correct the map, once its folder is open", [["E", BUTTONS.e[1]], ["X", BUTTONS.x[1]], ["K", BUTTONS.k[1]]]],
-    ["Learn", [["L", BUTTONS.l[1]], ["P", BUTTONS.p[1]], ["Page↓", BUTTONS.pagedown[1]], ["Page↑", BUTTONS.pageup[1]]]],
-    ["Research", [["4", TABS[4][1]], ["5", TABS[5][1]], ["6", TABS[6][1]], ["0", BUTTONS[0][1]]]],
-    ["Map 2 by hand", []],
+    ["Compare", [["O", "both maps over each other", "Overlay"], ["B", "the maps take turns", "Blink"],
+      ["C", "one map beside the other", "Curtain"], ["← →", "move the curtain, once it is in focus"],
+      ["D", "only what differs", "Difference"], ["G", "the merged map as it is given away", "Merged map"]]],
+    ["Correct the map, once its folder is open", [["E", "erase with a brush", "Erase with a brush"],
+      ["X", "erase a rectangle", "Erase a rectangle"], ["K", "draw a keep-out line", "Draw a keep-out line"]]],
+    ["Map 2 by hand, once it is taken up", [["← → ↑ ↓", "one cell; with Shift 1 cm"], ["[ ]", "turn by 0.5°; with Shift 0.1°"],
+      ["Shift drag", "turn about robot 2"]]],
+    ["Learn", [["L", "the lesson, in and out", "Lesson"], ["P", "the lesson large, for a class", "Present"],
+      ["Page↓", "next step", "Next ▶"], ["Page↑", "step before", "◀ Back"]]],
+    ["Research", [["4", "the stages of a merge", "Stages", "tab"], ["5", "compare methods", "Compare", "tab"],
+      ["6", "sweep a setting", "Sweep", "tab"], ["0", "back from another method's merge", "◀ Back to your own"]]],
   ];
-  K.groups = GROUPS;
+  const KEYS = { "Page↓": "pagedown", "Page↑": "pageup" }; // called otherwise by the browser
+  const rows = GROUPS.flatMap(([, listed]) => listed.filter(([, , name]) => name));
+  const does = Object.fromEntries(rows.map(([key, , name, tab]) => [KEYS[key] || key.toLowerCase(), { name, tab }]));
   let sheet = null, before = null;
 
   const writing = (e) => e && (e.isContentEditable || e.tagName === "TEXTAREA" || e.tagName === "SELECT" ||
@@ -43,12 +44,11 @@
     sheet.dataset.theme = S.dark ? "dark" : "light";
     const close = element("button", "Close"); close.type = "button"; close.onclick = () => sheet.close();
     const grid = element("div"); grid.className = "mm-grid";
-    for (const [title, rows] of GROUPS) {
-      if (!rows.length) continue;
+    for (const [title, listed] of GROUPS) {
       const list = element("dl");
-      for (const [key, does] of rows) {
+      for (const [key, words] of listed) {
         const parts = key.split(" ").map((part) => (/^[a-z,]+$/.test(part) ? element("span", part) : element("kbd", part)));
-        list.append(element("dt", "", ...parts), element("dd", S.kit.named(does)));
+        list.append(element("dt", "", ...parts), element("dd", S.kit.named(words)));
       }
       grid.append(element("section", "", element("h3", S.kit.named(title)), list));
     }
@@ -63,11 +63,13 @@
     if (e.key === "?") { e.preventDefault(); K.show(); return; }
     if (document.querySelector("dialog[open], [role=dialog]")) return;
     if (e.key === "Escape") { if (!e.defaultPrevented && !S.measure?.on) named("Stop")?.click(); return; }
-    const chosen = BUTTONS[e.key.toLowerCase()], turn = TABS[e.key];
-    const tab = turn && [...document.querySelectorAll("[role=tab]")].find((each) => each.title === turn[0] && each.offsetParent !== null);
-    if (tab) { e.preventDefault(); tab.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true, cancelable: true })); return; }
-    const button = chosen && named(chosen[0]);
-    if (button) { e.preventDefault(); button.click(); }
+    const chosen = does[e.key.toLowerCase()];
+    const tab = chosen?.tab && [...document.querySelectorAll("[role=tab]")].find((each) => each.title === chosen.name && each.offsetParent !== null);
+    const there = tab || (chosen && !chosen.tab && named(chosen.name));
+    if (!there) return;
+    e.preventDefault();
+    // viser's tabs take no click of a script, but a key
+    if (tab) tab.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true, cancelable: true })); else there.click();
   }, true);
 
   // viser's folders open by the mouse alone: their heads become buttons, those that appear later, too
@@ -104,10 +106,10 @@
     [data-mantine-color-scheme=dark] ${HEAD}:focus-visible{outline-color:#56B4E9}
     .mm-keys{border:0;border-radius:10px;padding:16px 20px 18px;max-width:min(720px,94vw);color:#111827;background:#fff;font:13px/1.4 system-ui,"Segoe UI",sans-serif;box-shadow:0 10px 40px rgba(17,24,39,.35)}
     .mm-keys::backdrop{background:rgba(17,24,39,.35)}
-    .mm-keys header{display:flex;justify-content:space-between;align-items:center;margin-bottom:6px}
-    .mm-keys h2{font-size:16px;margin:0} .mm-keys h3{font-size:12px;margin:8px 0 4px;color:#0072B2;letter-spacing:.02em}
+    .mm-keys header{display:flex;justify-content:space-between;align-items:center;margin-bottom:12px}
+    .mm-keys h2{font-size:16px;margin:0} .mm-keys h3{font-size:12px;margin:0 0 4px;color:#0072B2;letter-spacing:.02em}
     .mm-keys header button{font:inherit;padding:3px 12px;border:1px solid #CBD5E1;border-radius:6px;background:none;color:inherit;cursor:pointer}
-    .mm-grid{columns:2;column-gap:32px} .mm-grid section{break-inside:avoid;margin-bottom:10px}
+    .mm-grid{columns:2;column-gap:32px} .mm-grid section{break-inside:avoid;padding-bottom:14px}
     .mm-keys dl{display:grid;grid-template-columns:minmax(72px,max-content) 1fr;gap:4px 12px;margin:0;align-items:baseline}
     .mm-keys dt{display:flex;gap:3px;align-items:baseline;white-space:nowrap} .mm-keys dd{margin:0}
     .mm-keys kbd{display:inline-block;min-width:20px;padding:0 5px;border:1px solid #9CA3AF;border-bottom-width:2px;border-radius:4px;font:600 11.5px/18px system-ui,"Segoe UI",sans-serif;text-align:center;box-sizing:border-box}

@@ -200,11 +200,8 @@
     S.carry({ x: at.x + by.x, y: at.y + by.y, theta: at.theta + by.theta });
     S.tell("nudge", { ...by, knew: S.placed });
   }, true);
-  const KEYS = [["← → ↑ ↓", "one cell; with Shift 1 cm"], ["[ ]", "turn by 0.5°; with Shift 0.1°"], ["Shift drag", "turn about robot 2"]];
   S.heard.push((message) => {
     if (!message.hand) return;
-    const listed = S.keys?.groups.find(([title]) => title === "Map 2 by hand"); // the list that "?" shows
-    if (listed && !listed[1].length) listed[1].push(...KEYS);
     S.hand = Object.keys(message.hand).length ? message.hand : null;
     document.body.toggleAttribute("data-mm-held", Boolean(S.hand?.mov));
     if (!S.hand && hold) { hold = null; S.held = false; sketch(); }

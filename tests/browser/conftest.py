@@ -59,9 +59,10 @@ def open_tab(browser: Browser, server: viser.ViserServer) -> Iterator[Callable[.
         size: tuple[int, int] = SIZE,
         at: viser.ViserServer = server,
         touch: bool = False,
+        mode: str = "Research",
         smooth: bool = False,
     ) -> Tab:
-        tabs.append(Tab(browser, f"http://127.0.0.1:{at.get_port()}/", size, touch, smooth=smooth))
+        tabs.append(Tab(browser, f"http://127.0.0.1:{at.get_port()}/", size, touch, mode, smooth))
         return tabs[-1]
 
     yield open_one

@@ -34,7 +34,8 @@ def test_the_sheet_lists_every_key_and_closes_again(tab):
     tab.page.keyboard.press("?")
     sheet = tab.page.get_by_role("dialog", name="Keys")
     settle(sheet.is_visible, "the sheet")
-    for words in ("merge", "undo", "measure a distance", "show everything"):
+    by_hand = "one cell; with Shift 1 cm"  # before anything is taken up
+    for words in ("merge", "undo", "measure a distance", "draw a keep-out line", by_hand, "this list"):
         assert sheet.get_by_text(words, exact=True).count() == 1
     tab.page.keyboard.press("Escape")
     settle(lambda: not sheet.is_visible(), "the sheet to go")

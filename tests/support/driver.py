@@ -198,6 +198,20 @@ class Tab:
         settle(lambda: chooser.evaluate("(input) => input.multiple"), "a choice of several files")
         chooser.set_input_files([str(file) for file in files])
 
+    def drop(self, *paths: Path) -> None:
+        """Drop files and folders on the map, all at once, as a file manager does."""
+        events = self.context.new_cdp_session(self.page)
+        box = self.page.locator("canvas").first.bounding_box()
+        assert box is not None
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        data = {"items": [], "files": [str(path) for path in paths], "dragOperationsMask": 1}
+        veil = self.page.locator(".mm-veil")
+        for kind, veiled in (("dragEnter", False), ("dragOver", True), ("drop", False)):
+            events.send("Input.dispatchDragEvent", {"type": kind, "x": x, "y": y, "data": data})
+            if kind != "dragEnter":
+                settle(lambda veiled=veiled: veil.is_visible() == veiled, "the words over the page")
+        events.detach()
+
     def listed(self) -> list[str]:
         """The lines of the list of files."""
         return [" ".join(line.split()) for line in self.page.locator(".mm-given li").all_inner_texts()]

@@ -89,10 +89,11 @@ def joined(maps: dict[int, MapFiles], loose: Sequence[MapFiles]) -> list[MapFile
     left = []
     for files in loose:
         fits = [number for number, there in maps.items() if _fits(there, files)]
-        same = [number for number, there in maps.items() if _same_name(there.text, files.text)]
+        free = len(maps) < len(PAIR)
+        same = [number for number, there in maps.items() if _is_newer(there, files, free)]
         if fits:
             maps[fits[0]] = _together(maps[fits[0]], files)
-        elif same:
+        elif len(same) == 1:
             maps[same[0]] = files
         else:
             left.append(files)
@@ -139,8 +140,16 @@ def _together(there: MapFiles, files: MapFiles) -> MapFiles:
     return MapFiles(None if by_form else there.text, files.image)
 
 
-def _same_name(one: Upload | None, other: Upload | None) -> bool:
-    return one is not None and other is not None and one.name == other.name
+def _is_newer(there: MapFiles, files: MapFiles, free: bool) -> bool:
+    """Whether this is the map that is there, once more. The maps of two robots are often called alike: they
+    are told apart by their folders where these are known, else by there being a place that is ``free``.
+    """
+    one, other = there.text, files.text
+    if one is None or other is None or one.name != other.name:
+        return False
+    if one.folder and other.folder:
+        return one.folder == other.folder
+    return not free or [part.content for part in there.parts] == [part.content for part in files.parts]
 
 
 def _waits_for(there: MapFiles, files: MapFiles) -> bool:

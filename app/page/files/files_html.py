@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from html import escape
@@ -45,6 +46,7 @@ class FileRow:
 def rows_of(files: Files) -> Iterator[FileRow]:
     """A line for every file, and for those that are missing."""
     uploads = files.uploads
+    names = Counter(name for name, _ in {(upload.name, upload.path) for upload in uploads.values()})
     for key in ORDER:
         role, upload, number = ROLES[key], uploads.get(key), key[-1]
         text, image = uploads.get(f"yaml{number}"), uploads.get(f"image{number}")
@@ -52,7 +54,8 @@ def rows_of(files: Files) -> Iterator[FileRow]:
             yield FileRow("the form below", role, "used")
         elif upload is not None:
             told = role + (_how_found(text, upload) if text is not None and upload is image else "")
-            yield FileRow(upload.name, told, "used", REMOVE, key)
+            shown = upload.name if names[upload.name] == 1 else upload.path
+            yield FileRow(shown, told, "used", REMOVE, key)
         elif text is not None:
             yield FileRow(short_name(image_path(text)), f"{role}: missing", "missing")
         elif image is not None:

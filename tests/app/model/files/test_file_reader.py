@@ -137,16 +137,29 @@ def test_an_image_that_was_moved_or_is_named_otherwise_is_found_and_doubted_wher
     assert "names the image map1.pgm; loaded is scan of the floor.pgm" in page.inputs.doubt()
 
 
-def test_two_folders_with_files_of_the_same_names_are_two_maps():
-    page = Page()
-    page.open(
-        {
-            f"{robot}/map.{end}": map_to_bytes(grid, "map")[f"map.{end}"]
-            for robot, grid in (("a", FIRST), ("b", SECOND))
-            for end in ("yaml", "pgm")
-        }
+@pytest.mark.parametrize("folders", [("a/", "b/"), ("a/", ""), ("", "")])
+def test_maps_of_two_robots_that_are_called_alike_are_two_maps(folders):
+    one, two = (
+        {f"{folder}{name}": data for name, data in map_to_bytes(grid, "map").items()}
+        for folder, grid in zip(folders, (FIRST, SECOND), strict=True)
     )
+    page = Page()
+    page.open(one)
+    page.open(two)
     assert page.cells == cells_of(FIRST, SECOND)
+    page.open(two)  # once more
+    assert page.cells == cells_of(FIRST, SECOND)
+    if len(one | two) == 4:
+        page = Page()
+        page.open(one | two)
+        assert page.cells == cells_of(FIRST, SECOND)
+
+
+def test_a_map_that_comes_from_its_folder_again_takes_its_own_place():
+    page = Page()
+    page.open({f"a/{name}": data for name, data in map_to_bytes(FIRST, "map").items()})
+    page.open({f"a/{name}": data for name, data in map_to_bytes(THIRD, "map").items()})
+    assert page.cells == cells_of(THIRD, None)
 
 
 def test_a_second_yaml_file_never_comes_with_the_image_of_the_first():
