@@ -73,7 +73,7 @@ def second_sighting(lesson: LessonRun, at: Sequence[int], palette: Palette) -> s
     if found is None:
         return chain(lesson, at, palette)
     fleet, sheet, wide = sample_fleet(), SvgCanvas(TOP + SIDE + 92), SIDE + APART
-    answers, again = found.findings[-1].hypotheses[:2], _far_end(found)
+    answers, again = found.findings[-1].hypotheses[:2], far_end(found)
     places = [(ROOT, Pose2()), *((FAR, answer.T_ref_mov) for answer in answers)]
     rect = union(*(rect_of(T.apply(known_corners(fleet.maps[name]))) for name, T in places))
     x0, y0, x1, y1 = rect
@@ -120,7 +120,7 @@ def shares_after(found: Chain, seen: FloatArray) -> tuple[float, float]:
 
     Where neither is right, it may be seen anywhere on a square of AREA.
     """
-    answers, again = found.findings[-1].hypotheses[:2], _far_end(found)
+    answers, again = found.findings[-1].hypotheses[:2], far_end(found)
     off = np.array([seen - answer.T_ref_mov.apply(again) for answer in answers])
     density = np.exp(-0.5 * (off**2).sum(axis=1) / AGAIN_SIGMA**2) / (2 * pi * AGAIN_SIGMA**2)
     before = np.array([answer.probability for answer in answers])
@@ -135,11 +135,11 @@ def second_at(lesson: LessonRun, at: Sequence[int]) -> tuple[float, float] | Non
     found = _chain(runs_of(lesson))
     if found is None:
         return None
-    places = [answer.T_ref_mov.apply(_far_end(found)) for answer in found.findings[-1].hypotheses[:2]]
+    places = [answer.T_ref_mov.apply(far_end(found)) for answer in found.findings[-1].hypotheses[:2]]
     return shares_after(found, np.mean(places, axis=0) + (shown(SEEN_X, at[0]), shown(SEEN_Y, at[1])))
 
 
-def _far_end(found: Chain) -> FloatArray:
+def far_end(found: Chain) -> FloatArray:
     """The floor of the far robot's map that is farthest from the meeting: it tells best."""
     grid, pivot = sample_fleet().maps[FAR], found.findings[-1].pivot
     floor = grid.centres(*where(grid.free))
