@@ -29,6 +29,7 @@
     .mm-symbols dd{margin:0}
     .mm-frame{margin:8px 14px 4px}
     .mm-picture{display:block;width:100%;height:auto}
+    .mm-grip{cursor:grab;touch-action:none} [data-mm-held],[data-mm-held] .mm-grip{cursor:grabbing;user-select:none}
     .mm-wait{padding:26px 10px;text-align:center;opacity:.65;border:1px dashed currentColor;border-radius:6px;font-size:13px}
     .mm-try{margin:8px 12px 3px;padding:7px 10px;border-left:4px solid #E69F00;border-radius:4px;background:#E69F001f;font-size:13px;line-height:1.4}
     .mm-try b{color:#B45309;margin-right:4px}
@@ -122,6 +123,41 @@
       e.preventDefault(); present(false); // before a run is stopped: keyboard_shortcuts.js
     }
   }, true);
+
+  // --- pictures in the hand: a handle moves what sliders move, app/drawing/svg/svg_canvas.py says how ---------------
+  let held = null, waits = null;
+  const along = ([dial, p, u, q, v], at) => [dial, u + (at - p) / (q - p) * (v - u)];
+  function grasped(e) { // what the sliders are to show
+    const svg = document.querySelector("svg.mm-picture:has([data-mm-grip])");
+    if (!svg) return null;
+    const { x, y } = new DOMPoint(e.clientX, e.clientY).matrixTransform(svg.getScreenCTM().inverse()), moves = [];
+    if (held.x) moves.push(along(held.x, x));
+    if (held.y) moves.push(along(held.y, y));
+    if (held.r) moves.push([held.r[0], Math.hypot(x - held.r[1], y - held.r[2]) * held.r[3]]);
+    if (held.a) {
+      const [dial, cx, cy, zero, least] = held.a, off = Math.atan2(cy - y, x - cx) * 180 / Math.PI - zero - least;
+      moves.push([dial, least + (off % 360 + 360) % 360]);
+    }
+    return { dials: moves.map(([dial]) => dial), values: moves.map(([, value]) => value) };
+  }
+  const say = (fields) => { if (fields) S.tell("grip", fields); };
+  document.addEventListener("pointerdown", (e) => {
+    const grip = e.button === 0 && e.target.closest?.("[data-mm-grip]");
+    if (!grip) return;
+    e.preventDefault();
+    held = JSON.parse(grip.dataset.mmGrip); body.dataset.mmHeld = "";
+  });
+  document.addEventListener("pointermove", (e) => {
+    if (!held) return;
+    const first = waits === null;
+    waits = grasped(e);
+    if (first) setTimeout(() => { say(waits); waits = null; }, 40); // the newest of those that came meanwhile
+  });
+  for (const kind of ["pointerup", "pointercancel"]) document.addEventListener(kind, (e) => {
+    if (!held) return;
+    if (kind === "pointerup") say(grasped(e));
+    held = null; delete body.dataset.mmHeld;
+  });
 
   // --- a new step -------------------------------------------------------------------------------------------------
   let seen = "";

@@ -47,8 +47,21 @@ def bars(verdict: Verdict, palette: Palette, names: RobotNames = UNNAMED, remark
 
     remark : words beside the outcome
     """
+    sheet = SvgCanvas(height_of(verdict))
+    draw_bars(sheet, verdict, palette, names, remark)
+    return sheet.svg("What speaks for the merge and what against it")
+
+
+def height_of(verdict: Verdict) -> float:
+    """Pixels that the bars take."""
+    return TOP + ROW * len(titles(verdict)) + 26
+
+
+def draw_bars(
+    sheet: SvgCanvas, verdict: Verdict, palette: Palette, names: RobotNames = UNNAMED, remark: str = ""
+) -> None:
+    """The same at the top of a sheet."""
     named = titles(verdict)
-    sheet = SvgCanvas(TOP + ROW * len(named) + 26)
     head = worded(COLOURS[verdict.outcome], palette)
     sheet.text(0, 13, f"{verdict.outcome.value.capitalize()}: {words.likelihood(verdict.probability)}", 15,
                colour=head, bold=True)  # fmt: skip
@@ -79,7 +92,6 @@ def bars(verdict: Verdict, palette: Palette, names: RobotNames = UNNAMED, remark
         f"log-odds: a typical right merge {_signed(verdict.typical_score)}, this one {_signed(total)}",
         11, alpha=0.85,
     )  # fmt: skip
-    return sheet.svg("What speaks for the merge and what against it")
 
 
 def _signed(value: float) -> str:

@@ -18,6 +18,7 @@ from app.page.modes import Mode
 from app.page.run_controller import RunController
 from app.page.tab import Tab
 from app.page.undo.undo_controller import UndoController
+from app.web.browser_events import Numbers
 
 
 class LessonController:
@@ -40,6 +41,7 @@ class LessonController:
             Mode(self._end, leave=self.leave, changed=self._settings_changed, reopen=self.enter)
         )
         self._panel.connect(self.go, self.move, self.leave, self._slide, self._try)
+        tab.events.on("grip", self._grip, latest=True, dials=Numbers(1, 2), values=Numbers(1, 2))
         tab.state.subscribe("palette", lambda: self._show(fresh=True))
 
     def close(self) -> None:
@@ -142,6 +144,13 @@ class LessonController:
         with self._locks.action:
             if self.open and mine == self._slid:
                 self._display.places = self._panel.places
+                self._show(fresh=False, moved=True)
+
+    def _grip(self, dials: list[float], values: list[float]) -> None:
+        """A handle in the picture is dragged."""
+        with self._locks.action:
+            if self.open and self._text is not None:
+                self._display.move(dials, values)
                 self._show(fresh=False, moved=True)
 
     def _try(self, number: int) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from app.drawing.draw_items import Item
 from app.model.run_state import RunState
 from app.model.view_modes import MAP
-from app.page.lesson.figures.figure_registry import PICTURES, FigureSlider
+from app.page.lesson.figures.figure_registry import PICTURES
+from app.page.lesson.figures.figure_slider import FigureSlider, place_of
 from app.page.lesson.lesson_panel import LessonPanel
 from app.page.lesson.lesson_run import LessonRun
 from app.page.lesson.lesson_texts import StepText, filled
@@ -47,6 +48,7 @@ class LessonDisplay:
     def __init__(self, state: PageState, display: PageDisplay, panel: LessonPanel) -> None:
         self._state, self._display, self._panel = state, display, panel
         self.places: tuple[int, ...] = ()
+        self._dials: tuple[FigureSlider, ...] = ()  # those of the picture that is shown
         self.way = ""  # in which a thing to try has the picture drawn
 
     def dock(self, open_: bool, turned: bool) -> None:
@@ -75,6 +77,14 @@ class LessonDisplay:
         """Draw a picture in another way from now on, its dials where that is seen."""
         self.way, self.places = way, PICTURES[picture].ways[way].places
 
+    def move(self, dials: Sequence[float], values: Sequence[float]) -> None:
+        """Dials by their numbers, moved to where they show these values by a handle in the picture."""
+        places = list(self.places)
+        for dial, value in zip(dials, values, strict=False):
+            if dial in range(len(places)):
+                places[int(dial)] = place_of(self._dials[int(dial)], value)
+        self.places = tuple(places)
+
     def picture(self, text: StepText, lesson: LessonRun, done: bool) -> OnMap:
         """Draw a step's picture, or say why there is none yet, and what stands beside it; what belongs to it
         on the map.
@@ -91,7 +101,7 @@ class LessonDisplay:
             return OnMap(RunState(lesson.config), busy=waiting == WAIT and not over)
         way = picture.ways.get(self.way)
         dials = picture.dials(lesson) if way is None or way.dials is None else way.dials
-        places = self._placed(dials)
+        places, self._dials = self._placed(dials), dials
         self._panel.dials(dials, places)
         self._beside(text, lesson, places)
         svg = (way or picture).draw(lesson, places, palette)

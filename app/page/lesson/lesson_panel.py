@@ -11,7 +11,7 @@ import viser
 
 from app.drawing.palette import QUIET
 from app.page.lesson.equations import equations_html, symbols_html
-from app.page.lesson.figures.figure_registry import FigureSlider, place_of, shown
+from app.page.lesson.figures.figure_slider import FigureSlider, place_of, shown
 from app.page.lesson.lesson_texts import Exercise
 from app.page.panels.html_widgets import Action, box, on_choice, on_press, put
 
@@ -24,7 +24,7 @@ BUTTONS = (  # what they do lesson.js does by itself
     'title="The picture large, for a class. Press P">Present</button></span>'
 )
 WIDTH = 424
-MOST_TRIALS, MOST_DIALS = 3, 2
+MOST_TRIALS, MOST_DIALS = 4, 3
 
 
 def emphasised(text: str) -> str:
@@ -142,8 +142,8 @@ class LessonPanel:
             there = k < len(dials) and dials[k].count > 1
             if there:
                 dial = dials[k]
-                slider.min, slider.max = shown(dial, 0), shown(dial, dial.count - 1)
-                slider.step, slider.label = dial.step, dial.label
+                ends = {"min": shown(dial, 0), "max": shown(dial, dial.count - 1)}
+                put(slider, **ends, step=dial.step, label=dial.label)
                 put(slider, value=shown(dial, places[k]))
             put(slider, visible=there)
 

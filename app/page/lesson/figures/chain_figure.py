@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import degrees, sqrt
+from math import degrees, pi, sqrt
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -20,6 +20,7 @@ from app.drawing.svg.map_plot import RasterView, around, draw_map, scale_bar, sc
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot
 from app.model.verdict_text import likelihood
 from app.page.lesson.chain_runs import BETWEEN, OPEN, Chain, chain_of, chain_runs, sample_fleet
+from app.page.lesson.figures.figure_slider import FigureSlider, shown
 from app.page.lesson.lesson_run import LessonRun
 from app.page.lesson.side_runs import SideRun, SideRuns
 
@@ -27,6 +28,10 @@ NAME = "chain"
 SIDE, APART, TOP = 185.0, 195.0, 18.0
 LARGER = 20  # times: errors of centimetres cannot be seen beside a corridor
 ROW = 17.0
+SEEN_X = FigureSlider("seen again, x (m)", 481, 240, -60, 0.25)
+SEEN_Y = FigureSlider("seen again, y (m)", 481, 240, -60, 0.25)
+AGAIN_SIGMA = 2.0  # metres; a vague sighting is enough
+AREA = 60.0**2  # m², where robot 2 may be seen if neither answer is right
 ROOT, FAR = OPEN
 
 _chains: WeakKeyDictionary[SideRuns, Chain] = WeakKeyDictionary()
@@ -63,15 +68,12 @@ def chain(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
 
 
 def second_sighting(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
-    """Both answers of the open pair, and where either puts a place at which r1 could see r2 once more."""
+    """Both answers of the open pair, and what a second sighting leaves of each, where the handle puts it."""
     found = _chain(runs_of(lesson))
     if found is None:
         return chain(lesson, at, palette)
-    fleet, sheet, wide = sample_fleet(), SvgCanvas(TOP + SIDE + 64), SIDE + APART
-    answers = found.findings[-1].hypotheses[:2]
-    grid, pivot = fleet.maps[FAR], found.findings[-1].pivot
-    floor = grid.centres(*where(grid.free))
-    again = floor[int(np.hypot(*(floor - pivot).T).argmax())]  # the farther off, the better it tells
+    fleet, sheet, wide = sample_fleet(), SvgCanvas(TOP + SIDE + 92), SIDE + APART
+    answers, again = found.findings[-1].hypotheses[:2], far_end(found)
     places = [(ROOT, Pose2()), *((FAR, answer.T_ref_mov) for answer in answers)]
     rect = union(*(rect_of(T.apply(known_corners(fleet.maps[name]))) for name, T in places))
     x0, y0, x1, y1 = rect
@@ -82,24 +84,66 @@ def second_sighting(lesson: LessonRun, at: Sequence[int], palette: Palette) -> s
     colours = (_colour(ROOT), _colour(FAR), palette.conflict)
     for (name, T), colour in reversed(list(zip(places, colours, strict=True))):
         pixels = draw_map(view, palette, fleet.maps[name], colour, T, pixels)
-    sheet.text(0, 11, f"{ROOT} sees {FAR} once more, at the far end of {FAR}'s map", 11, bold=True)
+    sheet.text(0, 11, f"where does {ROOT} see {FAR} a second time?", 11, bold=True)
     plot = scene(sheet, 0, TOP, wide, SIDE, view)
     plot.image(pixels)
-    goes_to = [answer.T_ref_mov.apply(again) for answer in answers]
-    for answer, place, colour in zip(answers, goes_to, colours[1:], strict=True):
+    goes_to = np.array([answer.T_ref_mov.apply(again) for answer in answers])
+    zero = goes_to.mean(axis=0)
+    seen = zero + (shown(SEEN_X, at[0]), shown(SEEN_Y, at[1]))
+    shares = shares_after(found, seen)
+    for place, colour, share in zip(goes_to, colours[1:], shares, strict=True):
+        sheet.path(plot.at(ellipse(place, AGAIN_SIGMA**2 * np.eye(2), 3.0)), colour, 1.8, close=True)
         px, py = plot.one(*place.tolist())
-        sheet.dot(px, py, 5, colour, "#fff")
-        sheet.text(px, py - 9, _share(answer), 11, "middle", colour, True, halo=palette.free)
+        sheet.dot(px, py, 4, colour, "#fff")
+        sheet.text(px, py - 12, likelihood(share), 11, "middle", colour, True, halo=palette.free)
     sheet.rect(0, TOP, wide, SIDE, None, INK, 0.35)
     scale_bar(plot)
-    y = TOP + SIDE + 20
-    sheet.text(0, y, "by the first sighting the answers are this likely; by a second one", 10.5, alpha=0.8)
-    sheet.text(0, y + 17, f"{FAR} would stand at one of two places, apart by", 10.5, alpha=0.8)
-    sheet.text(wide, y + 17, f"{float(np.hypot(*(goes_to[0] - goes_to[1]))):.1f} m", 10.5, "end")
-    x = sheet.chip(0, y + 38, _colour(ROOT), ROOT)
-    x = sheet.chip(x, y + 38, _colour(FAR), f"{FAR}, likelier")
-    sheet.chip(x, y + 38, palette.conflict, f"{FAR}, the other answer")
-    return sheet.svg("Two answers, and where a second sighting would be under each")
+    plot.grip(seen, _colour(ROOT), (0, 1), zero)
+    y = TOP + SIDE + 18
+    rows = (
+        ("the likelier answer", _colour(FAR)),
+        ("the other answer", palette.conflict),
+        ("neither", palette.margin),
+    )
+    for row, ((name, colour), share) in enumerate(zip(rows, (*shares, 1 - sum(shares)), strict=True)):
+        sheet.text(0, y + 17 * row + 9, name, 11)
+        sheet.rect(112, y + 17 * row, 210, 11, palette.margin, None, 0.18)
+        sheet.rect(112, y + 17 * row, 210 * share, 11, colour)
+        sheet.text(wide, y + 17 * row + 9, likelihood(share), 11, "end", bold=True)
+    words = f"Rings: where {FAR}, then at the far end of its map, would be seen, to 3 σ of {AGAIN_SIGMA:g} m."
+    sheet.text(0, y + 66, words, 10, alpha=0.85)
+    return sheet.svg("Two answers, and what a second sighting, placed by hand, leaves of each")
+
+
+def shares_after(found: Chain, seen: FloatArray) -> tuple[float, float]:
+    """How likely both answers of the open pair are after a second sighting at a (2,) place of the root's map.
+
+    Where neither is right, it may be seen anywhere on a square of AREA.
+    """
+    answers, again = found.findings[-1].hypotheses[:2], far_end(found)
+    off = np.array([seen - answer.T_ref_mov.apply(again) for answer in answers])
+    density = np.exp(-0.5 * (off**2).sum(axis=1) / AGAIN_SIGMA**2) / (2 * pi * AGAIN_SIGMA**2)
+    before = np.array([answer.probability for answer in answers])
+    odds = before * density
+    neither = max(1e-3, 1 - float(before.sum())) / AREA
+    first, second = (odds / (odds.sum() + neither)).tolist()
+    return first, second
+
+
+def second_at(lesson: LessonRun, at: Sequence[int]) -> tuple[float, float] | None:
+    """The same where the handle is; None while the pairs are merged."""
+    found = _chain(runs_of(lesson))
+    if found is None:
+        return None
+    places = [answer.T_ref_mov.apply(far_end(found)) for answer in found.findings[-1].hypotheses[:2]]
+    return shares_after(found, np.mean(places, axis=0) + (shown(SEEN_X, at[0]), shown(SEEN_Y, at[1])))
+
+
+def far_end(found: Chain) -> FloatArray:
+    """The floor of the far robot's map that is farthest from the meeting: it tells best."""
+    grid, pivot = sample_fleet().maps[FAR], found.findings[-1].pivot
+    floor = grid.centres(*where(grid.free))
+    return np.asarray(floor[int(np.hypot(*(floor - pivot).T).argmax())], dtype=np.float64)
 
 
 def runs_of(lesson: LessonRun) -> SideRuns:

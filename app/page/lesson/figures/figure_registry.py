@@ -29,33 +29,18 @@ from app.drawing.scene_layout import SceneLayout
 from app.drawing.svg.scan_plot import sector
 from app.model.run_state import RunState
 from app.page.lesson.figures import chain_figure, knowledge_figure, verdict_figure, window_figure
+from app.page.lesson.figures import fit_figure as fits
 from app.page.lesson.figures import map_figures as maps
 from app.page.lesson.figures import proof_figure as proofs
 from app.page.lesson.figures import search_figures as search
 from app.page.lesson.figures import sighting_figure as sighting
 from app.page.lesson.figures import spectra_figures as spectra
+from app.page.lesson.figures.figure_slider import FigureSlider
 from app.page.lesson.lesson_run import FEW, LessonRun
 from app.page.lesson.side_runs import SideRuns
 from app.page.lesson.sighting_look import SIGHTING
 
 At = Sequence[int]
-
-
-@dataclass(frozen=True)
-class FigureSlider:
-    """One thing that can be moved in a picture.
-
-    label       : what it is
-    count       : how many places it has
-    start       : where it stands at first
-    first, step : the number that is shown for the first place, and between two
-    """
-
-    label: str
-    count: int
-    start: int = 0
-    first: float = 1
-    step: float = 1
 
 
 @dataclass(frozen=True)
@@ -70,6 +55,11 @@ class OtherWay:
     draw: Callable[[LessonRun, At, Palette], str]
     places: tuple[int, ...]
     dials: tuple[FigureSlider, ...] | None = None
+
+    @staticmethod
+    def held(draw: Callable[[LessonRun, At, Palette], str], *dials: FigureSlider) -> OtherWay:
+        """One with handles that move these dials."""
+        return OtherWay(draw, tuple(dial.start for dial in dials), dials)
 
 
 @dataclass(frozen=True)
@@ -207,10 +197,19 @@ PICTURES: dict[str, LessonFigure] = {
             "mean": OtherWay(sighting.mean_taken, (sighting.HOW_FAR,)),
         },
     ),
-    "observation": LessonFigure((ObservationDetail,), maps.observation, _up_to(ObservationDetail)),
-    "augmentation": LessonFigure((AugmentDetail,), maps.augmentation, _up_to(AugmentDetail)),
+    "observation": LessonFigure(
+        (ObservationDetail,), maps.observation, _up_to(ObservationDetail),
+        ways={"laid": OtherWay.held(fits.laid, fits.TURN)},
+    ),
+    "augmentation": LessonFigure(
+        (AugmentDetail,), maps.augmentation, _up_to(AugmentDetail),
+        ways={"ring": OtherWay.held(maps.ring, maps.SPREAD)},
+    ),
     "dual": LessonFigure((ObservationDetail,), maps.dual, _up_to(ObservationDetail)),
-    "hough": LessonFigure((AugmentDetail,), spectra.hough, _up_to(AugmentDetail), lambda _: (_LINE,), _lines),
+    "hough": LessonFigure(
+        (AugmentDetail,), spectra.hough, _up_to(AugmentDetail), lambda _: (_LINE,), _lines,
+        ways={"wave": OtherWay.held(spectra.wave, spectra.CELL_X, spectra.CELL_Y)},
+    ),
     "spectrum": LessonFigure((HoughDetail,), spectra.spectrum, _up_to(AugmentDetail)),
     "correlation": LessonFigure(
         (HoughDetail,), spectra.correlation, _up_to(HoughDetail),
@@ -228,10 +227,11 @@ PICTURES: dict[str, LessonFigure] = {
     ),
     "window": LessonFigure(
         (CandidatesDetail,), window_figure.window, _up_to(CandidatesDetail),
-        ways={"origins": OtherWay(window_figure.origins, (0,), (_TURN,))},
+        ways={"origins": OtherWay.held(window_figure.origins, _TURN)},
     ),
     "objective": LessonFigure(
-        (CandidatesDetail,), search.objective, _up_to(CandidatesDetail), lambda _: (_OFF,)
+        (CandidatesDetail,), search.objective, _up_to(CandidatesDetail), lambda _: (_OFF,),
+        ways={"fit": OtherWay.held(fits.fit, fits.ALONG_X, fits.ALONG_Y, fits.TURN)},
     ),
     "samples": LessonFigure(
         (CandidatesDetail,), search.samples, _searching(lambda lesson: lesson.samples, 0),
@@ -247,23 +247,18 @@ PICTURES: dict[str, LessonFigure] = {
     ),
     "answers": LessonFigure((MergeResult,), verdict_figure.answers, _up_to(WeighedDetail)),
     "merged": LessonFigure((MergeResult,), maps.merged, _up_to(Fusion)),
-    "verdict": LessonFigure((MergeResult,), verdict_figure.verdict, _up_to(MergeResult)),
+    "verdict": LessonFigure(
+        (MergeResult,), verdict_figure.verdict, _up_to(MergeResult),
+        ways={"without": OtherWay.held(verdict_figure.without, verdict_figure.LEFT, verdict_figure.ADDED)},
+    ),
     knowledge_figure.NAME: LessonFigure(
         (MergeResult,), knowledge_figure.knowledge, knowledge_figure.shown_on_map, _compared,
         compares=knowledge_figure.runs_of,
     ),
     chain_figure.NAME: LessonFigure(
         (MergeResult,), chain_figure.chain, _up_to(MergeResult), compares=chain_figure.runs_of,
-        ways={"second": OtherWay(chain_figure.second_sighting, ())},
+        ways={
+            "second": OtherWay.held(chain_figure.second_sighting, chain_figure.SEEN_X, chain_figure.SEEN_Y)
+        },
     ),
 }  # fmt: skip
-
-
-def shown(dial: FigureSlider, place: int) -> float:
-    """The number beside a dial that stands at a place."""
-    return dial.first + dial.step * place
-
-
-def place_of(dial: FigureSlider, number: float) -> int:
-    """The place of the number beside a dial."""
-    return min(dial.count - 1, max(0, round((number - dial.first) / dial.step)))

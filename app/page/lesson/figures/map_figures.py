@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, pi, sin
+from dataclasses import replace
+from math import cos, exp, pi, sin
 
 import numpy as np
 
@@ -11,16 +12,22 @@ from algorithms.common.pose import FloatArray, Pose2
 from algorithms.maps.grid_map import OCCUPIED_FROM, UNKNOWN, CellArray, GridMap
 from algorithms.maps.map_fusion import Fusion
 from algorithms.methods.merge_result import MergeResult
+from algorithms.methods.spectra_stages import augment_both
 from algorithms.methods.steps import AugmentDetail, HoughDetail
+from algorithms.observations.pair_problem import PairProblem
+from algorithms.spectra.augmented_map import AugmentConfig
 from app.drawing.draw_items import ellipse
 from app.drawing.grid_pixels import is_free, upright, wall_masks
 from app.drawing.grid_pixels import sheet as painted
 from app.drawing.palette import Palette, Rgb, level_colours
 from app.drawing.svg.map_plot import draw_levels, draw_map, map_panel, robot, under, view_of
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number, turn_label, worded
+from app.page.lesson.figures.figure_slider import FigureSlider, shown
 from app.page.lesson.figures.search_figures import cut_out
 from app.page.lesson.lesson_run import LessonRun
 
+SPREAD = FigureSlider("σ_aug (m)", 79, 14, 0.5, 0.25)
+RING_VIEW = 16.0  # metres to each side while σ_aug is dragged
 HALF = 184.0  # width of one of two pictures side by side
 
 
@@ -78,9 +85,35 @@ def level_scale(
 
 def augmentation(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """Both maps with their levels, the rings of Σ_aug around x̂, and the scale."""
-    detail, config = lesson.get(AugmentDetail), lesson.config.augment
-    sheet = SvgCanvas(240)
+    config, sheet = lesson.config.augment, SvgCanvas(240)
     half = 2.35 * config.spread * max(config.aspect, 1 / config.aspect) ** 0.5
+    detail = lesson.get(AugmentDetail)
+    _augmented(sheet, detail, config, half, palette)
+    level_scale(sheet, 0, 212, 250, detail.ref.peak, "level (1/m²)", palette)
+    return sheet.svg("Both maps, their walls coloured by level around the meeting place")
+
+
+def ring(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
+    """The same with another σ_aug, by the handle on its ring, in maps that keep their size."""
+    i, sheet, spread = lesson.inputs, SvgCanvas(252), shown(SPREAD, at[0])
+    config = replace(lesson.config.augment, spread=spread)
+    detail = augment_both(PairProblem.of(i.ref, i.mov, i.known), config)
+    plot = _augmented(sheet, detail, config, RING_VIEW, palette)
+    x_hat = detail.ref.x_hat
+    (px, py), at_rim = plot.at([x_hat, x_hat + (spread, 0.0)]).tolist()
+    sheet.grip(*at_rim, palette.conflict, r=(0, px, py, 2 * RING_VIEW / HALF))
+    counts = float(detail.ref.levels.sum() / detail.ref.peak) * detail.ref.grid.resolution
+    far = exp(-0.5 * (5.0 / spread) ** 2)
+    sheet.text(0, 220, f"σ_aug = {spread:g} m: a wall 5 m away counts {far:.1%} of one at x̂.", 11, bold=True)
+    sheet.text(0, 237, f"Together the walls of map 1 count as much as {counts:.0f} m at x̂ would.", 11)
+    return sheet.svg("Both maps, their walls coloured by level; the ring of Σ_aug can be dragged")
+
+
+def _augmented(
+    sheet: SvgCanvas, detail: AugmentDetail, config: AugmentConfig, half: float, palette: Palette
+) -> SvgPlot:
+    """Both maps with their levels, so many metres to each side, and their rings; the plot of map 1."""
+    plots = []
     for x, lifted, title in ((0.0, detail.ref, "map 1"), (196.0, detail.mov, "map 2")):
         view = view_of(lifted.x_hat, half, HALF, HALF)
         pixels = draw_levels(view, palette, lifted)
@@ -92,8 +125,8 @@ def augmentation(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
             halo = palette.free if k == 1 else None
             sheet.text(x_top, y_top - 3, name, 10, "middle", palette.text, halo=halo)
         sheet.dot(*plot.one(*lifted.x_hat.tolist()), 4, palette.conflict, "#fff")
-    level_scale(sheet, 0, 212, 250, detail.ref.peak, "level (1/m²)", palette)
-    return sheet.svg("Both maps, their walls coloured by level around the meeting place")
+        plots.append(plot)
+    return plots[0]
 
 
 def dual(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:

@@ -14,8 +14,12 @@ from app.drawing.palette import Palette, viridis
 from app.drawing.svg.map_plot import draw_map, map_panel, view_of, walls
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, turn_label, worded
 from app.model.chart_data import to_one
+from app.page.lesson.figures.figure_slider import FigureSlider, shown
 from app.page.lesson.lesson_run import LessonRun
 
+CELL_X = FigureSlider("cell, x from x̂ (m)", 161, 100, -8, 0.1)
+CELL_Y = FigureSlider("cell, y from x̂ (m)", 161, 95, -8, 0.1)
+WAVE_VIEW = 8.5  # metres to each side
 DEGREES = (0, 30, 60, 90, 120, 150, 180)
 LINES = 3  # the strongest ones of each map that are marked
 APART = 8.0, 0.5  # degrees and metres in which two spots of the votes are one line
@@ -77,6 +81,50 @@ def hough(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
             side, anchor = (-11, "end") if chosen else (10, "start")
             sheet.text(px + side, py + 4, str(k + 1), 13 if chosen else 10, anchor, "#fff", True)
     return sheet.svg("Hough accumulators of both maps over θ and ρ")
+
+
+def wave(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
+    """The wall cell nearest to the handle, its wave among the votes, and the line with most of them."""
+    lifted, (votes, _, step) = lesson.get(AugmentDetail).ref, lesson.votes
+    sheet, reach, x_hat = SvgCanvas(252), 2.5 * float(lesson.config.augment.spread), lifted.x_hat
+    handle = x_hat + (shown(CELL_X, at[0]), shown(CELL_Y, at[1]))
+    view = view_of(x_hat, WAVE_VIEW, 168, 168)
+    plot = map_panel(sheet, 0, 168, 168, view, draw_map(view, palette, lifted.grid, palette.ref), "map 1")
+    space = SvgPlot(sheet, 224, 18, 150, 168, (0, 180), (-reach, reach))
+    sheet.text(192, 11, "its votes, and one cell's wave", 11, bold=True)
+    _votes(space, votes, step)
+    space.axes("θ (°)", "ρ (m)", (0, 60, 120, 180))
+    if len(lifted.points):
+        cell = lifted.points[int(np.hypot(*(lifted.points - handle).T).argmin())]
+        x, y = (cell - x_hat).tolist()
+        theta = np.arange(votes.shape[0] + 1) * np.pi / votes.shape[0]
+        rho = x * np.cos(theta) + y * np.sin(theta)
+        bins = np.clip(np.rint(rho[:-1] / step).astype(int) + votes.shape[1] // 2, 0, votes.shape[1] - 1)
+        k = int(votes[np.arange(votes.shape[0]), bins].argmax())
+        space.curve(np.degrees(theta), rho, palette.particle, 2.2)
+        sheet.dot(*space.one(degrees(theta[k]), rho[k]), 6, None, palette.conflict, width=2.5)
+        ends = plot.at(line_through(theta[k], rho[k], x_hat, 2 * WAVE_VIEW))
+        sheet.path(np.array(_cut(ends, plot)), palette.conflict, 1.8)
+        sheet.path(plot.at([handle, cell]), palette.particle, 1.4, dash="3 3")
+        sheet.dot(*plot.one(*cell.tolist()), 4, palette.particle, "#fff")
+        where = f"The cell at ({x:.1f}, {y:.1f}) m from x̂: ρ = {x:.1f} cos θ + {y:.1f} sin θ."
+        sheet.text(0, 226, where.replace("-", "−").replace("+ −", "− "), 11, bold=True)
+        brightest = (
+            f"Most votes on its wave: θ = {degrees(theta[k]):.0f}°, ρ = {rho[k]:.1f} m, the line drawn."
+        )
+        sheet.text(0, 243, brightest.replace("-", "−"), 11)
+    sheet.dot(*plot.one(*x_hat.tolist()), 4, None, palette.conflict, width=2)
+    plot.grip(handle, palette.particle, (0, 1), x_hat)
+    return sheet.svg("A wall cell of map 1 in the hand, and its wave in Hough space")
+
+
+def _cut(ends: FloatArray, plot: SvgPlot) -> list[FloatArray]:
+    """The part of a line, given by two pixels far off, that lies in a plot."""
+    t = np.linspace(0, 1, 801)[:, None]
+    points = ends[0] + t * (ends[1] - ends[0])
+    low, high = np.array([plot.x, plot.y]), np.array([plot.x + plot.wide, plot.y + plot.high])
+    inside = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
+    return [points[inside[0]], points[inside[-1]]] if len(inside) else []
 
 
 def spectrum(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:

@@ -5,15 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from algorithms.methods.merge_result import MergeResult
+from algorithms.verdict.decision import Verdict
 from algorithms.verdict.probability_model import probability
 from algorithms.verdict.wall_evidence import Evidence
 from app.drawing.palette import Palette
 from app.drawing.svg.svg_canvas import WIDE, SvgCanvas
-from app.drawing.svg.verdict_bars import bars
+from app.drawing.svg.verdict_bars import bars, draw_bars, height_of
 from app.model import status_text as words
 from app.model import verdict_text
+from app.page.lesson.figures.figure_slider import FigureSlider, shown
 from app.page.lesson.lesson_run import LessonRun
+from app.page.panels.what_if_panel import supposed
 
+LEFT = FigureSlider("agreeing wall that is left (%)", 101, 100, 0)
+ADDED = FigureSlider("wall that contradicts, added (m)", 81, 0, 0, 0.25)
 ANSWER = 54.0  # height of an answer's row
 MOST_ANSWERS = 5
 
@@ -22,6 +27,42 @@ def verdict(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     """What speaks for the merge and what against it, and from which probability on it is accepted."""
     least = f"accepted from {lesson.config.verdict.accept_from:.1%} on"
     return bars(lesson.get(MergeResult).verdict, palette, remark=least)
+
+
+def without(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
+    """The same with agreeing wall taken away and contradicting wall added, by hand."""
+    result = lesson.get(MergeResult)
+    verdict = verdict_without(lesson, at)
+    top = height_of(verdict)
+    sheet = SvgCanvas(top + 84)
+    draw_bars(sheet, verdict, palette, remark=f"accepted from {lesson.config.verdict.accept_from:.1%} on")
+    left, added, found = shown(LEFT, at[0]), shown(ADDED, at[1]), result.weighed[0].evidence
+    wide = WIDE - 16
+    rows = (
+        (
+            f"wall that agrees: {found.rigid_agreeing * left / 100:.0f} m, {left:g} %",
+            left / 100,
+            palette.agreed,
+        ),
+        (f"more wall that contradicts: {added:g} m", added / shown(ADDED, ADDED.count - 1), palette.conflict),
+    )
+    for row, (title, share, colour) in enumerate(rows):
+        y = top + 18 + 40 * row
+        sheet.text(0, y - 5, title, 11, bold=True)
+        sheet.rect(0, y, wide, 14, palette.margin, alpha=0.18)
+        sheet.rect(0, y, wide * share, 14, colour)
+        most = 100 if row == 0 else shown(ADDED, ADDED.count - 1)
+        sheet.grip(wide * share, y + 7, palette.particle, x=(row, 0, 0, wide, most))
+    return sheet.svg("The verdict with a part of the evidence")
+
+
+def verdict_without(lesson: LessonRun, at: Sequence[int]) -> Verdict:
+    """The verdict where only a share of the agreeing wall is left, and more contradicts."""
+    result = lesson.get(MergeResult)
+    share, added, found = shown(LEFT, at[0]) / 100, shown(ADDED, at[1]), result.weighed[0].evidence
+    changed = {name: share * getattr(found, name) for name in ("rigid_agreeing", "across", "floor")}
+    changed |= {name: added + getattr(found, name) for name in ("rigid_contradicting", "contradicting")}
+    return supposed(result, lesson.config.verdict, changed)
 
 
 def evidence_says(found: Evidence) -> str:

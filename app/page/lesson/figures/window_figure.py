@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot, tau
+from math import atan2, degrees, hypot, tau
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from app.drawing.svg.svg_canvas import SvgCanvas, SvgPlot, number, turn_label
 from app.page.lesson.lesson_run import LessonRun
 
 SIDE, SMALL = 206.0, 156.0  # pixels of the two plots
-TURNS = 24  # over which map 2's origin is shown
+TURNS = 72  # over which map 2's origin is shown
 
 
 def best_turn(lesson: LessonRun) -> float:
@@ -66,7 +66,10 @@ def origins(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     sheet.path(plot.at(ring), palette.best, 3, alpha=0.45, close=True)
     sheet.path(plot.at([x_hat, origin]), palette.text, 1.4, dash="4 3")
     sheet.dot(*plot.one(*x_hat.tolist()), 4, None, palette.conflict, width=2)
-    sheet.dot(*plot.one(*origin.tolist()), 4.5, palette.best, "#fff", width=1)
+    px, py = plot.one(*x_hat.tolist())
+    (ox, oy), best = plot.one(*origin.tolist()), x_hat - rotation(best_turn(lesson)) @ lever
+    zero = degrees(atan2(*(best - x_hat)[::-1].tolist()))
+    sheet.grip(ox, oy, palette.best, a=(0, px, py, zero, 0))
     half = 1.6 * coupled.disc
     view = view_of(origin, half, SMALL, SMALL)
     inset = map_panel(sheet, 222, SMALL, SMALL, view, view.blank(palette), "the ring, near by")

@@ -5,18 +5,23 @@ from __future__ import annotations
 import re
 from html import unescape
 
-import numpy as np
 import pytest
-from svg_shapes import dots, lines
 
 from algorithms.common.pose import pose_error
 from algorithms.files.fleet_truth_file import read_fleet_truth
 from algorithms.methods.registry import METHODS
-from app.drawing.palette import LIGHT, robot_colour
+from app.drawing.palette import LIGHT
 from app.model.merge_inputs import MergeInputs
 from app.model.run_state import RunState
-from app.page.lesson.chain_runs import OPEN, SAMPLE, chain_of, chain_runs, sample_fleet
-from app.page.lesson.figures.chain_figure import chain, runs_of, second_sighting
+from app.page.lesson.chain_runs import OPEN, SAMPLE, chain_of, chain_runs
+from app.page.lesson.figures.chain_figure import (
+    chain,
+    far_end,
+    runs_of,
+    second_at,
+    second_sighting,
+    shares_after,
+)
 from app.page.lesson.lesson_run import LessonRun
 from app.page.lesson.side_runs import SideRuns
 from app.system import data_paths as paths
@@ -74,16 +79,15 @@ def test_the_open_pair_is_the_last_and_the_way_round_puts_its_robot_where_it_tru
     assert chain_of(chain_runs()) is None
 
 
-def test_a_second_sighting_would_be_elsewhere_under_the_other_answer_by_as_much_as_is_told(small_case, over):
-    drawn = second_sighting(lesson(small_case, {"chain": over}), (), LIGHT)
-    names = list(sample_fleet().maps)
-    likelier, other = (dots(drawn, c)[0] for c in (robot_colour(names.index(OPEN[1])), LIGHT.conflict))
-    told = float(re.search(r"apart by ([\d.]+) m", words(drawn))[1])
-    bar, metres = (
-        next(path for path in lines(drawn, LIGHT.text) if len(path) == 4),
-        re.search(r"(\d+) m", words(drawn)),
-    )
-    pixels = np.ptp(bar[:, 0]) / float(metres[1])
-    assert np.hypot(*(likelier - other)) == pytest.approx(told * pixels, rel=0.02)
-    assert told > 5
-    assert "merging the pairs" in words(second_sighting(lesson(small_case, {}), (), LIGHT))
+def test_a_second_sighting_leaves_the_answer_it_agrees_with_and_between_both_neither(small_case, over):
+    told = lesson(small_case, {"chain": over})
+    found = chain_of(over)
+    answers = found.findings[-1].hypotheses[:2]
+    far = far_end(found)
+    for k, answer in enumerate(answers):
+        shares = shares_after(found, answer.T_ref_mov.apply(far))
+        assert shares[k] > 0.9
+        assert shares[1 - k] < 1e-3
+    assert sum(second_at(told, (240, 240))) < 1e-3
+    assert "neither" in words(second_sighting(told, (240, 240), LIGHT))
+    assert "merging the pairs" in words(second_sighting(lesson(small_case, {}), (240, 240), LIGHT))

@@ -28,7 +28,8 @@ from app.drawing.svg.svg_canvas import WIDE, SvgCanvas, SvgPlot, ticks
 from app.drawing.svg.verdict_bars import FULL, bars, values
 from app.model.merge_inputs import MergeInputs
 from app.page.lesson import equations
-from app.page.lesson.figures.figure_registry import PICTURES, FigureSlider, place_of, shown
+from app.page.lesson.figures.figure_registry import PICTURES
+from app.page.lesson.figures.figure_slider import FigureSlider, place_of, shown
 from app.page.lesson.figures.spectra_figures import strongest
 from app.page.lesson.lesson_run import FEW, LessonRun
 from app.page.lesson.lesson_texts import PLACEHOLDER, files, filled, lesson_folder, read_step, with_settings
