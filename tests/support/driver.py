@@ -42,10 +42,10 @@ READY = "() => window.mapmeld?.applied > 0 && document.querySelector('.mm-state 
 REMEMBER = """try {{ localStorage.getItem("mapmeld-mode") || localStorage.setItem("mapmeld-mode", "{}"); }}
 catch {{ /* a page without a place to remember */ }}"""
 
-# Five pictures a second are enough: the renderer is software, and its time is that of the tests.
+# Ten pictures a second are enough: the renderer is software, and its time is that of the tests.
 SLOW_FRAMES = """(() => {
     const draw = window.requestAnimationFrame.bind(window);
-    window.requestAnimationFrame = (then) => window.setTimeout(() => draw(then), 200);
+    window.requestAnimationFrame = (then) => window.setTimeout(() => draw(then), 100);
     window.cancelAnimationFrame = (wait) => window.clearTimeout(wait);
 })()"""
 

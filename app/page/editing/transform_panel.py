@@ -125,7 +125,7 @@ class TransformPanel:
         labels = LABELS if self.of_origin else AT_LABELS
         values = x, y, degrees(T.theta)
         for handle, label, value in zip((self._x, self._y, self._turn), labels, values, strict=True):
-            put(handle, label=label)
+            put(handle, label=self._names.told(label))
             handle.value = round(value, 3)
 
     def tell(self, html: str) -> None:

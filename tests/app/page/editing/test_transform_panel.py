@@ -104,6 +104,12 @@ def test_the_numbers_are_of_robot_2_or_of_map_2s_origin_and_say_so(stock, hand):
     hand.panel.offer(True, RobotNames("Bob", "Alice"))
     assert about.options == ("Alice, where it was seen", "the origin of Alice's map")
     assert about.value == about.options[1]
+    visitor = Visitor(stock)
+    visitor.write(about, value=about.options[0])
+    assert hand.asked.get(timeout=PATIENCE) == ("about",)
+    visitor.socket.close()
+    hand.panel.show(Pose2(), np.zeros(2))
+    assert hand.controls.find(FIELDS[0]).label == "x in Bob's map (m)"
 
 
 def test_where_nobody_saw_robot_2_the_numbers_are_of_the_middle_of_its_map(hand):
