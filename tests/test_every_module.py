@@ -256,6 +256,7 @@ EXERCISED_BY = {
         "app.model.run_state",
     },
     "app/page/lesson/figures/test_figure_registry.py": {
+        "app.page.lesson.figures.figure_slider",
         "app.page.lesson.figures.map_figures",
         "app.page.lesson.figures.search_figures",
         "app.page.lesson.figures.spectra_figures",
@@ -269,6 +270,9 @@ EXERCISED_BY = {
     },
     "app/page/lesson/test_sighting_look.py": {
         "app.page.lesson.sighting_numbers",
+    },
+    "app/page/lesson/figures/test_fit_figure.py": {
+        "app.drawing.svg.svg_grip",
     },
     "app/page/lesson/figures/test_chain_figure.py": {
         "app.page.lesson.chain_runs",

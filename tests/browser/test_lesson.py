@@ -388,3 +388,22 @@ def test_the_poster_is_believed_by_the_detector_refused_by_the_laser_and_by_the_
     assert tab.number("known") == "a sighting → nothing"
     tab.press("Leave the museum")
     settle(lambda: not tab.page.get_by_text("Leave the museum").is_visible(), "the end of the visit")
+
+
+def test_a_picture_is_taken_in_the_hand_with_mouse_and_sliders_go_along(open_tab):
+    tab = open_tab(size=(1280, 800), smooth=True)
+    tab.press("Lesson")
+    tab.choose("Step", "2. Lift the walls near the meeting")
+    tab.page.get_by_role("button", name="Take the ring in the hand").click()
+    words = tab.page.locator("svg.mm-picture text", has_text="a wall 5 m away counts")
+    before = settle(lambda: words.count() and words.first.text_content(), "the ring")
+    grip = tab.page.locator("svg.mm-picture [data-mm-grip]")
+    grip.scroll_into_view_if_needed()
+    box = grip.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    tab.page.mouse.move(x, y)
+    tab.page.mouse.down()
+    tab.page.mouse.move(x + 25, y, steps=4)
+    settle(lambda: words.first.text_content() != before, "the picture to go along before the hand lets go")
+    tab.page.mouse.up()
+    settle(lambda: grip.bounding_box()["x"] == pytest.approx(box["x"] + 25, abs=4), "the handle at the mouse")

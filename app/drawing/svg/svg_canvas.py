@@ -9,7 +9,6 @@ from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from html import escape
-from json import dumps
 from math import atan2, ceil, cos, degrees, floor, log10, pi, sin
 
 import numpy as np
@@ -171,19 +170,6 @@ class SvgCanvas:
         self.text(x + 12, y, words, 10.5)
         return x + 12 + 5.7 * len(words) + 10
 
-    def grip(self, x: float, y: float, colour: Colour, /, **moves: Sequence[float]) -> None:
-        """A handle that lesson.js lets be dragged; what it moves, in words of that script:
-
-        x, y : number of a slider, the pixel and the value of one place, and those of another
-        r    : number of a slider, two pixels of a centre, and the value of a pixel's distance from there
-        a    : number of a slider, two pixels of a centre, the degrees of the value 0, and the least value
-        """
-        self.dot(x, y, 6.5, "#fff", colour, width=3)
-        self.parts.append(
-            f'<circle class="mm-grip" cx="{x:.1f}" cy="{y:.1f}" r="18" fill="#fff" fill-opacity="0" '
-            f'data-mm-grip="{escape(dumps(moves))}"/>'
-        )
-
     def svg(self, title: str) -> str:
         """The whole picture; ``title`` says what it is to those who do not see it."""
         return (
@@ -224,12 +210,6 @@ class SvgPlot:
         """Whether a (2,) point lies in the plot."""
         (x0, x1), (y0, y1) = self.across, self.up
         return bool(x0 <= point[0] <= x1 and y0 <= point[1] <= y1)
-
-    def grip(self, place: FloatArray, colour: Colour, dials: tuple[int, int], zero: FloatArray) -> None:
-        """A handle at a (2,) place; two sliders get how far it is to the right of ``zero``, and above."""
-        (px, py), (left, low), (right, high) = self.at([place, zero, zero + 1]).tolist()
-        i, j = dials
-        self.sheet.grip(px, py, colour, x=(i, left, 0, right, 1), y=(j, low, 0, high, 1))
 
     def axes(
         self, across: str = "", up: str = "", xticks: Sequence[float] | None = None,

@@ -18,6 +18,7 @@ from app.drawing.palette import Palette, Rgb, robot_colour
 from app.drawing.scene_layout import Rect, known_corners, rect_of, union
 from app.drawing.svg.map_plot import RasterView, around, draw_map, scale_bar, scene
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot
+from app.drawing.svg.svg_grip import grip_in
 from app.model.verdict_text import likelihood
 from app.page.lesson.chain_runs import BETWEEN, OPEN, Chain, chain_of, chain_runs, sample_fleet
 from app.page.lesson.figures.figure_slider import FigureSlider, shown
@@ -98,7 +99,7 @@ def second_sighting(lesson: LessonRun, at: Sequence[int], palette: Palette) -> s
         sheet.text(px, py - 12, likelihood(share), 11, "middle", colour, True, halo=palette.free)
     sheet.rect(0, TOP, wide, SIDE, None, INK, 0.35)
     scale_bar(plot)
-    plot.grip(seen, _colour(ROOT), (0, 1), zero)
+    grip_in(plot, seen, _colour(ROOT), (0, 1), zero)
     y = TOP + SIDE + 18
     rows = (
         ("the likelier answer", _colour(FAR)),

@@ -11,6 +11,7 @@ from algorithms.common.pose import FloatArray, Pose2
 from app.drawing.palette import Palette, Rgb
 from app.drawing.svg.map_plot import draw_map, map_panel, view_of, walls
 from app.drawing.svg.svg_canvas import SvgCanvas, SvgPlot, turn_label, worded
+from app.drawing.svg.svg_grip import grip, grip_in
 from app.model.objective_label import AGREEMENT, GAMMA
 from app.page.lesson.figures.figure_slider import FigureSlider, shown
 from app.page.lesson.figures.search_figures import best_of, transforms
@@ -48,7 +49,7 @@ def fit(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     for row, (value, measure, colour) in enumerate(rows):
         now, top = float(value(here)[0]), max(float(value(best)[0]), 1e-12)
         _bar(sheet, 40 + 92 * row, now / top, colour, palette)
-        sheet.text(252, 32 + 92 * row, f"{measure.name}: {measure.text(now)}", 12, bold=True)
+        sheet.text(252, 32 + 92 * row, f"{measure.name}: {measure.text(now)}", 10.5, bold=True)
         sheet.text(380, 76 + 92 * row, f"the best: {measure.text(top)}", 10, "end", alpha=0.8)
     sheet.text(252, 222, f"Δθ = {turn_label(turn)}", 11)
     sheet.chip(252, 242, palette.agreed, "wall on wall")
@@ -79,9 +80,9 @@ def _laid(
     knob = place + ARM * half * np.array([cos(turn), sin(turn)])
     (px, py), (kx, ky) = plot.at([place, knob]).tolist()
     sheet.path([(px, py), (kx, ky)], palette.text, 1.4, dash="4 3")
-    sheet.grip(kx, ky, palette.conflict, a=(dial, px, py, 0, -180))
+    grip(sheet, kx, ky, palette.conflict, a=(dial, px, py, 0, -180))
     if dial:
-        plot.grip(place, palette.mov, (0, 1), x_hat)
+        grip_in(plot, place, palette.mov, (0, 1), x_hat)
     else:
         sheet.dot(px, py, 6, None, palette.conflict, width=2)
     return plot

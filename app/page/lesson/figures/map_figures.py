@@ -22,6 +22,7 @@ from app.drawing.grid_pixels import sheet as painted
 from app.drawing.palette import Palette, Rgb, level_colours
 from app.drawing.svg.map_plot import draw_levels, draw_map, map_panel, robot, under, view_of
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, number, turn_label, worded
+from app.drawing.svg.svg_grip import grip
 from app.page.lesson.figures.figure_slider import FigureSlider, shown
 from app.page.lesson.figures.search_figures import cut_out
 from app.page.lesson.lesson_run import LessonRun
@@ -101,7 +102,7 @@ def ring(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     plot = _augmented(sheet, detail, config, RING_VIEW, palette)
     x_hat = detail.ref.x_hat
     (px, py), at_rim = plot.at([x_hat, x_hat + (spread, 0.0)]).tolist()
-    sheet.grip(*at_rim, palette.conflict, r=(0, px, py, 2 * RING_VIEW / HALF))
+    grip(sheet, *at_rim, palette.conflict, r=(0, px, py, 2 * RING_VIEW / HALF))
     counts = float(detail.ref.levels.sum() / detail.ref.peak) * detail.ref.grid.resolution
     far = exp(-0.5 * (5.0 / spread) ** 2)
     sheet.text(0, 220, f"σ_aug = {spread:g} m: a wall 5 m away counts {far:.1%} of one at x̂.", 11, bold=True)

@@ -13,6 +13,7 @@ from algorithms.methods.steps import AugmentDetail, HoughDetail, ShiftDetail
 from app.drawing.palette import Palette, viridis
 from app.drawing.svg.map_plot import draw_map, map_panel, view_of, walls
 from app.drawing.svg.svg_canvas import INK, SvgCanvas, SvgPlot, turn_label, worded
+from app.drawing.svg.svg_grip import grip_in
 from app.model.chart_data import to_one
 from app.page.lesson.figures.figure_slider import FigureSlider, shown
 from app.page.lesson.lesson_run import LessonRun
@@ -90,7 +91,7 @@ def wave(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     handle = x_hat + (shown(CELL_X, at[0]), shown(CELL_Y, at[1]))
     view = view_of(x_hat, WAVE_VIEW, 168, 168)
     plot = map_panel(sheet, 0, 168, 168, view, draw_map(view, palette, lifted.grid, palette.ref), "map 1")
-    space = SvgPlot(sheet, 224, 18, 150, 168, (0, 180), (-reach, reach))
+    space = SvgPlot(sheet, 224, 18, 146, 168, (0, 180), (-reach, reach))
     sheet.text(192, 11, "its votes, and one cell's wave", 11, bold=True)
     _votes(space, votes, step)
     space.axes("θ (°)", "ρ (m)", (0, 60, 120, 180))
@@ -114,7 +115,7 @@ def wave(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
         )
         sheet.text(0, 243, brightest.replace("-", "−"), 11)
     sheet.dot(*plot.one(*x_hat.tolist()), 4, None, palette.conflict, width=2)
-    plot.grip(handle, palette.particle, (0, 1), x_hat)
+    grip_in(plot, handle, palette.particle, (0, 1), x_hat)
     return sheet.svg("A wall cell of map 1 in the hand, and its wave in Hough space")
 
 

@@ -10,6 +10,7 @@ from algorithms.verdict.probability_model import probability
 from algorithms.verdict.wall_evidence import Evidence
 from app.drawing.palette import Palette
 from app.drawing.svg.svg_canvas import WIDE, SvgCanvas
+from app.drawing.svg.svg_grip import grip
 from app.drawing.svg.verdict_bars import bars, draw_bars, height_of
 from app.model import status_text as words
 from app.model import verdict_text
@@ -52,7 +53,7 @@ def without(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
         sheet.rect(0, y, wide, 14, palette.margin, alpha=0.18)
         sheet.rect(0, y, wide * share, 14, colour)
         most = 100 if row == 0 else shown(ADDED, ADDED.count - 1)
-        sheet.grip(wide * share, y + 7, palette.particle, x=(row, 0, 0, wide, most))
+        grip(sheet, wide * share, y + 7, palette.particle, x=(row, 0, 0, wide, most))
     return sheet.svg("The verdict with a part of the evidence")
 
 

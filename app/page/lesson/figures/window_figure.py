@@ -15,6 +15,7 @@ from app.drawing.palette import Palette
 from app.drawing.scene_layout import known_corners
 from app.drawing.svg.map_plot import draw_map, map_panel, view_of
 from app.drawing.svg.svg_canvas import SvgCanvas, SvgPlot, number, turn_label
+from app.drawing.svg.svg_grip import grip
 from app.page.lesson.lesson_run import LessonRun
 
 SIDE, SMALL = 206.0, 156.0  # pixels of the two plots
@@ -69,7 +70,7 @@ def origins(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     px, py = plot.one(*x_hat.tolist())
     (ox, oy), best = plot.one(*origin.tolist()), x_hat - rotation(best_turn(lesson)) @ lever
     zero = degrees(atan2(*(best - x_hat)[::-1].tolist()))
-    sheet.grip(ox, oy, palette.best, a=(0, px, py, zero, 0))
+    grip(sheet, ox, oy, palette.best, a=(0, px, py, zero, 0))
     half = 1.6 * coupled.disc
     view = view_of(origin, half, SMALL, SMALL)
     inset = map_panel(sheet, 222, SMALL, SMALL, view, view.blank(palette), "the ring, near by")

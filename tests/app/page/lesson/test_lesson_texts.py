@@ -60,7 +60,7 @@ def test_a_step_is_read_with_its_trials(tmp_path):
         (
             "set: {augment.intensity: 1}",
             "show: counted",
-            "show is 'counted'; this picture is drawn in one way",
+            "show is 'counted'; known are wave",
         ),
         ("    set: {", "    show: mean\n    set: {", "try 1: show is 'mean'"),
         ("title: A step", "title: [", "front matter of a text"),
