@@ -254,6 +254,7 @@
     .mm-legend:empty{display:none}
     .mm-legend span{display:inline-flex;align-items:center;gap:5px;white-space:pre}
     .mm-legend i{width:10px;height:10px;background:var(--c)}
+    .mm-legend i.mm-square{box-shadow:0 0 0 1px rgba(107,114,128,.5)}
     .mm-legend i.mm-dot{border-radius:50%;width:8px;height:8px}
     .mm-legend i.mm-line{height:0;width:16px;background:none;border-top:2px dashed var(--c)}
     .mm-legend i.mm-scale{width:84px;height:9px;border-radius:2px}

@@ -17,6 +17,7 @@ from algorithms.verdict.cell_agreement import CellAgreement, WallLookup
 from algorithms.verdict.contradictions import Contradictions, near_walls
 from app.drawing import grid_pixels as render
 from app.drawing.browser_messages import BrowserMessages
+from app.drawing.draw_items import path
 from app.drawing.palette import Palette
 from app.drawing.scene.grid_image import Closer, GridImage, Size
 from app.drawing.scene.zoom_crop import CameraView
@@ -76,6 +77,8 @@ class MapLayers:
         self._conflicts: Contradictions | None = None
         self._contrasted: Contradictions | None = None  # those that are drawn
         self._given: GridMap | None = None  # the corrected map that is drawn
+        self._messages = messages
+        self._edged: tuple[GridMap, Palette] | None = None  # around which a line is drawn
         self._mode: Mode = "overlay"
         self.which: Which = "sources"
         self._hidden = False
@@ -207,7 +210,21 @@ class MapLayers:
         ):
             for image in images:
                 image.visible(seen in among)
+        self._draw_edge(seen == "result")
         self._show_ghost()
+
+    def _draw_edge(self, yes: bool) -> None:
+        """A line around the corrected map, whose unknown cells look like what lies beside it; or none."""
+        edged = (self._given, self._palette) if yes and self._given and self._palette else None
+        if self._messages is None or self._layout is None or edged == self._edged:
+            return
+        line = None
+        if edged is not None:
+            grid, palette = edged
+            corners = grid.corners() - self._layout.anchor_ref
+            line = [path(corners, palette.margin, close=True, d=[5, 5], w=1)]
+        self._messages.layer("edge", line)
+        self._edged = edged
 
     def _show_ghost(self) -> None:
         self._ghost.visible(self._ghost_at is not None and self._mode == "overlay")
@@ -224,3 +241,4 @@ class MapLayers:
         self._hidden = True
         for image in self._all:
             image.visible(False)
+        self._draw_edge(False)

@@ -50,7 +50,7 @@ class CorrectionPanel:
             hint = "Wall within 0.4 m of where a robot stood, which may be that robot."
             self._around = gui.add_button(AROUND, visible=False, hint=hint, **how)
             hint = "The map ends where nothing more is known."
-            self._crop = gui.add_checkbox("Crop to what is known", False, hint=hint)
+            self._crop = gui.add_checkbox("Crop to known", False, hint=hint)
             self._says = gui.add_html("")
             self._none = gui.add_button("Take all corrections back", visible=False, **how)
         self._rules = RULES

@@ -128,7 +128,7 @@ def test_a_drag_off_any_map_is_reported_and_changes_nothing(gui, tab):
 
 
 def test_cropping_is_undone_and_told(gui, tab):
-    choose(gui, "Crop to what is known", True)
+    choose(gui, "Crop to known", True)
     assert tab.state.corrections.crop
     assert said(tab)[-1] == "crop to known"
     assert "cropped to what is known" in gui.text()
@@ -151,7 +151,7 @@ def test_while_there_is_no_answer_nothing_is_corrected(gui, tab):
     tab.state.update(result=None)
     assert not gui.of_kind("folder")[-1].visible
     event(tab, "keep")(n=1, does="map1")
-    choose(gui, "Crop to what is known", True)
+    choose(gui, "Crop to known", True)
     assert tab.state.corrections == NO_CORRECTIONS
 
 
