@@ -406,4 +406,5 @@ def test_a_picture_is_taken_in_the_hand_with_mouse_and_sliders_go_along(open_tab
     tab.page.mouse.move(x + 25, y, steps=4)
     settle(lambda: words.first.text_content() != before, "the picture to go along before the hand lets go")
     tab.page.mouse.up()
-    settle(lambda: grip.bounding_box()["x"] == pytest.approx(box["x"] + 25, abs=4), "the handle at the mouse")
+    # Between two pictures there is no handle, and so no box.
+    settle(lambda: (grip.bounding_box() or box)["x"] == pytest.approx(box["x"] + 25, abs=4), "the handle")
