@@ -9,7 +9,7 @@ from pathlib import Path
 from markdown_it import MarkdownIt
 
 from app.drawing.palette import LIGHT
-from app.page.lesson.equations import equations_html, symbols
+from app.page.lesson.equations import equations_html, symbols, with_symbols
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_display import NOT_HERE
 from app.page.lesson.lesson_panel import emphasised
@@ -70,7 +70,7 @@ def _step(number: int, text: StepText, lesson: LessonRun, numbers: Mapping[str, 
 
 
 def _button(name: str) -> str:
-    return f" <span>On the page: <i>{escape(name)}</i></span>" if name else ""
+    return f" <span>On the page: <i>{with_symbols(escape(name))}</i></span>" if name else ""
 
 
 def _picture(name: str, lesson: LessonRun, part: int, way: str = "") -> str:
@@ -88,7 +88,7 @@ def _picture(name: str, lesson: LessonRun, part: int, way: str = "") -> str:
 
 def _words(text: str) -> str:
     """HTML of Markdown; what looks like HTML in it stays words."""
-    return str(MarkdownIt("commonmark", {"html": False}).render(text))
+    return with_symbols(str(MarkdownIt("commonmark", {"html": False}).render(text)))
 
 
 def _answers(steps: Mapping[int, StepText], lesson: LessonRun, numbers: Mapping[str, str]) -> str:
@@ -104,7 +104,5 @@ def _answers(steps: Mapping[int, StepText], lesson: LessonRun, numbers: Mapping[
 
 
 def _symbols() -> str:
-    rows = "".join(
-        f"<div><dt>{symbol.html}</dt><dd>{escape(symbol.means)}</dd></div>" for symbol in symbols()
-    )
+    rows = "".join(f"<div><dt>{symbol.html}</dt><dd>{symbol.means_html}</dd></div>" for symbol in symbols())
     return f'<section class="symbols"><h2>Symbols</h2><dl>{rows}</dl></section>'

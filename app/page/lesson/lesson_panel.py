@@ -10,7 +10,7 @@ from html import escape
 import viser
 
 from app.drawing.palette import QUIET
-from app.page.lesson.equations import equations_html, symbols_html
+from app.page.lesson.equations import equations_html, symbols_html, with_symbols
 from app.page.lesson.figures.figure_slider import FigureSlider, place_of, shown
 from app.page.lesson.lesson_texts import Exercise
 from app.page.panels.html_widgets import Action, box, on_choice, on_press, put
@@ -28,8 +28,8 @@ MOST_TRIALS, MOST_DIALS = 4, 3
 
 
 def emphasised(text: str) -> str:
-    """HTML of words, those between asterisks in italics."""
-    return re.sub(r"\*(\S[^*]*)\*", r"<em>\1</em>", escape(text))
+    """HTML of words, those between asterisks in italics, symbols with their indices below."""
+    return with_symbols(re.sub(r"\*(\S[^*]*)\*", r"<em>\1</em>", escape(text)))
 
 
 class LessonPanel:

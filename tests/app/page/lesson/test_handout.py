@@ -52,6 +52,7 @@ def test_all_numbers_are_filled_in_and_all_symbols_told(page):
     words = re.sub(r"<(style|svg)\b.+?</\1>", "", page, flags=re.S)
     assert not re.findall(r"\{[a-z_0-9]+\}|\*\*", words)
     assert words.count("<dt>") == len(equations.symbols())
+    assert not set(re.findall(r"\w+[_^]\w+", re.sub(r"<[^>]*>|\w+_r\d_r\d|\w+_fleet_\w+|flat_1", " ", words)))
 
 
 def test_it_fetches_nothing_and_runs_nothing(page):
