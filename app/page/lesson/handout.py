@@ -9,6 +9,7 @@ from pathlib import Path
 from markdown_it import MarkdownIt
 
 from app.drawing.palette import LIGHT
+from app.page.lesson.checks.effects import missing
 from app.page.lesson.equations import equations_html, symbols, with_symbols
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_display import NOT_HERE
@@ -66,7 +67,23 @@ def _step(number: int, text: StepText, lesson: LessonRun, numbers: Mapping[str, 
         f"{_button(trial.button)}</p>"
         for k, trial in enumerate(text.trials, 1)
     )
-    return f'<section id="step{number}"><h2><b>{number}</b> {escape(text.title)}</h2>{parts}{tries}</section>'
+    notes = _missing(text, lesson, numbers)
+    title = f"<h2><b>{number}</b> {escape(text.title)}</h2>"
+    return f'<section id="step{number}">{title}{notes}{parts}{tries}{_question(text, numbers)}</section>'
+
+
+def _question(text: StepText, numbers: Mapping[str, str]) -> str:
+    """What is to be done on the page, which tells whether it was."""
+    if text.check is None:
+        return ""
+    return f'<p class="check"><b>Check yourself</b> {emphasised(filled(text.check.ask, numbers))}</p>'
+
+
+def _missing(text: StepText, lesson: LessonRun, numbers: Mapping[str, str]) -> str:
+    """What these maps do not show of a step."""
+    if text.effect is None or not missing(text.effect.test, lesson):
+        return ""
+    return f'<p class="missing">{emphasised(filled(text.effect.missing, numbers))}</p>'
 
 
 def _button(name: str) -> str:

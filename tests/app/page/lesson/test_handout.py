@@ -38,6 +38,7 @@ def test_every_step_is_there_with_its_equations_picture_and_what_to_try(page):
         for k in range(step.parts):
             assert all(f'data-equation="{name}"' in html for name in step.formulas(k))
         assert html.count('class="try"') == len(step.trials)
+        assert html.count("Check yourself") == 1
         for k in range(1, len(step.trials) + 1):
             assert page.count(f"<b>{number}.{k}</b>") == 2  # what to try, and its answer
 
