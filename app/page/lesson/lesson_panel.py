@@ -142,7 +142,7 @@ class LessonPanel:
 
     def beside(self, words: str, equations: Sequence[str]) -> None:
         """Show what stands beside a picture: Markdown, and equations by their names."""
-        put(self._body, content=words)
+        put(self._body, content=with_symbols(words))
         put(self._equations, content=equations_html(equations) + symbols_html(equations))
 
     def check(self, ask: str, done: bool, said: str = "") -> None:
