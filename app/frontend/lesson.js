@@ -59,6 +59,7 @@
     [data-mm-presenter] .mm-eq{font-size:27px} [data-mm-presenter] .mm-eq span{font-size:27px!important}
     [data-mm-presenter] [data-mm-sheet] button:not(.mm-aids *){height:auto!important;min-height:52px}
     [data-mm-presenter] [data-mm-sheet] input{height:48px!important;min-height:48px}
+    [data-mm-presenter] [data-mm-sheet] .mantine-NumberInput-root{width:110px!important;min-width:110px}
     [data-mm-presenter] .mm-foot,[data-mm-presenter] .mm-dots{display:none}`;
   document.head.append(style);
 

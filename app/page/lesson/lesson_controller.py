@@ -10,7 +10,7 @@ from algorithms.common.errors import MapMergeError
 from algorithms.methods.registry import DEFAULT_METHOD, METHODS
 from app.model.run_state import RunState
 from app.model.view_modes import LESSON
-from app.page.lesson.checks.step_checks import Seen, done
+from app.page.lesson.checks.step_checks import Seen, done, ready
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_display import NAMED, LessonDisplay, OnMap
 from app.page.lesson.lesson_texts import StepText, files, first_number, read_step, with_settings
@@ -201,7 +201,7 @@ class LessonController:
             if not self.open or text is None or text.check is None:
                 return
             lesson, number = self._work.lesson, first_number(self._files) + self._index
-            if not self._work.done:
+            if not (self._work.done or ready(text.check.test, lesson)):
                 self._said = STILL
             elif done(text.check.test, Seen(lesson, self._display.way, at)):
                 self._said = ""
@@ -270,6 +270,8 @@ class LessonController:
             text, lesson = self._text, self._work.lesson
             if text is None or not self.open:
                 return
+            if self._said == STILL and (text.check is None or ready(text.check.test, lesson)):
+                self._said = ""
             if not moved:
                 self._display.words(self._index, text, lesson, self._answered, self._steps_done)
             first = first_number(self._files)

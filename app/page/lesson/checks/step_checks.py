@@ -26,7 +26,7 @@ from app.page.lesson.lesson_run import FEW, LessonRun
 class Seen:
     """What is on the page while a step is open.
 
-    lesson : its run, with the maps and the settings, at its end
+    lesson : its run, with the maps and the settings, as far as it has come
     way    : in which a thing to try has the picture drawn; empty for the picture itself
     at     : where its dials stand
     """
@@ -194,5 +194,9 @@ CHECKS: dict[str, tuple[Needs, Check]] = {
 
 def done(name: str, seen: Seen) -> bool:
     """Whether what a step asks for is on the page now; not before the run has come to it."""
-    needs, check = CHECKS[name]
-    return seen.lesson.possible and seen.lesson.reached(*needs) and check(seen)
+    return ready(name, seen.lesson) and CHECKS[name][1](seen)
+
+
+def ready(name: str, lesson: LessonRun) -> bool:
+    """Whether a run has come to what a check looks at."""
+    return lesson.possible and lesson.reached(*CHECKS[name][0])

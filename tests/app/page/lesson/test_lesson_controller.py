@@ -311,8 +311,6 @@ def question(tab) -> tuple[str, bool, str]:
 
 
 def test_what_a_step_asks_for_is_ticked_once_it_was_done_and_stays_so(asking, tab, result):
-    asking._check()
-    assert question(tab) == ("Go there.", False, STILL)
     own_run_ends(asking, result)
     asking._check()
     assert question(tab) == ("Go there.", False, NOT_YET)
@@ -325,6 +323,18 @@ def test_what_a_step_asks_for_is_ticked_once_it_was_done_and_stays_so(asking, ta
     assert question(tab)[:2] == ("", False)
     asking.move(-1)
     assert question(tab) == ("Go there.", True, "")
+
+
+def test_a_question_on_a_run_that_has_not_come_to_it_waits_for_it(tab, tmp_path, monkeypatch, result):
+    (tmp_path / "01-first.md").write_text(ASKS.replace("laser", "map-2-wins"), encoding="utf-8")
+    lesson = make(tab, tmp_path, monkeypatch)
+    lesson.enter()
+    lesson._check()
+    assert question(tab) == ("Go there.", False, STILL)
+    own_run_ends(lesson, result)
+    assert question(tab) == ("Go there.", False, "")
+    lesson._check()
+    assert question(tab) == ("Go there.", False, NOT_YET)
 
 
 def test_a_tab_that_comes_back_tells_what_was_done_and_what_is_no_step_is_left_out(asking, tab):
