@@ -126,7 +126,7 @@ STRANGERS = [(kind, 500 + n) for n, kind in enumerate(3 * ["apartment", "corrido
 
 def test_maps_of_different_buildings_are_not_likely_to_belong_together():
     """34 pairs, of the thousand that `make unrelated` looks at: hardly one is as likely as one in twenty. Two
-    office floors of the simulator may be so much alike that the likeliest of all is as likely as two in three.
+    office floors of the simulator may be so alike that the likeliest of all is as likely as two in three.
     """
     told = []
     for a, b in list(permutations(STRANGERS, 2))[::8]:
