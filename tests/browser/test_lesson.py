@@ -12,8 +12,7 @@ from rooms import write_case
 from algorithms.files.case_folder import Case
 from app.page.application import make_server
 from app.page.lesson.figures.figure_registry import PICTURES
-from app.page.lesson.lesson_texts import files, first_number, lesson_folder, read_step
-from app.page.lesson.placeholders import NUMBERS
+from app.page.lesson.lesson_texts import files, first_number, lesson_folder
 
 pytestmark = pytest.mark.browser
 
@@ -442,31 +441,3 @@ def test_maps_that_do_not_show_a_step_say_so_and_the_sample_that_does_is_opened(
     settle(lambda: "corridor_r3_r2" in tab.page.locator(".mm-title").inner_text(), "the sample")
     at_step(tab, 14)
     settle(lambda: not tab.page.locator(".mm-missing:visible").count(), "that it shows it")
-
-
-def test_every_button_of_what_there_is_to_try_changes_the_picture_of_its_step_and_puts_it_back(open_tab):
-    tab = open_tab(smooth=True)
-    enter(tab)
-    steps = {number: read_step(path, PICTURES, NUMBERS) for number, path in enumerate(STEPS, FIRST)}
-    for number, step in steps.items():
-        buttons = [trial.button for trial in step.trials if trial.button]
-        if not buttons:
-            continue
-        tab.choose("Step", f"{number}. {step.title}")
-        at_step(tab, number)
-        settle(lambda: tab.mood == "idle", f"the run of step {number}")
-        before = picture(tab)
-        for button in buttons:
-            tab.press(button)
-            settle(
-                lambda before=before: tab.page.locator("svg.mm-picture").count() and picture(tab) != before,
-                f"{button}, another picture",
-            )
-            settle(lambda: tab.page.locator(".mm-answer").count() == 1, f"{button}, its answer")
-            settle(lambda: tab.mood == "idle", f"{button}, to be worked out")
-            tab.press("Put it back")
-            settle(lambda: tab.page.locator(".mm-answer").count() == 0, f"{button}, to be put back")
-            settle(lambda: tab.mood == "idle", "the run of before")
-            before = settle(
-                lambda: tab.page.locator("svg.mm-picture").count() and picture(tab), "its picture"
-            )
