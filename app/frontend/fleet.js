@@ -25,6 +25,8 @@
     .mm-pair b{overflow-wrap:anywhere} .mm-pair span{font-size:11.5px;opacity:.8}
     .mm-pair[data-mood=accepted]{border-left-color:#009E73 !important} .mm-pair[data-mood=refused]{border-left-color:#D55E00 !important}
     .mm-pair[data-mood=bent]{border-left-color:#E69F00 !important}
+    .mm-robot>button:first-child{flex-wrap:wrap} .mm-robot em{flex:1 0 100%;padding-left:17px;font-style:normal;font-size:11.5px;opacity:.75}
+    .mm-robot em[data-mood=bent]{color:#B45309;opacity:1} .mm-robot em[data-mood=refused]{color:#D55E00;opacity:1}
     .mm-robot[data-mood=accepted] span{color:#009E73} .mm-robot[data-mood=refused] span{color:#D55E00}
     .mm-quiet{margin:2px 12px 8px;font-size:12px;opacity:.8}`;
   document.head.append(style);

@@ -27,6 +27,7 @@ from app.page.lesson.lesson_controller import LessonController
 from app.page.lesson.lesson_texts import lesson_folder
 from app.page.lesson.link_controller import LinkController
 from app.page.lesson.museum.museum_controller import MuseumController
+from app.page.live.live_controller import LiveController
 from app.page.modes import ModeSwitch
 from app.page.notices import Notices
 from app.page.page_display import PageDisplay
@@ -103,12 +104,14 @@ class Page:
         files = FilesController(tab, inputs.load, fleet, seeing.sensors.take, projects)
         LinkController(tab, teaching, files.take_sample)
         museum = MuseumController(tab, undo, runs, inputs, fleet.merge_fleet)
-        panels.run.connect_learn(teaching.toggle, museum.toggle)
+        live = LiveController(tab, fleet)
+        panels.run.connect_learn(teaching.toggle, museum.toggle, live.demo)
         self._seeing = seeing
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
         self._sweep = SweepController(state, panels.sweep, messages, events, runs, deliver)
         research = self._comparison, self._sweep
         self._parts = (
+            live,
             inputs,
             events,
             teaching,

@@ -19,6 +19,7 @@ from app.page.files.files_panel import FilesPanel
 from app.page.fleet.fleet_panel import FleetPanel
 from app.page.lesson.lesson_panel import LessonPanel
 from app.page.lesson.museum.museum_panel import MuseumPanel
+from app.page.live.live_panel import LivePanel
 from app.page.page_state import PageState
 from app.page.panels.charts_panel import ChartsPanel
 from app.page.panels.run_panel import RunPanel
@@ -50,6 +51,7 @@ class Panels:
         self.task = CancellableTask(messages, state.locks.drawing, partial(self.run.stoppable, "task"))
         self.send = partial(DOWNLOADS.send, client)
         self.files = FilesPanel(gui, sample, self.send, state.locks.action)
+        self.live = LivePanel(gui)
         self.fleet = FleetPanel(gui)
         self.names = NamesPanel(gui)
         self.knowledge = KnowledgePanel(gui)
