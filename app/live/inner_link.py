@@ -30,15 +30,19 @@ class InnerLink:
         at.publishers += 1
         return InnerPublication(at, topic, self._writer)
 
+    def published(self) -> dict[Topic, int]:
+        return {at.topic: at.publishers for at in self._topics.values() if at.publishers}
+
     def close(self) -> None:
         self._topics.clear()
 
     def _at(self, topic: Topic) -> _InnerTopic:
-        return self._topics.setdefault(topic.name, _InnerTopic())
+        return self._topics.setdefault(topic.name, _InnerTopic(topic))
 
 
 class _InnerTopic:
-    def __init__(self) -> None:
+    def __init__(self, topic: Topic) -> None:
+        self.topic = topic
         self.queues: list[deque[Any]] = []
         self.last: Any = None
         self.publishers = 0

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Mapping
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from threading import Event
 from time import monotonic
 
+from algorithms.common.errors import MapMergeError
 from algorithms.fleets.fleet_merge import FleetResult
 from algorithms.fleets.live_answer import WITHDRAWN, LiveAnswer, LiveEvent
 from algorithms.fleets.living_merge import UNSEARCHED
@@ -50,7 +51,7 @@ class LiveWatch:
     def __init__(self, run: LiveRun, name: str) -> None:
         self._run, self._name = run, name
         self._began: float | None = None
-        self._came = {each: _Rate(source) for each, source in run.sources.items()}
+        self._watched = {each: _Watched(source) for each, source in run.sources.items()}
         self._state: FleetState | None = None
         self._lost: dict[str, str] = {}
         self._events: list[LiveEvent] = []
@@ -62,14 +63,14 @@ class LiveWatch:
         began = self._began = now if self._began is None else self._began
         update = self._run.step(now)
         self._events += update.events
-        for rate in self._came.values():
+        for rate in self._watched.values():
             rate.count(now)
         if update.answer is not None:
             self._take(update.answer)
         if now - self._told < EVERY:
             return None
         self._told = now
-        robots = {name: rate.state(now) for name, rate in self._came.items()}
+        robots = {name: rate.state(now) for name, rate in self._watched.items()}
         picture = LivePicture(
             now - began, robots, self._state, self._anew, tuple(self._events), dict(self._lost)
         )
@@ -112,8 +113,8 @@ def pictures(robots: RunningRobots, name: str, stop: Event) -> Iterator[LivePict
                 yield picture
 
 
-class _Rate:
-    """How often a source's map is another one."""
+class _Watched:
+    """A source, and how often its map is another one."""
 
     def __init__(self, source: MapSource) -> None:
         self._source = source
@@ -134,4 +135,7 @@ class _Rate:
         newest = self._source.newest
         span = max(1.0, now - self._times[0]) if self._times else RATED
         rate = max(0, len(self._times) - 1) / span
-        return RobotState(self._source.state(now).value, rate, None if newest is None else now - newest.at)
+        age, pose = None if newest is None else now - newest.at, None
+        with suppress(MapMergeError):
+            pose = self._source.pose()
+        return RobotState(self._source.state(now).value, rate, age, pose)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from algorithms.common.pose import Pose2
+
 MOODS = {"live": "accepted", "stale": "bent", "gone": "refused"}
 
 
@@ -12,11 +14,13 @@ class RobotState:
     """state : waiting, live, stale or gone; of a map that stays as it is "file"
     rate  : maps a second
     age   : seconds since its newest map came; None before there is one
+    pose  : T_map_robot; None where it is not known
     """
 
     state: str
     rate: float = 0.0
     age: float | None = None
+    pose: Pose2 | None = None
 
     @property
     def mood(self) -> str:

@@ -15,7 +15,7 @@ from algorithms.simulator.buildings.building_types import BUILDINGS
 from algorithms.simulator.fleets.exploration import Exploration, SlamCorrection
 from algorithms.simulator.fleets.fleet_scenario import simulate_fleet
 from app.cli.argument_parser import Parser, whole_number
-from app.cli.live_arguments import RobotLinks, add_dds
+from app.cli.live_arguments import add_dds, network_of
 from app.cli.progress_bar import bar
 from app.live.bag_writing import BagRecorder
 from app.live.ros_link import Publication, RosLink, Topic
@@ -79,7 +79,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
             _drive(exploration, recorder.write, None)
         print(f"written to {args.bag}")
         return 0
-    links = RobotLinks(args)
+    links = network_of(args).links()
     try:
         topics = _Topics(links.link())
         print("waiting for somebody who listens", flush=True)

@@ -165,8 +165,13 @@ def _lines(edges: Sequence[Edge], palette: Palette) -> list[Item]:
 def _names(state: FleetState, layout: FleetLayout) -> list[Item]:
     items = []
     for number, name in enumerate(state.robots):
-        if name not in state.hidden:
-            at = layout.at(name)
+        if name in state.hidden:
+            continue
+        colour, does = robot_colour(number), state.live.get(name)
+        if does is not None and does.pose is not None:  # it is where it drives
+            at = layout.poses[name] @ does.pose
+            items.append(mark("robot", at.xy, colour, a=at.theta, r=9, t=name, size=14))
+        else:
             how = {"size": 14, "align": "center", "dx": 0}
-            items.append(mark("none", at.xy, robot_colour(number), t=name, **how))
+            items.append(mark("none", layout.at(name).xy, colour, t=name, **how))
     return items

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import logging
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from threading import Event
 from typing import TYPE_CHECKING
 
 from algorithms.common.errors import MapMergeError
 from algorithms.fleets.live_answer import WITHDRAWN, LiveEvent
+from algorithms.observations.fleet import FleetSighting
 from app.model.fleet_state import FleetState
 from app.model.robot_state import clock
 from app.model.view_modes import LIVE_DEMO
@@ -27,9 +28,10 @@ if TYPE_CHECKING:  # as in live_thread
 
 log = logging.getLogger(__name__)
 
-MOST_EVENTS = 8  # that are shown
+MOST_EVENTS = 5  # that are shown
 BEGINS = "The robots set out."
 ROBOTS = "Simulated robots"
+SIGHTING = "sighting"  # kind of an event, as live_run has it
 LOUD_FOR = 8.0  # seconds for which it is told what was taken back, even if it stands again
 
 
@@ -70,8 +72,8 @@ class LiveController:
             else:
                 self.begin(lambda: SimulatedRobots(lambda: self._panel.speed), ROBOTS, simulated=True)
 
-    def begin(self, make: Callable[[], RunningRobots], name: str, simulated: bool = False) -> None:
-        """Follow robots in place of those that were followed before."""
+    def begin(self, make: Callable[[], RunningRobots], name: str, simulated: bool = False) -> bool:
+        """Follow robots in place of those that were followed before; whether there is room to."""
         from app.live.live_history import LiveHistory
         from app.live.live_watch import pictures
 
@@ -79,12 +81,12 @@ class LiveController:
             yield from pictures(make(), name, stop)
 
         with self._locks.action:
-            self.end()
+            self._stop()
             try:
                 self._thread = LiveThread(self._locks, follow, self._take, self._failed)
             except MapMergeError as error:
                 self._notices.report(error)
-                return
+                return False
             self._modes.leave()
             self._past, self._newest, self._shown, self._name = LiveHistory(), None, None, name
             self._simulated, self._following, self._loud = simulated, True, None
@@ -94,6 +96,17 @@ class LiveController:
                 self._run.open(LIVE_DEMO, simulated)
                 self._display.messages.hud(state=BEGINS, mood="running", progress=None)
                 self._display.show_buttons()
+            return True
+
+    def follows(self, name: str) -> bool:
+        """Whether robots are followed that are called so together."""
+        return self._thread is not None and self._name == name
+
+    @property
+    def sightings(self) -> Sequence[FleetSighting]:
+        """What the robots that are followed have seen of one another, in their maps as they are now."""
+        state = None if self._newest is None else self._newest.state
+        return () if state is None else state.fleet.sightings
 
     def end(self) -> None:
         """Follow nobody any more; what is on the page stays."""
@@ -127,6 +140,8 @@ class LiveController:
         if picture.anew and state is not None:
             past.add(picture.seconds, (state.fleet, state.result))
         for event in picture.events:
+            if event.kind == SIGHTING:
+                continue  # it is drawn
             self._events.appendleft(event_line(picture.seconds, event.robot, event.said))
             log.info("%s: %s: %s", event.robot, event.kind, event.said)
         taken_back = [event for event in picture.events if event.kind == WITHDRAWN]
@@ -137,6 +152,10 @@ class LiveController:
             self._panel.frozen(True)
         if self._following and state is not None:
             self._follow(picture, state)
+        elif self._following:
+            waits = ", ".join(f"{name}: {each.told}" for name, each in picture.robots.items())
+            self._display.messages.hud(state=f"Listening. {waits}.", mood="running", progress=None)
+            self._display.messages.flush()
         self._tell(picture)
 
     def _follow(self, picture: LivePicture, state: FleetState) -> None:
@@ -149,19 +168,16 @@ class LiveController:
             self._following = False
             self._panel.frozen(True)
             return
-        before, self._shown = self._shown, live
-        if before is None or before.fleet is not live.fleet:
-            self._state.update(fleet=live)
-            self._fleet.display.show(look=self._run.follow, follow=False)
-        else:
-            self._state.update(fleet=live)
+        self._shown = live
+        self._state.update(fleet=live)
+        self._fleet.display.show(look=self._run.follow, follow=False)
         words, mood = self._outcome(picture, live)
         self._fleet.display.say(words, mood, None)
 
     def _outcome(self, picture: LivePicture, state: FleetState) -> tuple[str, str]:
         """What stands, above the maps."""
         assert state.result is not None
-        said = f"{clock(picture.seconds)}  {summary(state.result, len(state.robots))}"
+        said = f"Live, {clock(picture.seconds)}: {summary(state.result, len(state.robots))}"
         if self._loud is not None and (picture.lost or picture.seconds - self._loud[0] < LOUD_FOR):
             return f"Taken back: {self._loud[1]} {said}", "refused"
         return said, "accepted" if state.result.whole else "running"
@@ -174,7 +190,7 @@ class LiveController:
 
     def _tell(self, picture: LivePicture) -> None:
         count = sum(each.state == "live" for each in picture.robots.values())
-        said = f"{clock(picture.seconds)}  {count} of {len(picture.robots)} robots are live."
+        said = f"{clock(picture.seconds)}: {count} of {len(picture.robots)} robots are live."
         if not self._following:
             said += " The picture stands still."
         self._panel.say(said, tuple(self._events))

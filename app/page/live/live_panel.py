@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from html import escape
 from typing import Any
 
 import viser
 
 from app.drawing.palette import LIGHT, QUIET
 from app.model.robot_state import clock
-from app.model.status_text import typeset
-from app.page.panels.html_widgets import Action, box, on_choice, on_press, put
+from app.page.panels.html_widgets import Action, box, on_choice, on_press, put, small
 
 SPEED, FASTEST = 5.0, 20.0
 
@@ -31,6 +29,7 @@ class LivePanel:
             self._history = gui.add_slider("History (s)", 0, 1, 1, 1, hint=hint, disabled=True)
             hint = "How many times as fast as robots drive; 0 holds them."
             self._speed = gui.add_slider("Speed of the robots (×)", 0.0, FASTEST, 0.5, SPEED, hint=hint)
+            self._events = gui.add_html("")
             self._end = gui.add_button("End it", icon=viser.Icon.PLAYER_STOP, **quiet)
 
     def connect(
@@ -62,8 +61,8 @@ class LivePanel:
 
     def say(self, words: str, events: Sequence[str]) -> None:
         """A sentence, and what has happened, the newest first."""
-        listed = "".join(f"<li>{escape(typeset(each))}</li>" for each in events)
-        put(self._said, content=box(words, "plain") + f'<ul class="mm-events">{listed}</ul>' if words else "")
+        put(self._said, content=box(words, "plain") if words else "")
+        put(self._events, content="".join(map(small, events)))
 
     def past(self, times: Sequence[float], at: float) -> None:
         """Of which moments there is a picture, and of which it shows one; seconds."""

@@ -18,6 +18,8 @@ log = logging.getLogger(__name__)
 MOST_AT_ONCE = 4  # tabs of a server that follow robots
 BUSY = f"{MOST_AT_ONCE} tabs of this server follow robots already; end it in one of them"
 
+PATIENCE = 1.0  # seconds in which one that was stopped leaves its place
+
 _places = BoundedSemaphore(MOST_AT_ONCE)
 
 
@@ -36,7 +38,7 @@ class LiveThread:
         show: Callable[[LivePicture], None],
         ended: Callable[[str], None],
     ) -> None:
-        if not _places.acquire(blocking=False):
+        if not _places.acquire(timeout=PATIENCE):
             raise MapMergeError(BUSY)
         self._locks, self._follow, self._show, self._ended = locks, follow, show, ended
         self._stop = Event()
@@ -60,6 +62,12 @@ class LiveThread:
             _places.release()
 
     def _tell(self, tell: Callable[[], None]) -> None:
-        with self._locks.action, self._locks.drawing:
-            if not self._stop.is_set():
-                tell()
+        while not self._stop.is_set():
+            if self._locks.action.acquire(timeout=0.1):  # who holds it may be about to stop this
+                try:
+                    with self._locks.drawing:
+                        if not self._stop.is_set():
+                            tell()
+                    return
+                finally:
+                    self._locks.action.release()
