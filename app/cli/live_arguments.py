@@ -7,7 +7,7 @@ import os
 
 from algorithms.common.errors import SettingError
 from app.cli.argument_parser import Parser
-from app.live.robot_network import RobotNetwork
+from app.live.watch.robot_network import RobotNetwork
 
 DOMAIN = "ROS_DOMAIN_ID"
 

@@ -15,8 +15,8 @@ from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import Fleet, FleetPrior, FleetSighting
 from algorithms.observations.observation import Observation
 from algorithms.observations.pair_problem import Known
+from app.model.live.robot_state import RobotState
 from app.model.merge_inputs import MergeInputs
-from app.model.robot_state import RobotState
 
 FindingKey = tuple[GridMap, GridMap, tuple[Known, ...]]
 """What a pair's merge depends on: both maps, which are equal where they are the same, and what is known."""

@@ -21,7 +21,7 @@ from app.jobs.forked_start import FORKS, start_parent
 from app.jobs.runner import RunCallbacks
 from app.jobs.warm_up import small_merge
 from app.jobs.warm_up import warm_up as warm_up_there
-from app.live.robot_network import RobotNetwork
+from app.live.watch.robot_network import RobotNetwork
 from app.model.merge_inputs import MergeInputs
 from app.page.page import Page
 from app.page.project.kept_work import KeptWork

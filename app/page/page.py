@@ -10,7 +10,7 @@ import viser
 from algorithms.common.errors import MapMergeError
 from app.drawing.scene.tab_views import Views
 from app.jobs.worker_pool import COMMON
-from app.live.robot_network import RobotNetwork
+from app.live.watch.robot_network import RobotNetwork
 from app.model.merge_inputs import MergeInputs
 from app.model.view_modes import OPERATOR, RESEARCH
 from app.page.cancellable_task import DownloadTask

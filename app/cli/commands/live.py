@@ -21,8 +21,8 @@ from app.evaluation.table_files import aligned
 from app.live.live_fleet_file import LiveFleet, read_live_fleet
 from app.live.live_publisher import MAP, LivePublisher
 from app.live.live_run import LiveRun
-from app.live.published_maps import FIND_WITHIN
 from app.live.search_thread import SearchThread
+from app.live.watch.published_maps import FIND_WITHIN
 from app.report.fleet_files import TRANSFORMS_FILE, exported_maps, remove_other_islands, transforms_yaml
 
 USAGE = (

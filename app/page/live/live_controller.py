@@ -13,7 +13,7 @@ from algorithms.common.errors import MapMergeError
 from algorithms.fleets.live_answer import WITHDRAWN, LiveEvent
 from algorithms.observations.fleet import FleetSighting
 from app.model.fleet_state import FleetState
-from app.model.robot_state import clock
+from app.model.live.robot_state import clock
 from app.model.view_modes import LIVE_DEMO
 from app.page.fleet.fleet_controller import FleetController
 from app.page.live.live_panel import event_line
@@ -22,9 +22,9 @@ from app.page.tab import Tab
 from app.report.fleet_report import summary
 
 if TYPE_CHECKING:  # as in live_thread
-    from app.live.live_history import LiveHistory
-    from app.live.live_watch import LivePicture
-    from app.live.running_robots import RunningRobots
+    from app.live.watch.live_watch import LivePicture
+    from app.live.watch.running_robots import RunningRobots
+    from app.model.live.live_history import LiveHistory
 
 log = logging.getLogger(__name__)
 
@@ -64,7 +64,7 @@ class LiveController:
 
     def demo(self) -> None:
         """Simulated robots set out, or are sent home."""
-        from app.live.running_robots import SimulatedRobots
+        from app.live.watch.running_robots import SimulatedRobots
 
         with self._locks.action:
             if self._thread is not None and self._simulated:
@@ -74,8 +74,8 @@ class LiveController:
 
     def begin(self, make: Callable[[], RunningRobots], name: str, simulated: bool = False) -> bool:
         """Follow robots in place of those that were followed before; whether there is room to."""
-        from app.live.live_history import LiveHistory
-        from app.live.live_watch import pictures
+        from app.live.watch.live_watch import pictures
+        from app.model.live.live_history import LiveHistory
 
         def follow(stop: Event) -> Iterator[LivePicture]:
             yield from pictures(make(), name, stop)
@@ -230,7 +230,7 @@ class LiveController:
 
     def _look_back(self, seconds: float) -> None:
         """Show what stood at a moment of the past, as a still picture."""
-        from app.live.live_watch import state_from
+        from app.live.watch.live_watch import state_from
 
         with self._locks.action, self._locks.drawing:
             found = None if self._past is None else self._past.at(seconds)

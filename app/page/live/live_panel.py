@@ -8,7 +8,7 @@ from typing import Any
 import viser
 
 from app.drawing.palette import LIGHT, QUIET
-from app.model.robot_state import clock
+from app.model.live.robot_state import clock
 from app.page.panels.html_widgets import Action, box, on_choice, on_press, put, small
 
 SPEED, FASTEST = 5.0, 20.0

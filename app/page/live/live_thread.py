@@ -11,7 +11,7 @@ from algorithms.common.errors import MapMergeError
 from app.page.page_state import TabLocks
 
 if TYPE_CHECKING:  # it loads what merges: a page that follows no robots does without
-    from app.live.live_watch import LivePicture
+    from app.live.watch.live_watch import LivePicture
 
 log = logging.getLogger(__name__)
 

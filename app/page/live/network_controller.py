@@ -11,8 +11,8 @@ from app.page.tab import Tab
 
 if TYPE_CHECKING:  # as in live_thread
     from app.live.live_fleet_file import LiveFleet
-    from app.live.published_maps import PublishedMaps
-    from app.live.robot_network import RobotNetwork
+    from app.live.watch.published_maps import PublishedMaps
+    from app.live.watch.robot_network import RobotNetwork
 
 NAME = "Running robots"
 
@@ -31,7 +31,7 @@ class NetworkController:
 
     def _look(self) -> None:
         """List the maps that are published; takes some seconds, and nobody waits for it."""
-        from app.live.published_maps import published_maps
+        from app.live.watch.published_maps import published_maps
 
         if self._network is None:
             return
@@ -50,7 +50,7 @@ class NetworkController:
 
     def _add(self, topic: str, name: str) -> None:
         """Follow a robot more, beside those that are followed, or that are on the page."""
-        from app.live.published_maps import ReachedRobots, name_of, with_robot, with_sightings
+        from app.live.watch.published_maps import ReachedRobots, name_of, with_robot, with_sightings
 
         network, found = self._network, self._found
         if network is None or found is None or topic not in found.maps:

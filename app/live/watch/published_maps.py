@@ -11,9 +11,9 @@ from algorithms.files.bags.message_types import GRID, SEEN
 from algorithms.fleets.living_merge import PairSearch
 from app.live.live_fleet_file import LONGEST, LiveFleet, LiveRobot
 from app.live.live_run import LiveRun
-from app.live.robot_network import RobotNetwork
 from app.live.ros_link import Topic
 from app.live.simulation import sightings_of
+from app.live.watch.robot_network import RobotNetwork
 
 FIND_WITHIN = 3.0  # seconds in which participants of DDS find each other
 MOST_LISTED = 100  # maps

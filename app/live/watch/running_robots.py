@@ -9,10 +9,10 @@ from algorithms.files.bags.bag_path import NANO
 from algorithms.fleets.living_merge import PairSearch
 from algorithms.simulator.fleets.exploration import Exploration
 from algorithms.simulator.fleets.fleet_scenario import SimulatedFleet, simulate_fleet
-from app.live.inner_link import InnerLink, InnerPublication
 from app.live.live_run import LiveRun
 from app.live.ros_link import Topic
 from app.live.simulation import PACE, fleet_of, messages_of
+from app.live.watch.inner_link import InnerLink, InnerPublication
 from app.system.clock import stamp
 
 MAP_EVERY = 1.0  # seconds between two maps of a simulated robot, however fast it drives

@@ -16,10 +16,10 @@ from algorithms.fleets.living_merge import UNSEARCHED
 from algorithms.observations.fleet import Fleet
 from app.live.live_run import LiveRun
 from app.live.map_source import FileSource, MapSource, ReceivedMap
-from app.live.running_robots import RunningRobots
 from app.live.search_thread import SearchThread
+from app.live.watch.running_robots import RunningRobots
 from app.model.fleet_state import FleetState
-from app.model.robot_state import RobotState
+from app.model.live.robot_state import RobotState
 
 PAUSE = 0.05  # seconds between two looks at what has come
 EVERY = 1.0  # seconds between two pictures
