@@ -11,7 +11,7 @@ from app.live.ros_link import Topic
 
 
 class InnerLink:
-    """Hands messages on, within one thread; of a latched topic the last one waits for who comes late."""
+    """Hands messages on; of a latched topic the last one waits for who comes late."""
 
     def __init__(self) -> None:
         self._topics: dict[str, _InnerTopic] = {}
@@ -53,9 +53,7 @@ class _InnerSubscription:
         self._at, self._queue = at, queue
 
     def take(self) -> list[Any | InputFileError]:
-        found = list(self._queue)
-        self._queue.clear()
-        return found
+        return [self._queue.popleft() for _ in range(len(self._queue))]
 
     @property
     def publishers(self) -> int:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import replace
 
 from algorithms.common.errors import SettingError
-from algorithms.files.bags.message_types import GRID, SEEN
+from algorithms.files.bags.message_types import GRID
 from algorithms.fleets.living_merge import PairSearch
 from app.live.live_fleet_file import LONGEST, LiveFleet, LiveRobot
 from app.live.live_run import LiveRun
@@ -19,16 +19,8 @@ FIND_WITHIN = 3.0  # seconds in which participants of DDS find each other
 MOST_LISTED = 100  # maps
 
 
-@dataclass(frozen=True)
-class PublishedMaps:
-    """topics of maps; of poses of robots that are seen"""
-
-    maps: tuple[str, ...]
-    seen: frozenset[str] = frozenset()
-
-
-def published_maps(network: RobotNetwork, patience: float = FIND_WITHIN) -> PublishedMaps:
-    """Look for maps; raises SettingError."""
+def published_maps(network: RobotNetwork, patience: float = FIND_WITHIN) -> tuple[str, ...]:
+    """Topics of maps; raises SettingError."""
     links = network.links()
     try:
         link = links.link(network.bridge)
@@ -38,13 +30,10 @@ def published_maps(network: RobotNetwork, patience: float = FIND_WITHIN) -> Publ
         links.close()
 
 
-def usable(published: Iterable[Topic]) -> PublishedMaps:
-    """Those of topics with names that can be listened to."""
-    named = [each for each in published if each.name.isprintable() and len(each.name) <= LONGEST]
-    maps = sorted({each.name for each in named if each.type == GRID})
-    return PublishedMaps(
-        tuple(maps[:MOST_LISTED]), frozenset(each.name for each in named if each.type == SEEN)
-    )
+def usable(published: Iterable[Topic]) -> tuple[str, ...]:
+    """Those of topics on which there are maps, and whose names can be listened to."""
+    maps = {each.name for each in published if each.type == GRID}
+    return tuple(sorted(each for each in maps if each.isprintable() and len(each) <= LONGEST)[:MOST_LISTED])
 
 
 def name_of(topic: str) -> str:
@@ -60,17 +49,15 @@ def with_robot(fleet: LiveFleet, name: str, topic: str, network: RobotNetwork) -
     return replace(fleet, robots=robots, anchor=fleet.anchor or name)
 
 
-def with_sightings(fleet: LiveFleet, seen: frozenset[str]) -> LiveFleet:
-    """With those topics of sightings that are called by the names of two of its robots: /r1/sees/r2."""
+def with_sightings(fleet: LiveFleet) -> LiveFleet:
+    """With the topics on which its robots that run say where they see each other: /r1/sees/r2, if anybody
+    publishes there.
+    """
     run = [name for name, each in fleet.robots.items() if each.grid is None]
-
-    def sees(one: str) -> Mapping[str, str]:
-        topics = {other: sightings_of(one, other).name for other in run if other != one}
-        return {other: topic for other, topic in topics.items() if topic in seen}
-
-    robots = {
-        name: replace(each, sees=sees(name)) if name in run else each for name, each in fleet.robots.items()
-    }
+    robots = dict(fleet.robots)
+    for name in run:
+        sees = {other: sightings_of(name, other).name for other in run if other != name}
+        robots[name] = replace(robots[name], sees=sees)
     return replace(fleet, robots=robots)
 
 

@@ -217,7 +217,7 @@ class LiveController:
             self._following = False
             self._panel.frozen(True)
             if self._ours and self._newest is not None:
-                self._hold(self._still(self._state.fleet), f"freeze at {clock(self._newest.seconds)}")
+                self._hold(self._still(self._state.fleet), "Frozen at", self._newest.seconds)
 
     def _resume(self) -> None:
         """Follow the robots again."""
@@ -239,18 +239,20 @@ class LiveController:
             time, (fleet, result) = found
             self._following = False
             self._panel.frozen(True)
-            self._hold(state_from(fleet, result, self._name), f"look back at {clock(time)}")
+            self._hold(state_from(fleet, result, self._name), "Looking back at", time, look=True)
             if self._newest is not None:
                 self._tell(self._newest)
 
-    def _hold(self, state: FleetState, label: str) -> None:
+    def _hold(self, state: FleetState, what: str, seconds: float, look: bool = False) -> None:
         """Show a still picture, as a step that undo goes back from; of more of the same one."""
+        label = f"{what.lower()} {clock(seconds)}"
         if self._fleet.shown is None:
             self._fleet.show(state, label)
-            return
-        if self._fleet.claim(state):
-            self._shown = None
+        elif self._fleet.claim(state):
             self._state.update(fleet=state)
-            self._fleet.display.show()
-            self._fleet.display.say_outcome()
+            self._fleet.display.show(look=look)
             self._history.record(label, self._state.snapshot(), "live")
+        self._shown = None
+        if state.result is not None and self._state.fleet is state:
+            said = f"{what} {clock(seconds)}: {summary(state.result, len(state.robots))}"
+            self._fleet.display.say(said, "accepted" if state.result.whole else "idle", None)

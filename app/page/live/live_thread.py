@@ -41,6 +41,7 @@ class LiveThread:
         if not _places.acquire(timeout=PATIENCE):
             raise MapMergeError(BUSY)
         self._locks, self._follow, self._show, self._ended = locks, follow, show, ended
+        self._place = _places
         self._stop = Event()
         Thread(target=self._run, name="mapmeld-live", daemon=True).start()
 
@@ -59,7 +60,7 @@ class LiveThread:
             said = f"A bug of mapmeld's ended it ({type(error).__name__}); the server's log has the details."
             self._tell(lambda: self._ended(said))
         finally:
-            _places.release()
+            self._place.release()
 
     def _tell(self, tell: Callable[[], None]) -> None:
         while not self._stop.is_set():

@@ -11,7 +11,6 @@ from app.page.tab import Tab
 
 if TYPE_CHECKING:  # as in live_thread
     from app.live.live_fleet_file import LiveFleet
-    from app.live.watch.published_maps import PublishedMaps
     from app.live.watch.robot_network import RobotNetwork
 
 NAME = "Running robots"
@@ -25,7 +24,7 @@ class NetworkController:
     ) -> None:
         self._locks, self._notices, self._panel = tab.state.locks, tab.notices, tab.panels.network
         self._live, self._fleet, self._network = live, fleet, network
-        self._found: PublishedMaps | None = None
+        self._found: tuple[str, ...] = ()
         self._followed: LiveFleet | None = None  # by us
         self._panel.connect(self._look, self._add)
 
@@ -38,8 +37,8 @@ class NetworkController:
         self._panel.looking(True)
         try:
             self._found = found = published_maps(self._network)
-            self._panel.offer(found.maps)
-            count = len(found.maps)
+            self._panel.offer(found)
+            count = len(found)
             maps = f"{count} map is" if count == 1 else f"{count or 'No'} maps are"
             self._panel.say(f"{maps} published within reach.")
         except MapMergeError as error:
@@ -52,14 +51,14 @@ class NetworkController:
         """Follow a robot more, beside those that are followed, or that are on the page."""
         from app.live.watch.published_maps import ReachedRobots, name_of, with_robot, with_sightings
 
-        network, found = self._network, self._found
-        if network is None or found is None or topic not in found.maps:
+        network = self._network
+        if network is None or topic not in self._found:
             return
         with self._locks.action:
             try:
                 before = self._present()
                 unused = _unused(name or name_of(topic) or "robot", before)
-                fleet = with_sightings(with_robot(before, unused, topic, network), found.seen)
+                fleet = with_sightings(with_robot(before, unused, topic, network))
             except MapMergeError as error:
                 self._notices.report(error)
                 return
