@@ -35,6 +35,8 @@ class RobotState:
             return "no map yet"
         if self.state == "live":
             return f"live, {self.rate:.1f} maps/s, the last {self.age:.0f} s ago"
+        if self.state == "gone":
+            return f"gone; its last map, {self.age:.0f} s old, stays"
         return f"{self.state} for {self.age:.0f} s; its last map stays"
 
 

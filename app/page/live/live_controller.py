@@ -49,6 +49,7 @@ class LiveController:
         self._shown: FleetState | None = None  # by us; None before, and of a picture that stands still
         self._name = ""
         self._following = False
+        self._begun_at = self._place  # before there is anything to show
         self._events: deque[str] = deque(maxlen=MOST_EVENTS)
         self._loud: tuple[float, str] | None = None  # since when, and what was taken back
         self._panel.connect(self._freeze, self._resume, self._look_back, self.end)
@@ -91,6 +92,7 @@ class LiveController:
             self._past, self._newest, self._shown, self._name = LiveHistory(), None, None, name
             self._simulated, self._following, self._loud = simulated, True, None
             self._events.clear()
+            self._begun_at = self._place
             with self._locks.drawing:
                 self._panel.open(simulated)
                 self._run.open(LIVE_DEMO, simulated)
@@ -147,15 +149,12 @@ class LiveController:
         taken_back = [event for event in picture.events if event.kind == WITHDRAWN]
         if taken_back:
             self._alarm(picture, taken_back)
-        if self._following and self._shown is not None and not self._ours:
+        at_home = self._ours if self._shown is not None else self._place == self._begun_at
+        if self._following and not at_home:
             self._following = False  # a person has gone elsewhere
             self._panel.frozen(True)
         if self._following and state is not None:
             self._follow(picture, state)
-        elif self._following:
-            waits = ", ".join(f"{name}: {each.told}" for name, each in picture.robots.items())
-            self._display.messages.hud(state=f"Listening. {waits}.", mood="running", progress=None)
-            self._display.messages.flush()
         self._tell(picture)
 
     def _follow(self, picture: LivePicture, state: FleetState) -> None:
@@ -191,13 +190,22 @@ class LiveController:
     def _tell(self, picture: LivePicture) -> None:
         count = sum(each.state == "live" for each in picture.robots.values())
         said = f"{clock(picture.seconds)}: {count} of {len(picture.robots)} robots are live."
-        if not self._following:
+        if picture.state is None:
+            said = f"{clock(picture.seconds)}: the merge begins with the second map. " + " ".join(
+                f"{name}: {each.told}." for name, each in picture.robots.items()
+            )
+        elif not self._following:
             said += " The picture stands still."
         self._panel.say(said, tuple(self._events))
         if self._following and self._past is not None:
             self._panel.past(self._past.times, picture.seconds)
 
     # --- a still picture ----------------------------------------------------------------------------------
+
+    @property
+    def _place(self) -> tuple[object, object]:
+        """Where a person is."""
+        return self._history.snapshot, self._modes.current
 
     @property
     def _ours(self) -> bool:
@@ -223,7 +231,7 @@ class LiveController:
         """Follow the robots again."""
         with self._locks.action, self._locks.drawing:
             if self._thread is not None and not self._following:
-                self._following, self._shown = True, None
+                self._following, self._shown, self._begun_at = True, None, self._place
                 self._panel.frozen(False)
                 if self._newest is not None:
                     self._take(replace(self._newest, anew=False, events=()))

@@ -13,7 +13,7 @@ from app.model.live.robot_state import RobotState, clock
         (RobotState("waiting"), "no map yet", "idle"),
         (RobotState("live", 1.04, 0.4), "live, 1.0 maps/s, the last 0 s ago", "accepted"),
         (RobotState("stale", 0.0, 12.3), "stale for 12 s; its last map stays", "bent"),
-        (RobotState("gone", 0.0, 40.0), "gone for 40 s; its last map stays", "refused"),
+        (RobotState("gone", 0.0, 40.0), "gone; its last map, 40 s old, stays", "refused"),
         (RobotState("file"), "its map is from a file", "idle"),
     ],
 )
