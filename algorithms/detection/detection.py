@@ -42,6 +42,7 @@ class Detection:
     label       : class of what is seen, as front_back, side or a tag's number
     tag         : distance, where a tag's size is known
     is_part     : whether the box frames a part of the robot alone, as a tag, and not all of it
+    is_mirrored : whether what is printed on the robot reads backwards
     """
 
     left: float
@@ -52,6 +53,7 @@ class Detection:
     label: str
     tag: TagDistance | None = None
     is_part: bool = False
+    is_mirrored: bool = False
 
     @property
     def width(self) -> float:

@@ -168,6 +168,8 @@ def _sighted(
     one: Detection, view: LaserView, camera: Camera, body: Footprint, walls: MapWalls | None
 ) -> Sighted:
     """What laser and map say of one box."""
+    if one.is_mirrored:
+        return Sighted(one, None, None, "the tag on the robot reads backwards: a mirror shows it")
     candidates = [cluster for cluster in view.clusters if _in_box(cluster, one, view, camera)]
     if not candidates:
         return Sighted(one, None, None, _no_cluster(one, view))

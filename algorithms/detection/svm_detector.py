@@ -11,6 +11,7 @@ from algorithms.common.errors import SettingError
 from algorithms.common.pose import FloatArray
 from algorithms.detection.detection import Detection, Picture, strongest
 from algorithms.detection.hog_grid import Features, WindowShape, grey, hog_grid, scores, window_features
+from algorithms.detection.mirrored_tags import tags_read_backwards
 from algorithms.sensors.camera import Camera, check_image_size
 
 WIDEST = 640  # pixels; larger images are made smaller first: time, and a robot at 5 m is as large in the view
@@ -70,8 +71,14 @@ class SvmDetector:
         """Robots of at least the least probability, the likeliest first; one box each."""
         likely = [one for one in self.windows(picture) if one.probability >= self.least_probability]
         image = grey(picture)
-        found = strongest(likely)
-        return tuple(replace(one, label=self._class_of(image, np.array(one.box()))) for one in found)
+        return tuple(
+            replace(
+                one,
+                label=self._class_of(image, np.array(one.box())),
+                is_mirrored=tags_read_backwards(picture, one.box()),
+            )
+            for one in strongest(likely)
+        )
 
     def windows(self, picture: Picture) -> list[Detection]:
         """The likeliest windows of each size, also those that are no robot: before suppression."""

@@ -1,4 +1,4 @@
-"""A project in place of two maps. Nothing heavy is loaded before there is one."""
+"""A project in place of two maps or of a fleet file. Nothing heavy is loaded before there is one."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from algorithms.common.errors import InputFileError
 
 if TYPE_CHECKING:
     from algorithms.observations.pair_problem import PairProblem
+    from app.model.fleet_state import FleetState
     from app.model.merge_inputs import MergeInputs
     from app.page.undo.page_snapshot import PageSnapshot
 
@@ -32,15 +33,30 @@ def opened_project(words: Sequence[str]) -> PageSnapshot | None:
     path = next(filter(is_project, named), None)
     if path is None:
         return None
-    from app.page.project.project_file import read_project
-
-    saved = read_project(path)
-    snapshot = saved.steps[saved.position].snapshot
+    snapshot = _page(path)
     if snapshot.fleet is not None and snapshot.fleet.opened is None:
-        raise InputFileError(path, "shows a fleet", "open it with mapmeld serve, and one of its pairs there")
+        raise InputFileError(path, "shows a fleet", f"merge it with: mapmeld fleet {path}")
     if missing := snapshot.inputs.missing():
         raise InputFileError(path, "cannot be merged yet", f"open it with mapmeld serve. {missing}")
     return snapshot
+
+
+def opened_fleet(path: Path) -> FleetState:
+    """The fleet that a project was left at, with what was found of it.
+
+    raises : InputFileError, TooLargeError; InputFileError also where it holds none
+    """
+    snapshot = _page(path)
+    if snapshot.fleet is None:
+        raise InputFileError(path, "holds two maps and no fleet", f"merge it with: mapmeld merge {path}")
+    return snapshot.fleet.closed(snapshot.inputs.known, None)
+
+
+def _page(path: Path) -> PageSnapshot:
+    from app.page.project.project_file import read_project
+
+    saved = read_project(path)
+    return saved.steps[saved.position].snapshot
 
 
 def problem_of(pair: MergeInputs) -> PairProblem:

@@ -170,7 +170,7 @@
     ink.style.cssText = "position:absolute;left:0;top:0;pointer-events:none;z-index:1";
     hud = document.createElement("div"); hud.id = "mapmeld-hud";
     hud.innerHTML = '<div class="mm-head"><div class="mm-title"><b>mapmeld</b><span class="mm-case"></span></div>' +
-      '<div class="mm-tools"></div><div class="mm-state"><i></i><span></span></div><div class="mm-bar"><i></i></div></div><div class="mm-legend"></div><div class="mm-said" role="status"></div>';
+      '<div class="mm-tools"></div><div class="mm-state"><i></i><span><b></b><span></span></span></div><div class="mm-bar"><i></i></div></div><div class="mm-legend"></div><div class="mm-said" role="status"></div>';
     const parent = canvas.parentElement;
     parent.append(ink, hud);
     each("adopt", hud, canvas);
@@ -185,10 +185,14 @@
     const h = S.hud, put = (name, text) => { const e = hud.querySelector(name); if (e.textContent !== (text || "")) e.textContent = text || ""; };
     hud.dataset.theme = S.dark ? "dark" : "light";
     document.body.dataset.mmMode = h.research ? "research" : "operator";
-    put(".mm-case", h.case); put(".mm-state span", h.state);
+    put(".mm-case", h.case);
+    const [first] = (h.state || "").match(/^.+?[.!?](?= \p{Lu}|$)/u) || [h.state || ""];
+    put(".mm-state b", first); put(".mm-state span span", (h.state || "").slice(first.length));
     put(".mm-said", ["accepted", "bent", "refused", "failed"].includes(h.mood) && h.state); // for screen readers: steps would be too many
     hud.querySelector(".mm-state").dataset.mood = h.mood || "idle";
     hud.querySelector(".mm-state").classList.toggle("mm-long", (h.state || "").length > 110);
+    const line = hud.querySelector(".mm-state>span");
+    line.tabIndex = line.scrollHeight > line.clientHeight ? 0 : -1; // what scrolls is reached by Tab
     const bar = hud.querySelector(".mm-bar");
     bar.style.visibility = h.progress === null || h.progress === undefined ? "hidden" : "visible";
     bar.firstChild.style.width = `${100 * (h.progress || 0)}%`;
@@ -221,7 +225,7 @@
     .mm-title{flex:1 1 90px;font-size:12px;color:#6B7280;overflow:hidden;white-space:nowrap;text-overflow:ellipsis}
     .mm-title b{color:#0072B2;font-size:13px;letter-spacing:.01em;margin-right:8px}
     [data-theme=dark] .mm-title{color:#9CA3AF} [data-theme=dark] .mm-title b{color:#56B4E9}
-    .mm-state{flex:1 0 100%;font-size:15px;font-weight:550;display:flex;gap:8px;align-items:baseline;min-height:20px;margin:5px -12px -8px;padding:6px 12px 8px;border-left:5px solid transparent;border-radius:0 0 8px 8px;overflow-wrap:anywhere}
+    .mm-state{flex:1 0 100%;font-size:15px;display:flex;gap:8px;align-items:baseline;min-height:20px;margin:5px -12px -8px;padding:6px 12px 8px;border-left:5px solid transparent;border-radius:0 0 8px 8px;overflow-wrap:anywhere}
     .mm-tools{display:flex;flex-wrap:wrap;gap:4px 6px;min-height:22px;max-width:100%}
     .mm-tools>span{display:inline-flex;flex-wrap:wrap;border:1px solid #CBD5E1;border-radius:6px;overflow:hidden}
     .mm-tools button{pointer-events:auto;font:inherit;font-size:11.5px;line-height:20px;padding:0 7px;border:0;background:transparent;color:inherit;cursor:pointer}
@@ -233,6 +237,7 @@
     [data-theme] .mm-tools button[aria-pressed=true]{background:#0072B2;color:#fff}
     .mm-tools [hidden]{display:none}
     .mm-state.mm-long{font-size:13px}
+    .mm-state b{font-weight:550} .mm-state>span{max-height:42vh;overflow-y:auto;pointer-events:auto}
     .mm-state i{width:9px;height:9px;border-radius:50%;flex:none;background:#9CA3AF}
     .mm-state[data-mood=running] i{background:#0072B2;animation:mm-pulse 1s infinite}
     .mm-state[data-mood=accepted]{background:rgba(0,158,115,.16);border-left-color:#009E73}

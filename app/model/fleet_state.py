@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from algorithms.common.errors import SettingError
 from algorithms.common.pose import Pose2
 from algorithms.common.robot_names import LONGEST_NAME, RobotNames, check_name
-from algorithms.fleets.fleet_merge import FleetResult, poses_so_far
+from algorithms.fleets.fleet_merge import FleetResult, FleetStep, RunPairs, poses_so_far, run_fleet
 from algorithms.fleets.island import Island
 from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, aligned_priors, known_of, pair_orders
 from algorithms.maps.grid_map import GridMap
@@ -181,6 +181,18 @@ class FleetState:
         """What a pair's merge depends on."""
         maps = self.fleet.maps
         return maps[order.ref], maps[order.mov], known_of(self.fleet, order)
+
+    def merged(self, run_pairs: RunPairs, force: bool = False) -> Iterator[FleetStep]:
+        """``run_fleet``, with what is found already: ``run_pairs`` merges the pairs that are not."""
+
+        def pairs(fleet: Fleet, orders: Sequence[PairOrder]) -> Iterator[PairFinding]:
+            found = [self.finding(order) for order in orders] if fleet is self.fleet else []
+            known = [finding for finding in found if finding is not None]
+            yield from known
+            there = {finding.order for finding in known}
+            yield from run_pairs(fleet, [order for order in orders if order not in there])
+
+        return run_fleet(self.fleet, pairs, force, self.further)
 
     def standing(self, name: str) -> str:
         """What has become of a robot."""

@@ -72,7 +72,8 @@ def test_large_maps_are_loaded_stopped_looked_at_and_dragged(tab, tmp_path, monk
         """() => {
             const line = document.querySelector(".mm-state span");
             window.said = [];
-            new MutationObserver(() => window.said.push(line.textContent)).observe(line, { childList: true });
+            const observer = new MutationObserver(() => window.said.push(line.textContent));
+            observer.observe(line, { childList: true, subtree: true });
         }"""
     )
     grid = many_rooms()

@@ -23,7 +23,8 @@ def test_the_proof_fills_its_page_and_the_result_says_how_it_ended(tab):
         """() => {
             const line = document.querySelector(".mm-state span");
             window.said = [];
-            new MutationObserver(() => window.said.push(line.textContent)).observe(line, { childList: true });
+            const observer = new MutationObserver(() => window.said.push(line.textContent));
+            observer.observe(line, { childList: true, subtree: true });
         }"""
     )
     tab.press("Merge")  # not faster: a tab that is behind shows the last of several words alone

@@ -128,8 +128,12 @@ def test_robots_are_renamed_hidden_made_the_anchor_and_removed_and_undo_goes_bac
     island.press("Remove it")
     settle(lambda: "Alice" not in robots(island), "a robot less")
     assert not [row for row in rows(island, "pair") if "Alice" in row]
-    for _ in range(3):
-        island.page.get_by_role("button", name="Undo").click()
+    undo = island.page.get_by_role("button", name="Undo")
+    undo.click()
+    settle(lambda: "Alice" in robots(island), "the robot again")
+    undo.click()
+    settle(lambda: "r1 ⚓" in " ".join(rows(island, "robot")), "the anchor of before")
+    undo.click()
     settle(lambda: "r2" in robots(island), "the old name")
 
 

@@ -115,14 +115,14 @@ def test_the_first_step_goes_through_what_camera_and_laser_tell_in_four_parts(ta
 
     enter(tab)
     settle(lambda: photo() == 1, "the picture with its box")
-    assert "The camera knows which way" in tab.text
+    settle(lambda: "The camera knows which way" in tab.text, "the words about the camera")
     assert "…" not in tab.page.locator(".mm-lesson").inner_text()
     assert equations() == ["pixel-bearing", "counted-bearing"]
     settle(lambda: tab.layer("lesson"), "the directions of the box on the map")
     settle(lambda: tab.mood == "idle", "the look to be over")
     tab.move("part", 1)
     settle(lambda: photo() == 2, "the window and its edges")
-    assert "What is it?" in tab.text
+    settle(lambda: "What is it?" in tab.text, "the words about the detector")
     tab.move("part", 1)
     settle(lambda: "The laser knows how far" in tab.text, "the words about the laser")
     assert equations()[0] == "depth-step"
@@ -135,7 +135,7 @@ def test_the_first_step_goes_through_what_camera_and_laser_tell_in_four_parts(ta
     settle(lambda: "too near by" not in tab.page.locator("svg.mm-picture").first.text_content(), "the centre")
     tab.press("Count pixels")
     settle(lambda: "The lens and the true centre" in tab.text, "what counting leaves out")
-    assert "The camera knows which way" in tab.text
+    settle(lambda: "The camera knows which way" in tab.text, "the part that tells of it")
 
 
 def test_maps_without_a_picture_are_shown_that_of_another_sample(tab):

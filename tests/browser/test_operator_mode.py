@@ -72,5 +72,5 @@ def test_a_long_refusal_is_shown_whole(operator):
     operator.page.evaluate("() => { mapmeld.hud.state = 'refused: ' + 'walls contradict '.repeat(40); }")
     operator.press("Instant")  # draws the words anew
     settle(lambda: operator.state.count("contradict") == 40, "the words")
-    words = operator.page.locator(".mm-state span")
+    words = operator.page.locator(".mm-state > span")
     assert words.evaluate("(e) => e.scrollHeight <= e.clientHeight + 1 && e.offsetHeight > 40")

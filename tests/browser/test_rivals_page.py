@@ -25,10 +25,9 @@ def test_matched_features_are_drawn_and_those_that_agree_run_side_by_side(tab):
     settle(lambda: "agree on one transform" in tab.state, "the transform")
 
     def agreeing():
-        lines = [item["p"] for item in tab.layer("matches") if item["k"] == "path"]
-        colours = [item["c"] for item in tab.layer("matches") if item["k"] == "path"]
         strong = css(LIGHT.best, 0.9)
-        return [line for line, colour in zip(lines, colours, strict=True) if colour == strong]
+        paths = [item for item in tab.layer("matches") if item["k"] == "path"]
+        return [path["p"] for path in paths if path["c"] == strong]
 
     settle(lambda: len(agreeing()) > 20, "the lines that agree")
     ways = [(b[0] - a[0], b[1] - a[1]) for a, b in agreeing()]

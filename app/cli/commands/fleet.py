@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from functools import partial
 from math import degrees
 from pathlib import Path
@@ -13,16 +12,18 @@ from typing import Any
 
 from algorithms.files.atomic_write import check_folder, write_files
 from algorithms.files.fleet_file import FLEET_FILE, read_fleet
-from algorithms.fleets.fleet_merge import FleetResult, PairStep, run_fleet
+from algorithms.fleets.fleet_merge import FleetResult, PairStep
 from algorithms.fleets.pair_hypotheses import aligned_priors
 from algorithms.observations.fleet import Fleet
 from app.cli.argument_parser import Parser
 from app.cli.executor_flags import add_workers, executor_for
 from app.cli.output_arguments import add_output, check_apart, frame_of
 from app.cli.progress_bar import bar
+from app.cli.project_argument import is_project, opened_fleet
 from app.evaluation.table_files import aligned
 from app.jobs.fleet_pairs import run_pairs
 from app.model import verdict_text
+from app.model.fleet_state import FleetState
 from app.report.export_frame import changes_text
 from app.report.fleet_files import exported_maps, fleet_files, remove_other_islands
 from app.report.fleet_report import summary
@@ -35,6 +36,7 @@ Merge the maps of any number of robots, from whatever sightings there are betwee
 Examples:
   mapmeld fleet fleet.yaml --out result
   mapmeld fleet folder --out result          a folder that holds {FLEET_FILE}
+  mapmeld fleet fleet.mapmeld --out result   a project that the page has saved, with what was found of it
 
 The file names the robots and their maps, and who saw whom:
   anchor: r1                                 whose frame the result is in; else the first robot's
@@ -64,7 +66,9 @@ Exit status: 0 every robot is placed, 1 some are not (what was placed is written
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
-    parser.add_argument("fleet", type=Path, metavar="FLEET", help="fleet file, or a folder with one")
+    parser.add_argument(
+        "fleet", type=Path, metavar="FLEET", help="fleet file, a folder with one, or a project"
+    )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the files")
     parser.add_argument("--force", action="store_true", help="place robots however unlikely that is")
     parser.add_argument("--json", action="store_true", help="print report.json and nothing else")
@@ -76,15 +80,17 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
 def run(args: argparse.Namespace, parser: Parser) -> int:
     """Merge, write and tell; the exit status."""
     check_folder(args.out)
-    fleet, frame = read_fleet(args.fleet), frame_of(args)
+    frame = frame_of(args)
+    state = opened_fleet(args.fleet) if is_project(args.fleet) else FleetState(read_fleet(args.fleet))
     if args.anchor is not None:
-        fleet = replace(fleet, anchor=args.anchor)
+        state = state.anchored(args.anchor)
+    fleet = state.fleet
     check_apart(args.out, args.fleet)
     for name, grid in fleet.maps.items():
         for remark in grid.remarks:
             print(f"warning: {name}'s map ({grid.name}): {remark}.", file=sys.stderr)
     executor = executor_for(args.jobs, args.scheduler)
-    result = _with_bar(run_fleet(fleet, partial(run_pairs, executor), args.force))
+    result = _with_bar(state.merged(partial(run_pairs, executor), args.force))
     name = args.fleet.resolve().name if args.fleet.is_dir() else args.fleet.stem
     exported = exported_maps(result, frame)
     files = fleet_files(fleet, result, name, exported)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from threading import Event
 
 from algorithms.common.errors import MapMergeError
-from algorithms.fleets.fleet_merge import FleetResult, FleetStep, PairStep, run_fleet
+from algorithms.fleets.fleet_merge import FleetResult, FleetStep, PairStep
 from algorithms.fleets.pair_hypotheses import PairFinding, PairOrder, pair_orders
 from algorithms.observations.fleet import Fleet
 from app.jobs.background_job import BackgroundJob, beside_the_page
@@ -56,15 +56,11 @@ class FleetRunController:
         executor = self._executor(JOBS)
 
         def pairs(fleet: Fleet, orders: Sequence[PairOrder]) -> Iterator[PairFinding]:
-            found = [state.finding(order) for order in orders] if fleet is state.fleet else []
-            known = [finding for finding in found if finding is not None]
-            yield from known
-            there = {finding.order for finding in known}
-            yield from run_pairs(executor, fleet, [order for order in orders if order not in there], stop)
+            yield from run_pairs(executor, fleet, orders, stop)
             if stop.is_set():
                 raise StoppedError
 
-        yield from run_fleet(state.fleet, pairs, further=state.further)
+        yield from state.merged(pairs)
 
     def part_done(self, step: FleetStep) -> None:
         """More is known of the fleet."""

@@ -12,6 +12,7 @@ from commandline import usage_error
 from algorithms.common.pose import Pose2
 from algorithms.common.robot_names import RobotNames
 from algorithms.files.map_file import read_map
+from algorithms.fleets.pair_hypotheses import Hypothesis, PairFinding, PairOrder
 from algorithms.maps.grid_map import OCCUPIED, UNKNOWN
 from algorithms.maps.map_corrections import Corrections, Edit
 from algorithms.methods import registry as methods
@@ -100,7 +101,10 @@ def test_a_project_that_cannot_be_merged_is_told_in_one_line(project, capsys):
     fleet = Fleet({"a": page.inputs.ref, "b": page.inputs.mov})
     for change, told in (
         (unknown, "cannot be merged yet; open it with mapmeld serve. Place"),
-        ({"inputs": MergeInputs(), "fleet": FleetState(fleet)}, "shows a fleet; open it with mapmeld serve"),
+        (
+            {"inputs": MergeInputs(), "fleet": FleetState(fleet)},
+            "shows a fleet; merge it with: mapmeld fleet",
+        ),
     ):
         project.write_bytes(project_to_bytes(SavedTab((UndoStep("load", replace(page, **change)),))))
         assert main(words) == 2
@@ -108,3 +112,33 @@ def test_a_project_that_cannot_be_merged_is_told_in_one_line(project, capsys):
     project.write_bytes(b"hello")
     assert main(words) == 2
     assert "is no zip" in capsys.readouterr().err
+
+
+def test_the_fleet_of_a_project_is_merged_with_what_was_found_of_it_and_what_its_open_pair_knows(
+    project, small_case, capsys
+):
+    command = ["fleet", str(project), "--out", str(project.parent / "fleet"), "--json"]
+
+    def told(state):
+        """What report.json says of a project that was left with this fleet."""
+        project.write_bytes(project_to_bytes(SavedTab((UndoStep("load", replace(page, fleet=state)),))))
+        main(command)
+        return json.loads(capsys.readouterr().out)
+
+    assert main(command) == 2
+    assert "holds two maps and no fleet; merge it with: mapmeld merge" in capsys.readouterr().err
+    page = read_project(project).steps[0].snapshot
+    state = FleetState(Fleet({"Bob": page.inputs.ref, "Alice": page.inputs.mov}))
+    order = PairOrder("Bob", "Alice", ())
+    answer = Hypothesis(Pose2(1.0, 2.0, 0.5), np.diag((1e-4, 1e-4, 1e-6)), 0.99, 4.6)
+    by_hand = state.with_finding(PairFinding(order, np.zeros(2), (answer,), "by hand", accepted=True))
+    (pair,) = told(by_hand)["pairs"]
+    assert pair["verdict"] == "by hand"
+
+    known = told(state.open(order))
+    assert [each["observer"] for each in known["sightings"]] == ["Bob"]
+    assert known["robots"]["Alice"]["T_root_robot"]["x"] == pytest.approx(
+        small_case.truth.T_ref_mov.x, abs=0.1
+    )
+    assert main([*command, "--frame", "nobody"]) == 2
+    assert "nobody" in capsys.readouterr().err
