@@ -3,11 +3,21 @@
   const S = window.mapmeld;
   if (S.fleet) return;
   S.fleet = true;
+  const KINDS = ["robot", "eye", "pair"];
+  const ROWS = KINDS.map((what) => `button[data-mm-${what}]`).join();
+  const named = (row) => row && KINDS.filter((what) => row.hasAttribute(`data-mm-${what}`)).map((what) => `button[data-mm-${what}="${row.getAttribute(`data-mm-${what}`)}"]`)[0];
+  // While robots run the lists are drawn anew every second: a press begins on a row that may be gone when it ends, and the focus goes with it.
+  let pressed, focused;
+  document.addEventListener("pointerdown", (e) => { pressed = named(e.target.closest?.(ROWS)); focused = undefined; }, true);
+  document.addEventListener("focusin", (e) => { focused = named(e.target.closest?.(ROWS)); });
+  new MutationObserver(() => {
+    if (focused && document.activeElement === document.body) document.querySelector(focused)?.focus({ preventScroll: true });
+  }).observe(document.body, { childList: true, subtree: true });
   document.addEventListener("click", (e) => {
-    const button = e.target.closest?.("button[data-mm-robot],button[data-mm-eye],button[data-mm-pair]");
-    if (!button) return;
-    for (const what of ["robot", "eye", "pair"]) {
-      const n = button.getAttribute(`data-mm-${what}`);
+    let row = e.target.closest?.(ROWS);
+    if (!row && pressed) row = document.elementFromPoint(e.clientX, e.clientY)?.closest(pressed);
+    for (const what of row ? KINDS : []) {
+      const n = row.getAttribute(`data-mm-${what}`);
       if (n !== null) S.tell("fleet", { what, n: Number(n) });
     }
   });

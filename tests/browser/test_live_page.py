@@ -131,6 +131,14 @@ def test_robots_are_added_by_their_maps_grow_stale_leave_and_are_taken_back_loud
         tab.press("Add this robot")
         settle(lambda name=name: f"{name} is followed by /{name}/map." in tab.text, name)
     settle(lambda: set(robots(tab)) == {"r1", "r2"}, "both maps")
+    eye = tab.page.locator("button[data-mm-eye='1']")
+    eye.focus()  # the list is drawn anew every second, and keeps it
+    marked = "() => document.querySelector('.mm-robot').marked = true"
+    tab.page.evaluate(marked)
+    settle(lambda: not tab.page.evaluate("() => document.querySelector('.mm-robot').marked"), "a new list")
+    focused = "() => document.activeElement.getAttribute('data-mm-eye')"
+    settle(lambda: tab.page.evaluate(focused) == "1", "the focus")
+
     scans = iter(range(1, network.robots.scans + 1))
     said = "2 of 2 robots are in the map of r1."
 

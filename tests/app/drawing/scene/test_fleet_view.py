@@ -12,8 +12,8 @@ from algorithms.files.case_folder import Case
 from algorithms.fleets.fleet_merge import merge_fleet
 from algorithms.maps.map_corrections import cropped
 from algorithms.observations.fleet import Fleet, FleetSighting
-from app.drawing.fleet_layout import lay_out_fleet
 from app.drawing.browser_messages import BrowserMessages
+from app.drawing.fleet_layout import lay_out_fleet
 from app.drawing.palette import LIGHT
 from app.drawing.scene.fleet_view import FleetView, edges_of, nearest_edge
 from app.model.fleet_state import LEFT_OUT, USED, FleetState
