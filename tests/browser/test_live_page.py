@@ -129,7 +129,7 @@ def test_robots_are_added_by_their_maps_grow_stale_leave_and_are_taken_back_loud
     for name in ("r1", "r2"):
         tab.choose("Published map", f"/{name}/map")
         tab.press("Add this robot")
-        settle(lambda name=name: f"{name} is followed by /{name}/map." in tab.text, name)
+        settle(lambda name=name: f"{name} is followed, by its map on /{name}/map." in tab.text, name)
     settle(lambda: set(robots(tab)) == {"r1", "r2"}, "both maps")
     eye = tab.page.locator("button[data-mm-eye='1']")
     eye.focus()  # the list is drawn anew every second, and keeps it

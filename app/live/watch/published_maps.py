@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from algorithms.common.errors import SettingError
+from algorithms.common.robot_names import check_name
 from algorithms.files.bags.message_types import GRID
 from algorithms.fleets.living_merge import PairSearch
 from app.live.live_fleet_file import LONGEST, LiveFleet, LiveRobot
@@ -42,7 +43,8 @@ def name_of(topic: str) -> str:
 
 
 def with_robot(fleet: LiveFleet, name: str, topic: str, network: RobotNetwork) -> LiveFleet:
-    """A robot that runs more; raises SettingError where its map is listened to already."""
+    """A robot that runs more; raises SettingError where it cannot be called so, or its map is listened to."""
+    check_name(name)
     if any(each.topic == topic for each in fleet.robots.values()):
         raise SettingError(f"{topic} is listened to already")
     robots = {**fleet.robots, name: LiveRobot(topic, bridge=network.bridge)}

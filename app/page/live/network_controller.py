@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from threading import Thread
 from typing import TYPE_CHECKING
 
 from algorithms.common.errors import MapMergeError
@@ -29,14 +30,16 @@ class NetworkController:
         self._panel.connect(self._look, self._add)
 
     def _look(self) -> None:
-        """List the maps that are published; takes some seconds, and nobody waits for it."""
+        """List the maps that are published; that takes some seconds, for which nobody waits."""
+        if self._network is not None:
+            self._panel.looking(True)
+            Thread(target=self._find, args=(self._network,), name="mapmeld-look", daemon=True).start()
+
+    def _find(self, network: RobotNetwork) -> None:
         from app.live.watch.published_maps import published_maps
 
-        if self._network is None:
-            return
-        self._panel.looking(True)
         try:
-            self._found = found = published_maps(self._network)
+            self._found = found = published_maps(network)
             self._panel.offer(found)
             count = len(found)
             maps = f"{count} map is" if count == 1 else f"{count or 'No'} maps are"
@@ -64,7 +67,7 @@ class NetworkController:
                 return
             if self._live.begin(lambda: ReachedRobots(network, fleet), NAME):
                 self._followed = fleet
-                self._panel.say(f"{unused} is followed by {topic}.")
+                self._panel.say(f"{unused} is followed, by its map on {topic}.")
 
     def _present(self) -> LiveFleet:
         """Robots that are followed already, with what they have seen; else those of the fleet on the page."""

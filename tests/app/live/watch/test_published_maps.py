@@ -54,6 +54,8 @@ def test_the_first_robot_is_the_anchor_and_one_topic_is_followed_once():
     assert {each.bridge for each in fleet.robots.values()} == {NETWORK.bridge}
     with pytest.raises(SettingError, match="listened to already"):
         with_robot(fleet, "r3", "/r1/map", NETWORK)
+    with pytest.raises(SettingError):
+        with_robot(fleet, "r/3", "/r3/map", NETWORK)
 
 
 def test_robots_that_run_are_listened_to_where_they_say_whom_they_see(small_case):
