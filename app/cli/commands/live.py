@@ -15,6 +15,7 @@ from algorithms.files.fleet_file import FLEET_FILE, MOST_BYTES, fleet_parts, fle
 from algorithms.files.map_file import map_to_bytes, read_bytes
 from algorithms.fleets.live_answer import LiveAnswer
 from app.cli.argument_parser import Parser
+from app.cli.end_signals import end_signals
 from app.cli.live_arguments import add_dds, network_of
 from app.cli.output_arguments import check_apart
 from app.evaluation.table_files import aligned
@@ -148,8 +149,8 @@ def _list(args: argparse.Namespace) -> int:
 def _listen(args: argparse.Namespace, live: LiveRun, publishers: Sequence[LivePublisher]) -> None:
     begin = saved = time.monotonic()
     unsaved: LiveAnswer | None = None
-    try:
-        while args.seconds is None or time.monotonic() - begin < args.seconds:
+    with end_signals() as come:
+        while not come and (args.seconds is None or time.monotonic() - begin < args.seconds):
             now = time.monotonic()
             update = live.step(now)
             answer = update.answer
@@ -161,8 +162,6 @@ def _listen(args: argparse.Namespace, live: LiveRun, publishers: Sequence[LivePu
             if args.save_every is not None and unsaved is not None and now - saved >= args.save_every:
                 saved, unsaved = now, _save(args.out, unsaved)
             time.sleep(PAUSE)
-    except KeyboardInterrupt:
-        pass
     if args.out is not None and live.answer.result is not None:
         _save(args.out, live.answer)
         print(f"written to {args.out}")

@@ -125,14 +125,14 @@ STRANGERS = [(kind, 500 + n) for n, kind in enumerate(3 * ["apartment", "corrido
 
 
 def test_maps_of_different_buildings_are_not_likely_to_belong_together():
-    """66 pairs: hardly one is as likely as one in twenty. Two office floors of the simulator may be so much
-    alike that the likeliest of all is as likely as two in three.
+    """34 pairs, of the thousand that `make unrelated` looks at: hardly one is as likely as one in twenty. Two
+    office floors of the simulator may be so alike that the likeliest of all is as likely as two in three.
     """
     told = []
-    for a, b in list(permutations(STRANGERS, 2))[::4]:
+    for a, b in list(permutations(STRANGERS, 2))[::8]:
         for first, second in zip(cases_of(*a, 0.3), cases_of(*b, 0.3), strict=False):
             forged = mismatch(first, second)
             told.append(likely(forged.ref, forged.mov, forged.observations[0]))
-    assert len(told) == 66
+    assert len(told) == 34
     assert np.quantile(told, 0.96) < 0.05
     assert max(told) < 0.65
