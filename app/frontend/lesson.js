@@ -35,6 +35,10 @@
     .mm-try b{color:#B45309;margin-right:4px}
     [data-mantine-color-scheme=dark] .mm-try b{color:#FBBF24}
     .mm-answer{margin-top:5px;padding-top:5px;border-top:1px solid #E69F0066}
+    .mm-check,.mm-missing{margin:8px 12px 3px;padding:7px 10px;border-left:4px solid #0072B2;border-radius:4px;background:#0072B21a;font-size:13px;line-height:1.4}
+    .mm-check[data-mm-done]{border-left-color:#009E73;background:#009E731f}
+    .mm-missing{border-left-color:#9CA3AF;background:#9CA3AF1f}
+    .mm-lesson small{font-size:12px;opacity:.7}
     .mm-foot{margin:6px 12px 10px;font-size:11.5px;opacity:.6}
     .mm-link{border:0;border-radius:10px;padding:16px 20px 18px;width:min(480px,92vw);color:#111827;background:#fff;font:14px/1.4 system-ui,"Segoe UI",sans-serif;box-shadow:0 10px 40px rgba(17,24,39,.35)}
     .mm-link::backdrop{background:rgba(17,24,39,.35)} .mm-link h2{font-size:16px;margin:0 0 8px}
@@ -55,6 +59,7 @@
     [data-mm-presenter] .mm-eq{font-size:27px} [data-mm-presenter] .mm-eq span{font-size:27px!important}
     [data-mm-presenter] [data-mm-sheet] button:not(.mm-aids *){height:auto!important;min-height:52px}
     [data-mm-presenter] [data-mm-sheet] input{height:48px!important;min-height:48px}
+    [data-mm-presenter] [data-mm-sheet] .mantine-NumberInput-root{width:110px!important;min-width:110px}
     [data-mm-presenter] .mm-foot,[data-mm-presenter] .mm-dots{display:none}`;
   document.head.append(style);
 
@@ -105,6 +110,22 @@
     const figure = sheet?.querySelector("figure");
     if (message.link && figure && message.link.address === sheet.querySelector("input").value) figure.innerHTML = message.link.code;
   });
+
+  // --- questions that were answered: the tab keeps them over a reload --------------------------------------------
+  const KEY = "mapmeld-lesson-done";
+  let told = "";
+  function keepDone(steps) {
+    if (!steps || steps === told) return;
+    told = steps;
+    try { sessionStorage.setItem(KEY, steps); } catch { /* then a reload forgets them */ }
+  }
+  function tellDone() {
+    let steps = "";
+    try { steps = sessionStorage.getItem(KEY) || ""; } catch { /* none were kept */ }
+    const numbers = steps.split(",").filter(Boolean).map(Number).filter(Number.isInteger);
+    if (numbers.length) S.tell("done", { steps: numbers });
+  }
+  S.heard.push((message) => { if (message.channel) tellDone(); });
 
   // --- for a class ------------------------------------------------------------------------------------------------
   const body = document.body;
@@ -164,6 +185,7 @@
   setInterval(() => {
     const step = document.querySelector(".mm-lesson"), now = step ? step.dataset.step : "";
     const place = step ? `lesson=${now}${step.dataset.sample ? `&sample=${step.dataset.sample}` : ""}` : "";
+    if (step) keepDone(step.dataset.done);
     const view = step && step.closest(".mantine-ScrollArea-viewport");
     if (view) { // viser makes its elements anew
       step.parentElement.parentElement.dataset.mmSheet = "";

@@ -408,3 +408,36 @@ def test_a_picture_is_taken_in_the_hand_with_mouse_and_sliders_go_along(open_tab
     tab.page.mouse.up()
     # Between two pictures there is no handle, and so no box.
     settle(lambda: (grip.bounding_box() or box)["x"] == pytest.approx(box["x"] + 25, abs=4), "the handle")
+
+
+def test_a_question_is_answered_by_hand_ticked_and_kept_over_a_reload(open_tab):
+    tab = open_tab(smooth=True)
+    enter(tab, 7)
+    ask = tab.page.locator(".mm-check:visible")
+    settle(lambda: "can't tell apart" in ask.inner_text(), "the question")
+    settle(lambda: tab.mood == "idle", "the run to be over")
+    tab.press("Check")
+    settle(lambda: "Not yet." in ask.inner_text(), "that it was not done")
+    first = picture(tab)
+    tab.move("candidate", 1)
+    settle(lambda: picture(tab) != first, "the next candidate")
+    tab.press("Check")
+    settle(lambda: "Done." in ask.inner_text(), "that it was done")
+    count = tab.page.locator(".mm-lesson small")
+    settle(lambda: count.inner_text() == f"1 of {len(STEPS)} done", "the count")
+    tab.page.reload()
+    at_step(tab, 7)
+    settle(lambda: count.inner_text() == f"1 of {len(STEPS)} done", "the count after a reload")
+    settle(lambda: "Done." in ask.inner_text(), "the tick after a reload")
+
+
+def test_maps_that_do_not_show_a_step_say_so_and_the_sample_that_does_is_opened(open_tab):
+    tab = open_tab(smooth=True)
+    enter(tab)
+    tab.choose("Step", "14. What do the whole maps say?")
+    at_step(tab, 14)
+    settle(lambda: tab.page.locator(".mm-missing:visible").count(), "what these maps do not show")
+    tab.press("Open corridor_r3_r2")
+    settle(lambda: "corridor_r3_r2" in tab.page.locator(".mm-title").inner_text(), "the sample")
+    at_step(tab, 14)
+    settle(lambda: not tab.page.locator(".mm-missing:visible").count(), "that it shows it")

@@ -86,8 +86,17 @@ class Symbol:
 
     @property
     def html(self) -> str:
-        name = re.sub(r"\*\*(.+?)\*\*", r"<b>\1</b>", escape(self.name))
-        return re.sub(r"([_^])(\w+(?:,\w+)?)", lambda at: _raised(at[1], at[2]), name)
+        return re.sub(r"\*\*(.+?)\*\*", r"<b>\1</b>", _indexed(escape(self.name)))
+
+    @property
+    def means_html(self) -> str:
+        """What it means, with the symbols in it set as in the equations."""
+        return _indexed(escape(self.means))
+
+
+def _indexed(html: str) -> str:
+    """Words with what stands behind _ below the line, and what stands behind ^ above it."""
+    return re.sub(r"([_^])(\w+(?:,\w+)?)", lambda at: _raised(at[1], at[2]), html)
 
 
 def _raised(sign: str, words: str) -> str:
@@ -101,6 +110,25 @@ def symbols() -> tuple[Symbol, ...]:
     rows = ROW.finditer((folder() / "symbols.md").read_text(encoding="utf-8"))
     read = [Symbol(row["name"], tuple(re.findall("`(.+?)`", row["latex"])), row["means"]) for row in rows]
     return tuple(read[1:])  # the first row is the heading
+
+
+@cache
+def _written() -> tuple[re.Pattern[str], dict[str, str]]:
+    """What finds the symbols of the table that have an index or an exponent, and how each is set."""
+    names = {
+        name: _indexed(name)
+        for symbol in symbols()
+        for name in re.split(r", (?=\D)", symbol.name)
+        if re.search("[_^]", name) and "*" not in name
+    }
+    either = "|".join(re.escape(name) for name in sorted(names, key=len, reverse=True))
+    return re.compile(rf"(?<![\w{{])(?:{either})(?!(?!²)[\w}}])"), names
+
+
+def with_symbols(html: str) -> str:
+    """Words in which the symbols of the table are set as in the equations: σ_aug with its index below."""
+    pattern, names = _written()
+    return pattern.sub(lambda found: names[found[0]], html)
 
 
 @cache
@@ -132,7 +160,7 @@ def symbols_html(chosen: Iterable[str]) -> str:
     sources = [read_equation(folder() / f"{name}.tex").latex for name in chosen]
     found = {symbol for latex in sources for symbol in symbols_in(latex)[0]}
     rows = "".join(
-        f"<dt>{symbol.html}</dt><dd>{escape(symbol.means)}</dd>" for symbol in symbols() if symbol in found
+        f"<dt>{symbol.html}</dt><dd>{symbol.means_html}</dd>" for symbol in symbols() if symbol in found
     )
     if not rows:
         return ""

@@ -9,7 +9,8 @@ from pathlib import Path
 from markdown_it import MarkdownIt
 
 from app.drawing.palette import LIGHT
-from app.page.lesson.equations import equations_html, symbols
+from app.page.lesson.checks.effects import missing
+from app.page.lesson.equations import equations_html, symbols, with_symbols
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_display import NOT_HERE
 from app.page.lesson.lesson_panel import emphasised
@@ -66,11 +67,27 @@ def _step(number: int, text: StepText, lesson: LessonRun, numbers: Mapping[str, 
         f"{_button(trial.button)}</p>"
         for k, trial in enumerate(text.trials, 1)
     )
-    return f'<section id="step{number}"><h2><b>{number}</b> {escape(text.title)}</h2>{parts}{tries}</section>'
+    notes = _missing(text, lesson, numbers)
+    title = f"<h2><b>{number}</b> {escape(text.title)}</h2>"
+    return f'<section id="step{number}">{title}{notes}{parts}{tries}{_question(text, numbers)}</section>'
+
+
+def _question(text: StepText, numbers: Mapping[str, str]) -> str:
+    """What is to be done on the page, which tells whether it was."""
+    if text.check is None:
+        return ""
+    return f'<p class="check"><b>Check yourself</b> {emphasised(filled(text.check.ask, numbers))}</p>'
+
+
+def _missing(text: StepText, lesson: LessonRun, numbers: Mapping[str, str]) -> str:
+    """What these maps do not show of a step."""
+    if text.effect is None or not missing(text.effect.test, lesson):
+        return ""
+    return f'<p class="missing">{emphasised(filled(text.effect.missing, numbers))}</p>'
 
 
 def _button(name: str) -> str:
-    return f" <span>On the page: <i>{escape(name)}</i></span>" if name else ""
+    return f" <span>On the page: <i>{with_symbols(escape(name))}</i></span>" if name else ""
 
 
 def _picture(name: str, lesson: LessonRun, part: int, way: str = "") -> str:
@@ -88,7 +105,7 @@ def _picture(name: str, lesson: LessonRun, part: int, way: str = "") -> str:
 
 def _words(text: str) -> str:
     """HTML of Markdown; what looks like HTML in it stays words."""
-    return str(MarkdownIt("commonmark", {"html": False}).render(text))
+    return with_symbols(str(MarkdownIt("commonmark", {"html": False}).render(text)))
 
 
 def _answers(steps: Mapping[int, StepText], lesson: LessonRun, numbers: Mapping[str, str]) -> str:
@@ -104,7 +121,5 @@ def _answers(steps: Mapping[int, StepText], lesson: LessonRun, numbers: Mapping[
 
 
 def _symbols() -> str:
-    rows = "".join(
-        f"<div><dt>{symbol.html}</dt><dd>{escape(symbol.means)}</dd></div>" for symbol in symbols()
-    )
+    rows = "".join(f"<div><dt>{symbol.html}</dt><dd>{symbol.means_html}</dd></div>" for symbol in symbols())
     return f'<section class="symbols"><h2>Symbols</h2><dl>{rows}</dl></section>'

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from app.drawing.draw_items import Item
 from app.model.run_state import RunState
 from app.model.view_modes import MAP
+from app.page.lesson.checks.effects import missing
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.figures.figure_slider import FigureSlider, place_of
 from app.page.lesson.lesson_panel import LessonPanel
@@ -21,6 +22,8 @@ from app.system import data_paths as paths
 OWN = "Your own settings and results come back when you leave."
 WAIT = "Working it out on these maps …"
 NO_MAPS = "The lesson is about two maps and a sighting: load them, or choose the sighting as what you know."
+SAMPLE_HAS = "A sample has two maps and a sighting."
+NAMED = "office_r2_r1"  # the sample that is offered where there is nothing to show
 NOT_HERE = "The method as it is set does not come to this. Choose another method, or put its settings back."
 
 
@@ -62,16 +65,41 @@ class LessonDisplay:
             self._display.show_view()
         self._display.show_buttons()
 
-    def words(self, index: int, text: StepText, lesson: LessonRun, answered: Collection[int]) -> None:
-        """Show a step's title and what to try; ``answered``: numbers of those whose answers are shown."""
+    def words(
+        self,
+        index: int,
+        text: StepText,
+        lesson: LessonRun,
+        answered: Collection[int],
+        done: Collection[int] = (),
+    ) -> None:
+        """Show a step's title and what to try, and say where the maps do not show what it is about.
+
+        answered : numbers of those things to try whose answers are shown
+        done     : numbers of the steps whose question was answered
+        """
         numbers, told = numbers_of(lesson) if lesson.possible else {}, lesson.inputs.names.told
         sample = lesson.inputs.name if lesson.inputs.name in paths.samples() else ""
-        self._panel.text(index, told(text.title), OWN, sample, filled(told(text.notes), numbers))
+        self._panel.text(index, told(text.title), OWN, sample, filled(told(text.notes), numbers), done)
         answers = enumerate(filled(told(trial.answer), numbers) for trial in text.trials)
         self._panel.trials(
             [replace(trial, ask=told(trial.ask)) for trial in text.trials],
             [answer if k in answered else "" for k, answer in answers],
         )
+
+        effect = text.effect
+        if effect is not None and missing(effect.test, lesson):
+            self._panel.missing(filled(told(effect.missing), numbers), effect.sample)
+        elif not lesson.inputs.sighted:
+            self._panel.missing(SAMPLE_HAS, NAMED)
+        else:
+            self._panel.missing("", "")
+
+    def question(self, text: StepText, lesson: LessonRun, done: bool, said: str) -> None:
+        """Show what a step asks for; ``said``: what was found when it was checked the last time."""
+        numbers, told = numbers_of(lesson) if lesson.possible else {}, lesson.inputs.names.told
+        ask = filled(told(text.check.ask), numbers) if text.check is not None else ""
+        self._panel.check(ask, done, said)
 
     def draw_as(self, picture: str, way: str) -> None:
         """Draw a picture in another way from now on, its dials where that is seen."""

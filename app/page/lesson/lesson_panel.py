@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import partial
 from html import escape
 
 import viser
 
 from app.drawing.palette import QUIET
-from app.page.lesson.equations import equations_html, symbols_html
+from app.page.lesson.equations import equations_html, symbols_html, with_symbols
 from app.page.lesson.figures.figure_slider import FigureSlider, place_of, shown
 from app.page.lesson.lesson_texts import Exercise
 from app.page.panels.html_widgets import Action, box, on_choice, on_press, put
 
 BACK, NEXT, LEAVE = "◀ Back", "Next ▶", "Leave"
+CHECK, DONE = "Check", "✓"
+OPEN_SAMPLE = "Open {name}"
 ANSWER, HIDE, PUT_BACK = "Show the answer", "Hide the answer", "Put it back"
 NOTES = '<details class="mm-notes"><summary>For who teaches</summary>'
 BUTTONS = (  # what they do lesson.js does by itself
@@ -28,8 +30,8 @@ MOST_TRIALS, MOST_DIALS = 4, 3
 
 
 def emphasised(text: str) -> str:
-    """HTML of words, those between asterisks in italics."""
-    return re.sub(r"\*(\S[^*]*)\*", r"<em>\1</em>", escape(text))
+    """HTML of words, those between asterisks in italics, symbols with their indices below."""
+    return with_symbols(re.sub(r"\*(\S[^*]*)\*", r"<em>\1</em>", escape(text)))
 
 
 class LessonPanel:
@@ -46,6 +48,8 @@ class LessonPanel:
             self._title = gui.add_html("")
             self._body = gui.add_markdown("")
             self._equations = gui.add_html("")
+            self._missing = gui.add_html("", visible=False)
+            self._sample_button = gui.add_button("…", color=QUIET, visible=False)
             self._picture = gui.add_html("")
             self._sliders = [
                 gui.add_slider(f"dial {k + 1}", min=0, max=1, step=1, initial_value=0, visible=False)
@@ -55,6 +59,8 @@ class LessonPanel:
             for _ in range(MOST_TRIALS):
                 self._asks.append(gui.add_html("", visible=False))
                 self._buttons.append(gui.add_button("…", color=QUIET, visible=False))
+            self._check = gui.add_html("", visible=False)
+            self._check_button = gui.add_button(CHECK, color=QUIET, visible=False)
             self._foot = gui.add_html("")
         self._panel.dock_left()
         self._panel.set_width(WIDTH)
@@ -66,6 +72,8 @@ class LessonPanel:
         leave: Action,
         slide: Action,
         try_: Callable[[int], None],
+        check: Action,
+        take_sample: Action,
     ) -> None:
         """What is done where a person goes through the lesson.
 
@@ -73,6 +81,8 @@ class LessonPanel:
         move  : by so many steps from where one is
         slide : a slider of the picture was moved
         try_  : the thing to try of this number
+        check : whether what the step asks for was done
+        take_sample : the one that is offered is to be opened
         """
         moves = {BACK: partial(move, -1), NEXT: partial(move, 1), LEAVE: leave}
         self._moves.on_click(lambda event: moves[event.target.value]())
@@ -85,22 +95,35 @@ class LessonPanel:
         for slider in self._sliders:
             on_choice(slider, slide)
         on_press(*((button, partial(try_, k)) for k, button in enumerate(self._buttons)))
+        on_press((self._check_button, check), (self._sample_button, take_sample))
 
     def visible(self, yes: bool) -> None:
         put(self._panel, visible=yes)
         if yes:
             self._panel.set_width(WIDTH)
 
-    def contents(self, titles: Sequence[str], first: int) -> None:
-        """Name the steps; ``first``: the number of the first of them."""
+    def contents(self, titles: Sequence[str], first: int, done: Collection[int] = ()) -> None:
+        """Name the steps; ``first``: the number of the first of them; ``done``: numbers of those whose
+        question was answered.
+        """
         self._first = first
-        self._titles = tuple(f"{k}. {title}" for k, title in enumerate(titles, first))
+        ticks = dict.fromkeys(done, f" {DONE}")
+        self._titles = tuple(f"{k}. {title}{ticks.get(k, '')}" for k, title in enumerate(titles, first))
         put(self._step, options=self._titles)
 
-    def text(self, index: int, title: str, foot: str = "", sample: str = "", notes: str = "") -> None:
+    def text(
+        self,
+        index: int,
+        title: str,
+        foot: str = "",
+        sample: str = "",
+        notes: str = "",
+        done: Collection[int] = (),
+    ) -> None:
         """Show the title of a step, and below it what a teacher should know.
 
         sample : name of the one that it is shown on; empty where it is none
+        done   : numbers of the steps whose question was answered
         """
         put(self._step, value=self._titles[index])
         dots = "".join(f"<i{' data-on' if k <= index else ''}></i>" for k in range(len(self._titles)))
@@ -109,7 +132,9 @@ class LessonPanel:
         where = f"step {step} of {last}"
         self._title.content = (
             f'<div class="mm-lesson" data-step="{step}" data-first="{first}" data-last="{last}" '
-            f'data-sample="{escape(sample)}"><h3>{escape(title)}</h3>{BUTTONS}'
+            f'data-sample="{escape(sample)}" data-done="{",".join(map(str, sorted(done)))}">'
+            f"<h3>{escape(title)}</h3>{BUTTONS}"
+            f"<small>{len(done)} of {len(self._titles)} done</small>"
             f'<span class="mm-dots" role="img" aria-label="{where}" title="{where}">{dots}</span></div>'
         )
         told = f'<div class="mm-foot">{escape(foot)}</div>' if foot else ""
@@ -117,8 +142,25 @@ class LessonPanel:
 
     def beside(self, words: str, equations: Sequence[str]) -> None:
         """Show what stands beside a picture: Markdown, and equations by their names."""
-        put(self._body, content=words)
+        put(self._body, content=with_symbols(words))
         put(self._equations, content=equations_html(equations) + symbols_html(equations))
+
+    def check(self, ask: str, done: bool, said: str = "") -> None:
+        """Show what a student is asked to do; empty where a step asks for nothing.
+
+        said : what the page found when it was asked the last time
+        """
+        words = f" <b>{said}</b>" if said else ""
+        tick = f" <b>{DONE} Done.</b>" if done else words
+        attribute = " data-mm-done" if done else ""
+        html = f'<div class="mm-check"{attribute}><b>Check yourself</b> {emphasised(ask)}{tick}</div>'
+        put(self._check, content=html, visible=bool(ask))
+        put(self._check_button, visible=bool(ask))
+
+    def missing(self, words: str, sample: str) -> None:
+        """Say what the maps do not show, and offer a sample that does; empty where they do."""
+        put(self._missing, content=f'<div class="mm-missing">{emphasised(words)}</div>', visible=bool(words))
+        put(self._sample_button, label=OPEN_SAMPLE.format(name=sample), visible=bool(words and sample))
 
     def broken(self, index: int, title: str, what: str) -> None:
         """Tell what is wrong with the text of a step."""
@@ -127,6 +169,8 @@ class LessonPanel:
         self.picture("")
         self.dials((), ())
         self.trials((), ())
+        self.check("", done=False)
+        self.missing("", "")
         self._equations.content = box(f"This text cannot be read. {what}", "refused")
 
     def picture(self, svg: str) -> None:

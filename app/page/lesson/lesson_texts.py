@@ -19,6 +19,8 @@ from algorithms.methods.spectra_config import PipelineConfig
 from app.model.settings import Path as SettingPath
 from app.model.settings import Setting, settings_of, what_became_of, with_value
 from app.page.lesson import equations
+from app.page.lesson.checks.effects import EFFECTS
+from app.page.lesson.checks.step_checks import CHECKS
 from app.system import data_paths as paths
 
 Settings = tuple[tuple[SettingPath, Any], ...]
@@ -53,6 +55,28 @@ class Exercise:
 
 
 @dataclass(frozen=True)
+class Question:
+    """What a student is asked to do; ``test``, of ``step_checks.CHECKS``, tells whether it was done."""
+
+    ask: str
+    test: str
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What a step shows, if the maps do.
+
+    test    : of ``effects.EFFECTS``, tells whether they do
+    missing : what is said where they do not
+    sample  : one that does
+    """
+
+    test: str
+    missing: str
+    sample: str
+
+
+@dataclass(frozen=True)
 class StepText:
     """One step of the lesson.
 
@@ -60,6 +84,8 @@ class StepText:
     equations : those beside each part of the picture; one group where it has no parts
     body      : Markdown; a line of three asterisks between the words for each part
     notes     : for who teaches it; empty for none
+    check     : a question that is answered by doing; None: the step has none
+    effect    : what maps have to show; None: all do
     """
 
     source: str
@@ -69,6 +95,8 @@ class StepText:
     trials: tuple[Exercise, ...]
     body: str
     notes: str = ""
+    check: Question | None = None
+    effect: Effect | None = None
 
     @property
     def parts(self) -> int:
@@ -113,7 +141,7 @@ def read_step(path: Path, pictures: Mapping[str, Picture], numbers: Collection[s
     pictures, numbers : the pictures by their names, and the names of the placeholders that there are
     """
     fields, body = parts_of(path)
-    fields.refuse_unknown("title", "picture", "equations", "try", "notes")
+    fields.refuse_unknown("title", "picture", "equations", "try", "check", "effect", "notes")
     picture = fields.text("picture", "name a picture, or leave it out") if "picture" in fields.values else ""
     if picture and picture not in pictures:
         raise fields.error("picture", f"is {shown(picture)}", f"known are {', '.join(sorted(pictures))}")
@@ -128,14 +156,17 @@ def read_step(path: Path, pictures: Mapping[str, Picture], numbers: Collection[s
     notes = fields.text("notes", "say what a teacher should know") if "notes" in fields.values else ""
     entries = enumerate(_list(fields, "try", "give a list"), 1)
     trials = tuple(_trial(fields, k, entry, ways) for k, entry in entries)
-    for text in (body, notes, *(words for trial in trials for words in (trial.ask, trial.answer))):
+    check = _question(fields) if "check" in fields.values else None
+    effect = _effect(fields) if "effect" in fields.values else None
+    told = [notes, check.ask if check else "", effect.missing if effect else ""]
+    for text in (body, *told, *(words for trial in trials for words in (trial.ask, trial.answer))):
         for found in PLACEHOLDER.findall(text):
             if found not in numbers:
                 wrong = f"holds {{{found}}}, which is no number of the lesson"
                 near = get_close_matches(found, list(numbers), n=5, cutoff=0.0)
                 raise InputFileError(path, wrong, f"nearest are {', '.join(near)}")
     grouped = tuple(tuple(group) if isinstance(group, list) else (group,) for group in groups)
-    return StepText(str(path), title, picture, grouped, trials, body, notes)
+    return StepText(str(path), title, picture, grouped, trials, body, notes, check, effect)
 
 
 def with_settings(config: Any, settings: Settings) -> Any:
@@ -172,6 +203,26 @@ def _list(fields: Fields, key: str, remedy: str) -> list[Any]:
     if not isinstance(value, list):
         raise fields.error(key, f"is {shown(value)}, not a list", remedy)
     return value
+
+
+def _question(fields: Fields) -> Question:
+    own = fields.section("check", "give {ask: …, test: …}")
+    own.refuse_unknown("ask", "test")
+    return Question(own.text("ask", "say what to do"), _test(own, CHECKS))
+
+
+def _effect(fields: Fields) -> Effect:
+    own = fields.section("effect", "give {test: …, missing: …, sample: …}")
+    own.refuse_unknown("test", "missing", "sample")
+    missing = own.text("missing", "say what the maps do not show")
+    return Effect(_test(own, EFFECTS), missing, own.text("sample", "name a sample that shows it"))
+
+
+def _test(fields: Fields, known: Collection[str]) -> str:
+    test, remedy = fields.text("test", "name a test"), f"known are {', '.join(known)}"
+    if test not in known:
+        raise fields.error("test", f"is {shown(test)}", remedy)
+    return test
 
 
 def _trial(fields: Fields, index: int, entry: Any, ways: Collection[str]) -> Exercise:

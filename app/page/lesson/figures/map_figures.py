@@ -203,7 +203,7 @@ def merged(lesson: LessonRun, at: Sequence[int], palette: Palette) -> str:
     first, second = _class(fusion.ref_cells), _class(fusion.mov_cells)
     merged_class = _class(fusion.merged.cells)
     counts = np.bincount((3 * first + second).ravel(), minlength=9).reshape(3, 3)
-    sheet = SvgCanvas(218)
+    sheet = SvgCanvas(224)
     view = view_of(result.encounters[0].x_ref, 2.0 * lesson.config.augment.spread, HALF, HALF)
     pixels = view.blank(palette)
     a, b = (under(part, fusion.merged, view, None, 2) for part in (first, second))

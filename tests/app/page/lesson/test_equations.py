@@ -102,3 +102,20 @@ def test_an_equation_without_a_number_is_told(tmp_path):
     path.write_text("x = y\n")
     with pytest.raises(InputFileError, match=r"mine\.tex: .*% \(4\)"):
         equations.read_equation(path)
+
+
+RAW = re.compile(r"[^\W\d]\w*[_^]\w|\w[_^][^\W\d]")  # σ_aug, M^a, T_1,2
+
+
+def test_the_table_of_symbols_shows_no_raw_index_in_a_name_or_in_what_it_means():
+    for symbol in symbols():
+        assert not RAW.search(symbol.html + " " + symbol.means_html)
+    transform = next(symbol for symbol in symbols() if symbol.name == "T")
+    assert "T<sub>1,2</sub> takes robot 2" in transform.means_html
+    augmented = next(symbol for symbol in symbols() if symbol.name == "M^aug")
+    assert "M<sup>a</sup>, too" in augmented.means_html
+
+
+def test_symbols_in_words_are_set_with_their_indices_and_names_of_samples_are_left():
+    said = equations.with_symbols("I_aug and Σ_aug on corridor_r2_r1, then σ_aug².")
+    assert said == "I<sub>aug</sub> and Σ<sub>aug</sub> on corridor_r2_r1, then σ<sub>aug</sub>²."

@@ -38,6 +38,7 @@ def test_every_step_is_there_with_its_equations_picture_and_what_to_try(page):
         for k in range(step.parts):
             assert all(f'data-equation="{name}"' in html for name in step.formulas(k))
         assert html.count('class="try"') == len(step.trials)
+        assert html.count("Check yourself") == 1
         for k in range(1, len(step.trials) + 1):
             assert page.count(f"<b>{number}.{k}</b>") == 2  # what to try, and its answer
 
@@ -52,6 +53,7 @@ def test_all_numbers_are_filled_in_and_all_symbols_told(page):
     words = re.sub(r"<(style|svg)\b.+?</\1>", "", page, flags=re.S)
     assert not re.findall(r"\{[a-z_0-9]+\}|\*\*", words)
     assert words.count("<dt>") == len(equations.symbols())
+    assert not set(re.findall(r"\w+[_^]\w+", re.sub(r"<[^>]*>|\w+_r\d_r\d|\w+_fleet_\w+|flat_1", " ", words)))
 
 
 def test_it_fetches_nothing_and_runs_nothing(page):

@@ -18,7 +18,7 @@ from app.model.merge_job import MergeJob
 from app.model.run_state import RunState
 from app.model.settings import with_value
 from app.page.lesson import lesson_work
-from app.page.lesson.lesson_controller import LessonController
+from app.page.lesson.lesson_controller import NOT_YET, STILL, LessonController
 from app.page.lesson.lesson_texts import lesson_folder
 from app.page.lesson.sighting_look import STAND_IN
 from app.page.modes import Mode
@@ -283,8 +283,67 @@ def test_the_lesson_that_ships_opens_with_its_first_step(tab, monkeypatch):
     lesson = make(tab, lesson_folder(), monkeypatch)
     lesson.toggle()
     assert step(tab)[0] == 0
-    titles, first = tab.panels.lesson.contents.call_args.args
+    titles, first, _ = tab.panels.lesson.contents.call_args.args
     assert (len(titles), first) == (19, 0)
     assert "step 0 of 18" in tab.display.messages.hud.call_args.kwargs["state"]
     lesson.toggle()
     assert not lesson.open
+
+
+ASKS = (
+    "---\ntitle: Laser\npicture: sighting\ncheck: {ask: Go there., test: laser}\n"
+    "effect: {test: contradictions, missing: None here., sample: office_r2_r1}\n---\nText."
+)
+
+
+@pytest.fixture
+def asking(tab, tmp_path, monkeypatch, result) -> LessonController:
+    """A lesson whose first step asks for something, its own run over."""
+    for name, text in {**TEXTS, "01-first.md": ASKS}.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    lesson = make(tab, tmp_path, monkeypatch)
+    lesson.enter()
+    return lesson
+
+
+def question(tab) -> tuple[str, bool, str]:
+    return tab.panels.lesson.check.call_args.args
+
+
+def test_what_a_step_asks_for_is_ticked_once_it_was_done_and_stays_so(asking, tab, result):
+    own_run_ends(asking, result)
+    asking._check()
+    assert question(tab) == ("Go there.", False, NOT_YET)
+    tab.panels.lesson.places = (2,)
+    asking._slide()
+    asking._check()
+    assert question(tab) == ("Go there.", True, "")
+    assert tab.panels.lesson.contents.call_args.args[2] == {1}
+    asking.move(1)
+    assert question(tab)[:2] == ("", False)
+    asking.move(-1)
+    assert question(tab) == ("Go there.", True, "")
+
+
+def test_a_question_on_a_run_that_has_not_come_to_it_waits_for_it(tab, tmp_path, monkeypatch, result):
+    (tmp_path / "01-first.md").write_text(ASKS.replace("laser", "map-2-wins"), encoding="utf-8")
+    lesson = make(tab, tmp_path, monkeypatch)
+    lesson.enter()
+    lesson._check()
+    assert question(tab) == ("Go there.", False, STILL)
+    own_run_ends(lesson, result)
+    assert question(tab) == ("Go there.", False, "")
+    lesson._check()
+    assert question(tab) == ("Go there.", False, NOT_YET)
+
+
+def test_a_tab_that_comes_back_tells_what_was_done_and_what_is_no_step_is_left_out(asking, tab):
+    asking._was_done([1.0, 77.0])
+    assert question(tab)[1]
+    assert tab.panels.lesson.contents.call_args.args[2] == {1}
+
+
+def test_the_sample_that_is_offered_is_opened(asking):
+    asking._take_sample = Mock()
+    asking._to_sample()
+    asking._take_sample.assert_called_once_with("office_r2_r1")

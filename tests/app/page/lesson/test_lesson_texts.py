@@ -10,8 +10,17 @@ import pytest
 from algorithms.common.errors import InputFileError
 from app.page.lesson.figures.figure_registry import PICTURES
 from app.page.lesson.lesson_panel import emphasised
-from app.page.lesson.lesson_texts import files, filled, first_number, lesson_folder, read_step
+from app.page.lesson.lesson_texts import (
+    Effect,
+    Question,
+    files,
+    filled,
+    first_number,
+    lesson_folder,
+    read_step,
+)
 from app.page.lesson.placeholders import NUMBERS
+from app.system import data_paths as paths
 
 GOOD = """\
 ---
@@ -142,3 +151,44 @@ def test_a_folder_without_texts_is_told(tmp_path):
     with pytest.raises(InputFileError, match="holds no text"):
         files(tmp_path)
     assert len(files(lesson_folder())) >= 12
+
+
+def test_the_six_questions_are_answered_where_the_teachers_guide_says_so():
+    guide = (paths.static().parent / "docs" / "teacher.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| .+?\? \| (\d+) \| “(.+?)” \|", guide, flags=re.M)
+    assert len(rows) == 6
+    for number, sentence in rows:
+        step = read_step(files(lesson_folder())[int(number)], PICTURES, NUMBERS)
+        assert sentence in " ".join(step.body.split())
+        assert step.picture
+
+
+CHECK = "check: {ask: Turn it., test: laser}"
+EFFECT = "effect: {test: contradictions, missing: None here., sample: office_r2_r1}"
+
+
+def test_a_question_and_what_maps_must_show_are_read(tmp_path):
+    path = tmp_path / "01-one.md"
+    path.write_text(f"---\ntitle: One\n{CHECK}\n{EFFECT}\n---\nText.", encoding="utf-8")
+    step = read_step(path, PICTURES, NUMBERS)
+    assert step.check == Question("Turn it.", "laser")
+    assert step.effect == Effect("contradictions", "None here.", "office_r2_r1")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("laser", "lasre", "lasre"),
+        ("ask: Turn it.", "asked: Turn it.", "asked"),
+        ("Turn it.", '"{nothing}"', "{nothing}"),
+        ("test: contradictions", "test: nothing", "nothing"),
+        ("sample: office_r2_r1", "samples: office_r2_r1", "samples"),
+    ],
+)
+def test_what_is_wrong_with_a_question_is_told_with_its_file(tmp_path, old, new, said):
+    path = tmp_path / "01-one.md"
+    text = f"---\ntitle: One\n{CHECK}\n{EFFECT}\n---\nText."
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    with pytest.raises(InputFileError, match=re.escape(said)) as told:
+        read_step(path, PICTURES, NUMBERS)
+    assert path.name in str(told.value)
