@@ -259,7 +259,7 @@ class LiveController:
         elif self._fleet.claim(state):
             self._state.update(fleet=state)
             self._fleet.display.show(look=look)
-            self._history.record(label, self._state.snapshot(), "live")
+            self._history.record(label, self._state.snapshot(), what)
         self._shown = None
         if state.result is not None and self._state.fleet is state:
             said = f"{what} {clock(seconds)}: {summary(state.result, len(state.robots))}"
