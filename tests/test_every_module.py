@@ -36,6 +36,18 @@ EXERCISED_BY = {
     "app/cli/commands/test_simulate.py": {
         "app.live.bag_writing",
     },
+    "app/live/watch/test_live_watch.py": {
+        "app.live.watch.running_robots",
+    },
+    "app/live/watch/test_published_maps.py": {
+        "app.live.watch.robot_network",
+    },
+    "browser/test_live_page.py": {
+        "app.page.live.live_controller",
+        "app.page.live.live_panel",
+        "app.page.live.network_controller",
+        "app.page.live.network_panel",
+    },
     "app/live/test_map_source.py": {
         "app.live.live_frames",
     },

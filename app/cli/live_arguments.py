@@ -1,4 +1,4 @@
-"""Flags of commands that reach robots that run: the domain of DDS, its interface, rosbridge."""
+"""Flags of commands that reach robots that run: the domain of DDS, its interface."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 
 from algorithms.common.errors import SettingError
 from app.cli.argument_parser import Parser
-from app.live.ros_link import RosLink
+from app.live.watch.robot_network import RobotNetwork
 
 DOMAIN = "ROS_DOMAIN_ID"
 
@@ -20,32 +20,9 @@ def add_dds(parser: Parser) -> None:
     group.add_argument("--interface", default="", metavar="NAME", help=about)
 
 
-class RobotLinks:
-    """A link to each address that robots are reached by, made when it is first asked for."""
-
-    def __init__(self, args: argparse.Namespace) -> None:
-        self._args = args
-        self._links: dict[str, RosLink] = {}
-
-    def link(self, address: str = "") -> RosLink:
-        """By DDS, or by the rosbridge server at an address; raises SettingError."""
-        if address not in self._links:
-            self._links[address] = self._dds() if not address else self._bridge(address)
-        return self._links[address]
-
-    def close(self) -> None:
-        for link in self._links.values():
-            link.close()
-
-    def _dds(self) -> RosLink:
-        from app.live.dds_link import DdsLink
-
-        return DdsLink(domain_of(self._args.domain), self._args.interface)
-
-    def _bridge(self, address: str) -> RosLink:
-        from app.live.rosbridge_link import RosbridgeLink
-
-        return RosbridgeLink(address)
+def network_of(args: argparse.Namespace, bridge: str = "") -> RobotNetwork:
+    """What the flags of ``add_dds`` ask for; raises SettingError."""
+    return RobotNetwork(domain_of(args.domain), args.interface, bridge)
 
 
 def domain_of(given: int | None) -> int:

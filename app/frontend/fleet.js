@@ -3,11 +3,21 @@
   const S = window.mapmeld;
   if (S.fleet) return;
   S.fleet = true;
+  const KINDS = ["robot", "eye", "pair"];
+  const ROWS = KINDS.map((what) => `button[data-mm-${what}]`).join();
+  const named = (row) => row && KINDS.filter((what) => row.hasAttribute(`data-mm-${what}`)).map((what) => `button[data-mm-${what}="${row.getAttribute(`data-mm-${what}`)}"]`)[0];
+  // While robots run the lists are drawn anew every second: a press begins on a row that may be gone when it ends, and the focus goes with it.
+  let pressed, focused;
+  document.addEventListener("pointerdown", (e) => { pressed = named(e.target.closest?.(ROWS)); focused = undefined; }, true);
+  document.addEventListener("focusin", (e) => { focused = named(e.target.closest?.(ROWS)); });
+  new MutationObserver(() => {
+    if (focused && document.activeElement === document.body) document.querySelector(focused)?.focus({ preventScroll: true });
+  }).observe(document.body, { childList: true, subtree: true });
   document.addEventListener("click", (e) => {
-    const button = e.target.closest?.("button[data-mm-robot],button[data-mm-eye],button[data-mm-pair]");
-    if (!button) return;
-    for (const what of ["robot", "eye", "pair"]) {
-      const n = button.getAttribute(`data-mm-${what}`);
+    let row = e.target.closest?.(ROWS);
+    if (!row && pressed) row = document.elementFromPoint(e.clientX, e.clientY)?.closest(pressed);
+    for (const what of row ? KINDS : []) {
+      const n = row.getAttribute(`data-mm-${what}`);
       if (n !== null) S.tell("fleet", { what, n: Number(n) });
     }
   });
@@ -25,6 +35,8 @@
     .mm-pair b{overflow-wrap:anywhere} .mm-pair span{font-size:11.5px;opacity:.8}
     .mm-pair[data-mood=accepted]{border-left-color:#009E73 !important} .mm-pair[data-mood=refused]{border-left-color:#D55E00 !important}
     .mm-pair[data-mood=bent]{border-left-color:#E69F00 !important}
+    .mm-robot>button:first-child{flex-wrap:wrap} .mm-robot em{flex:1 0 100%;padding-left:17px;font-style:normal;font-size:11.5px;opacity:.75}
+    .mm-robot em[data-mood=bent]{color:#B45309;opacity:1} .mm-robot em[data-mood=refused]{color:#D55E00;opacity:1}
     .mm-robot[data-mood=accepted] span{color:#009E73} .mm-robot[data-mood=refused] span{color:#D55E00}
     .mm-quiet{margin:2px 12px 8px;font-size:12px;opacity:.8}`;
   document.head.append(style);

@@ -7,6 +7,7 @@ from contextlib import suppress
 from typing import Any
 from urllib.parse import urlsplit
 
+from algorithms.common.display_text import show_hidden
 from algorithms.common.errors import InputFileError, SettingError
 from algorithms.files.bags.message_writing import Fields, MessageWriter
 from app.live.ros_link import Topic
@@ -15,6 +16,8 @@ INSTALL = "pip install 'mapmeld[rosbridge]'"
 ANSWER_WITHIN = 10.0  # seconds
 AGAIN_AFTER = 5.0  # seconds at most until a lost connection is tried again
 MOST_MESSAGE = 128 * 1024 * 1024  # bytes; the connection of a server that sends more is closed
+MOST_TOPICS = 10_000
+TOPICS = "/rosapi/topics"
 ROS1_TIME = {"secs": "sec", "nsecs": "nanosec"}
 
 
@@ -49,6 +52,21 @@ class RosbridgeLink:
 
     def advertise(self, topic: Topic) -> _RosbridgePublication:
         return _RosbridgePublication(self._ros, topic)
+
+    def published(self) -> dict[Topic, int]:
+        """As rosapi tells, which runs beside the server; how many publish is not told.
+
+        raises : SettingError where it does not answer
+        """
+        from roslibpy import Service, ServiceRequest
+
+        try:
+            told = Service(self._ros, TOPICS, "rosapi/Topics").call(ServiceRequest(), timeout=ANSWER_WITHIN)
+            listed = zip(told["topics"], told["types"], strict=True)
+            pairs = [(str(name), _ros2_type(str(kind))) for name, kind in listed]
+        except Exception as error:  # the library's, and what strangers' JSON leads to
+            raise SettingError("rosbridge: the server tells no topics; rosapi is to run beside it") from error
+        return {Topic(show_hidden(name), kind, latched=True): 1 for name, kind in pairs[:MOST_TOPICS]}
 
     def close(self) -> None:
         self._ros.factory.stopTrying()
@@ -87,6 +105,12 @@ class _RosbridgePublication:
 
     def send(self, fields: Fields) -> None:
         self._topic.publish(as_json(fields))
+
+
+def _ros2_type(kind: str) -> str:
+    """nav_msgs/OccupancyGrid as ROS 2 writes it."""
+    package, _, name = kind.replace("/msg/", "/").partition("/")
+    return f"{package}/msg/{name}"
 
 
 def _ros_topic(ros: Any, topic: Topic) -> Any:

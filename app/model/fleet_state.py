@@ -15,6 +15,7 @@ from algorithms.maps.grid_map import GridMap
 from algorithms.observations.fleet import Fleet, FleetPrior, FleetSighting
 from algorithms.observations.observation import Observation
 from algorithms.observations.pair_problem import Known
+from app.model.live.robot_state import RobotState
 from app.model.merge_inputs import MergeInputs
 
 FindingKey = tuple[GridMap, GridMap, tuple[Known, ...]]
@@ -34,6 +35,7 @@ class FleetState:
     result : of all of them together; None before, and where anything has changed since
     opened : the pair, and its sightings, that the page shows in place of the fleet
     again  : there was a result, which is to be worked out again where the fleet is shown
+    live   : how each robot does, where they run and the picture follows them; empty of one that stands still
     """
 
     fleet: Fleet
@@ -43,6 +45,7 @@ class FleetState:
     result: FleetResult | None = None
     opened: PairOrder | None = None
     again: bool = False
+    live: Mapping[str, RobotState] = field(default_factory=dict)
 
     @property
     def robots(self) -> tuple[str, ...]:
@@ -75,7 +78,8 @@ class FleetState:
 
     def with_fleet(self, fleet: Fleet) -> FleetState:
         """Another fleet; what was found of pairs that are still the same stays at hand."""
-        return replace(self, fleet=fleet, hidden=self.hidden & set(fleet.maps), result=None, again=False)
+        hidden = self.hidden & set(fleet.maps)
+        return replace(self, fleet=fleet, hidden=hidden, result=None, again=False, live={})
 
     def with_robot(self, name: str, grid: GridMap) -> FleetState:
         """One robot more, called so as far as it can be; raises SettingError."""
@@ -122,7 +126,7 @@ class FleetState:
             for key, each in self.found.items()
         }
         hidden = frozenset(map(called, self.hidden))
-        return replace(self, fleet=fleet, found=found, hidden=hidden, result=None, again=False)
+        return replace(self, fleet=fleet, found=found, hidden=hidden, result=None, again=False, live={})
 
     def anchored(self, name: str) -> FleetState:
         """The result is to be in that robot's frame."""
@@ -143,7 +147,7 @@ class FleetState:
         return named.knowing(known, None if known else "sighting")
 
     def open(self, order: PairOrder) -> FleetState:
-        return replace(self, opened=order)
+        return replace(self, opened=order, live={})
 
     def closed(self, known: Sequence[Known], finding: PairFinding | None) -> FleetState:
         """Back from the pair that is open, with what is known of it now, and what a merge said of it."""
@@ -166,14 +170,15 @@ class FleetState:
     # --- what is found --------------------------------------------------------------------------------
 
     def with_finding(self, finding: PairFinding) -> FleetState:
-        return replace(self, found={**self.found, self._key(finding.order): finding})
+        return replace(self, found={**self.found, self.key(finding.order): finding})
 
     def finding(self, order: PairOrder) -> PairFinding | None:
         """What was found of it; None where it was not merged yet, or with other maps or sightings."""
-        found = self.found.get(self._key(order))
+        found = self.found.get(self.key(order))
         return None if found is None else replace(found, order=order)
 
-    def _key(self, order: PairOrder) -> FindingKey:
+    def key(self, order: PairOrder) -> FindingKey:
+        """What a pair's merge depends on."""
         maps = self.fleet.maps
         return maps[order.ref], maps[order.mov], known_of(self.fleet, order)
 

@@ -3,5 +3,5 @@
 from __future__ import annotations
 
 MAP, HEIGHTS, SWARM = "Map", "Heights", "Swarm space"
-LESSON, MUSEUM = "Lesson", "Museum"
+LESSON, MUSEUM, LIVE_DEMO = "Lesson", "Museum", "Live demo"
 OPERATOR, RESEARCH = "Operator", "Research"

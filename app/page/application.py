@@ -21,6 +21,7 @@ from app.jobs.forked_start import FORKS, start_parent
 from app.jobs.runner import RunCallbacks
 from app.jobs.warm_up import small_merge
 from app.jobs.warm_up import warm_up as warm_up_there
+from app.live.watch.robot_network import RobotNetwork
 from app.model.merge_inputs import MergeInputs
 from app.page.page import Page
 from app.page.project.kept_work import KeptWork
@@ -52,6 +53,7 @@ def make_server(
     access: Access | None = None,
     research: bool = False,
     kept: KeptWork | None = None,
+    network: RobotNetwork | None = None,
 ) -> viser.ViserServer:
     """Start to serve; every tab opens with ``initial``, a pair or a project.
 
@@ -60,6 +62,7 @@ def make_server(
     research : tabs open in the mode of researchers, unless their browser remembers another
     access : who may talk to it; None: this machine alone
     kept   : keeps the work of tabs beyond the server's end; None: it ends with it
+    network : in which robots that run are looked for; None: none is opened
     raises : PortError where the port is taken or the address is not this machine's
     """
     _probe(host, port)
@@ -89,7 +92,7 @@ def make_server(
         if not visited:
             visited = True
             _aside(warm_up_here)
-        pages[client.client_id] = Page(client, first, keep, server.uploads, quota, lesson, research)
+        pages[client.client_id] = Page(client, first, keep, server.uploads, quota, lesson, research, network)
 
     @server.on_client_disconnect
     def _(client: viser.ClientHandle) -> None:

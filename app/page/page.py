@@ -10,6 +10,7 @@ import viser
 from algorithms.common.errors import MapMergeError
 from app.drawing.scene.tab_views import Views
 from app.jobs.worker_pool import COMMON
+from app.live.watch.robot_network import RobotNetwork
 from app.model.merge_inputs import MergeInputs
 from app.model.view_modes import OPERATOR, RESEARCH
 from app.page.cancellable_task import DownloadTask
@@ -27,6 +28,8 @@ from app.page.lesson.lesson_controller import LessonController
 from app.page.lesson.lesson_texts import lesson_folder
 from app.page.lesson.link_controller import LinkController
 from app.page.lesson.museum.museum_controller import MuseumController
+from app.page.live.live_controller import LiveController
+from app.page.live.network_controller import NetworkController
 from app.page.modes import ModeSwitch
 from app.page.notices import Notices
 from app.page.page_display import PageDisplay
@@ -58,6 +61,7 @@ class Page:
     store  : where a tab leaves what it finds again
     lesson : folder of the lesson's texts; None for those that come along
     research : whether a browser that remembers no mode gets that of researchers
+    network : in which robots that run are looked for; None: none is opened
     """
 
     def __init__(
@@ -69,6 +73,7 @@ class Page:
         quota: CellQuota,
         lesson: Path | None = None,
         research: bool = False,
+        network: RobotNetwork | None = None,
     ) -> None:
         self._research = research
         self._client, self._first, self._store, self._uploads = client, first, store, uploads
@@ -76,7 +81,8 @@ class Page:
         state, history, messages = PageState(), UndoHistory(), TabMessages(client)
         events, notices = BrowserEvents(client.gui, messages), Notices(client, messages, state.locks)
         sample = first.name if isinstance(first, MergeInputs) else ""
-        panels = Panels(client, state, messages, sample, turned=lambda: display.show_buttons())
+        turned = lambda: display.show_buttons()  # noqa: E731
+        panels = Panels(client, state, messages, sample, turned, network is not None)
         views = Views(client, messages)
         display = PageDisplay(client, state, views, panels, messages)
         display.show_theme()
@@ -103,12 +109,15 @@ class Page:
         teaching = LessonController(tab, undo, runs, lesson or lesson_folder(), files.take_sample)
         LinkController(tab, teaching, files.take_sample)
         museum = MuseumController(tab, undo, runs, inputs, fleet.merge_fleet)
-        panels.run.connect_learn(teaching.toggle, museum.toggle)
+        live = LiveController(tab, fleet)
+        NetworkController(tab, live, fleet, network)
+        panels.run.connect_learn(teaching.toggle, museum.toggle, live.demo)
         self._seeing = seeing
         self._comparison = ComparisonController(state, panels.comparison, events, others, deliver)
         self._sweep = SweepController(state, panels.sweep, messages, events, runs, deliver)
         research = self._comparison, self._sweep
         self._parts = (
+            live,
             inputs,
             events,
             teaching,

@@ -19,6 +19,8 @@ from app.page.files.files_panel import FilesPanel
 from app.page.fleet.fleet_panel import FleetPanel
 from app.page.lesson.lesson_panel import LessonPanel
 from app.page.lesson.museum.museum_panel import MuseumPanel
+from app.page.live.live_panel import LivePanel
+from app.page.live.network_panel import NetworkPanel
 from app.page.page_state import PageState
 from app.page.panels.charts_panel import ChartsPanel
 from app.page.panels.run_panel import RunPanel
@@ -33,7 +35,11 @@ from app.web.download import DOWNLOADS
 
 
 class Panels:
-    """Widgets; controllers connect them. ``turned``: a person turned to another page of the charts."""
+    """Widgets; controllers connect them.
+
+    turned  : a person turned to another page of the charts
+    network : robots that run are looked for
+    """
 
     def __init__(
         self,
@@ -42,6 +48,7 @@ class Panels:
         messages: BrowserMessages,
         sample: str,
         turned: Callable[[], None],
+        network: bool = False,
     ) -> None:
         gui = client.gui
         gui.set_panel_label("mapmeld")
@@ -50,6 +57,8 @@ class Panels:
         self.task = CancellableTask(messages, state.locks.drawing, partial(self.run.stoppable, "task"))
         self.send = partial(DOWNLOADS.send, client)
         self.files = FilesPanel(gui, sample, self.send, state.locks.action)
+        self.live = LivePanel(gui)
+        self.network = NetworkPanel(gui, network)
         self.fleet = FleetPanel(gui)
         self.names = NamesPanel(gui)
         self.knowledge = KnowledgePanel(gui)

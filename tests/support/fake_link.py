@@ -40,6 +40,9 @@ class FakeLink:
         at.publishers += 1
         return FakeEnd(at, topic, deque())
 
+    def published(self) -> dict[Topic, int]:
+        return {Topic(name, ""): at.publishers for name, at in self.topics.items() if at.publishers}
+
     def close(self) -> None:
         self.closed = True
 

@@ -11,10 +11,13 @@ from websockets.sync.server import ServerConnection, serve
 
 
 class RosbridgeServer:
-    """asked : operations that clients have sent; sent : what was published, by topic"""
+    """asked : operations that clients have sent; sent : what was published, by topic
+    topics : by name the type, as rosapi tells; None: there is no rosapi
+    """
 
     def __init__(self) -> None:
         self.asked: list[dict[str, Any]] = []
+        self.topics: dict[str, str] | None = None
         self.sent: dict[str, list[Any]] = {}
         self._listening: dict[str, list[ServerConnection]] = {}
         self._lock = Lock()
@@ -33,6 +36,8 @@ class RosbridgeServer:
                         self._tell(client, topic, message)
                 elif operation["op"] == "publish":
                     self._publish(topic, operation["msg"])
+                elif operation["op"] == "call_service":
+                    self._answer(client, operation)
 
     def publish(self, topic: str, message: Any) -> None:
         """A message of a robot."""
@@ -46,6 +51,13 @@ class RosbridgeServer:
         self.sent.setdefault(topic, []).append(message)
         for client in self._listening.get(topic, []):
             self._tell(client, topic, message)
+
+    def _answer(self, client: ServerConnection, operation: dict[str, Any]) -> None:
+        topics = self.topics
+        values = "no such service" if topics is None else {"topics": [*topics], "types": [*topics.values()]}
+        answer = {"op": "service_response", "service": operation["service"], "id": operation["id"]}
+        with suppress(OSError):
+            client.send(json.dumps({**answer, "values": values, "result": topics is not None}))
 
     @staticmethod
     def _tell(client: ServerConnection, topic: str, message: Any) -> None:

@@ -31,8 +31,8 @@ BENT = "bent_r2_r1"
 ALIKE = 8139  # a simulated corridor that looks alike when turned
 SHOWN = (
     "swarm", "merged", "proof", "rival", "why", "curtain", "by_hand", "place", "plain_image", "lesson_camera",
-    "lesson_laser", "lesson_hough", "lesson_swarm", "lesson_knowledge", "lesson_chain", "fleet", "museum",
-    "museum_poster", "compared", "swept", "camera_sighting",
+    "lesson_laser", "lesson_hough", "lesson_swarm", "lesson_knowledge", "lesson_chain", "fleet", "live",
+    "museum", "museum_poster", "compared", "swept", "camera_sighting",
 )  # fmt: skip
 
 Keep = Callable[[str], None]
@@ -291,6 +291,15 @@ def a_fleet(tab: Tab, keep: Keep) -> None:
     keep("fleet")
 
 
+def robots_that_run(tab: Tab, keep: Keep) -> None:
+    """The demo, once its robots are in one map."""
+    tab.press("Live demo")
+    settle(lambda: tab.mood == "accepted", "one map")
+    tab.page.mouse.move(640, 700)
+    tab.page.wait_for_timeout(9000)
+    keep("live")
+
+
 def a_contest(tab: Tab, keep: Keep) -> None:
     """Methods compared, and one of them looked at."""
     tab.page.get_by_role("tab", name="Compare").click()
@@ -344,6 +353,7 @@ SCENES: dict[Callable[[Tab, Keep], None], tuple[str, ...]] = {
     a_museum: ("museum",),
     a_poster: ("museum_poster",),
     a_fleet: ("fleet",),
+    robots_that_run: ("live",),
     a_contest: ("compared",),
     a_sweep: ("swept",),
 }  # fmt: skip

@@ -16,14 +16,14 @@ from algorithms.files.map_file import map_to_bytes, read_bytes
 from algorithms.fleets.live_answer import LiveAnswer
 from app.cli.argument_parser import Parser
 from app.cli.end_signals import end_signals
-from app.cli.live_arguments import RobotLinks, add_dds, domain_of
+from app.cli.live_arguments import add_dds, network_of
 from app.cli.output_arguments import check_apart
 from app.evaluation.table_files import aligned
-from app.live.dds_link import DdsLink
 from app.live.live_fleet_file import LiveFleet, read_live_fleet
 from app.live.live_publisher import MAP, LivePublisher
 from app.live.live_run import LiveRun
 from app.live.search_thread import SearchThread
+from app.live.watch.published_maps import FIND_WITHIN
 from app.report.fleet_files import TRANSFORMS_FILE, exported_maps, remove_other_islands, transforms_yaml
 
 USAGE = (
@@ -68,7 +68,6 @@ USES = {
     TRANSFORMS[0]: "tf: of a robot",
     SEEN: "sees: of a robot",
 }
-FIND_WITHIN = 3.0  # seconds in which participants of DDS find each other
 PAUSE = 0.05  # seconds between two looks at what has come
 
 
@@ -100,7 +99,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     fleet = read_live_fleet(args.fleet)
     if args.resume:
         fleet = _resumed(fleet, args.out)
-    links, search = RobotLinks(args), SearchThread()
+    links, search = network_of(args).links(), SearchThread()
     try:
         search.warm_up()
         live = LiveRun(fleet, links.link, search, args.sightings)
@@ -129,10 +128,11 @@ def _check(args: argparse.Namespace) -> None:
 
 def _list(args: argparse.Namespace) -> int:
     """Tell the topics of use that are published; 1 where there is no map among them."""
-    link = DdsLink(domain_of(args.domain), args.interface)
+    links = network_of(args).links()
+    link = links.link()
     time.sleep(FIND_WITHIN)
     published = link.published()
-    link.close()
+    links.close()
     rows = []
     for topic, count in sorted(published.items(), key=lambda each: (each[0].type != GRID, each[0].name)):
         if topic.type in USES:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.argument_parser import Parser, whole_number
+from app.cli.live_arguments import add_dds, network_of
 from app.cli.map_arguments import add_known, add_reading, any_known, known_from, read_maps
 from app.cli.project_argument import ALONE, is_project
 from app.web.security.access_control import TOKEN_VARIABLE, Access, access_for, is_local, numeric
@@ -35,6 +36,8 @@ Examples:
   mapmeld serve --keep work          what is done outlives the server: reload the page after it is back
   mapmeld serve --port 9000 --no-browser
   mapmeld serve --lesson my_lesson   the lesson with texts of your own, a Markdown file a step
+  mapmeld serve --live --domain 7    robots that run can be followed, by ROS 2
+  mapmeld serve --live --rosbridge ws://192.168.0.9:9090
 
   mapmeld serve --host 0.0.0.0 --certfile cert.pem --keyfile key.pem
 
@@ -70,6 +73,11 @@ def add_arguments(parser: Parser, words: Sequence[str]) -> None:
     parser.add_argument("--mode", choices=("operator", "research"), default="operator", help=help_)
     about = "folder in which the work of every tab outlives the server, even where that is killed"
     parser.add_argument("--keep", type=Path, metavar="DIR", help=about)
+    about = "look for robots that run, and follow those that are added on the page; nothing is published"
+    parser.add_argument("--live", action="store_true", help=about)
+    about = "with --live: the server by which they are reached (pip install 'mapmeld[rosbridge]')"
+    parser.add_argument("--rosbridge", default="", metavar="ADDRESS", help=about)
+    add_dds(parser)
     parser.add_argument("--verbose", action="store_true", help="log who comes and what is run, too")
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
     parser.add_argument(
@@ -96,6 +104,8 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
         parser.error("give MAP1 and MAP2 together, or none of them for a sample")
     if args.map1 is None and any_known(args):
         parser.error("what is known is told of MAP1 and MAP2: give both maps, too")
+    if not args.live and (args.domain is not None or args.interface or args.rosbridge):
+        parser.error("--domain, --interface and --rosbridge tell where to look for robots: give --live, too")
     if args.behind:
         print(f"{parser.prog}: --behind is now --proxy-host", file=sys.stderr)
     proxies = (*args.proxy_host, *args.behind)
@@ -107,7 +117,8 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
     research = args.mode == "research"
     opened = read_project(args.map1) if project else _case(args)
     kept = None if args.keep is None else KeptWork(args.keep)
-    server = make_server(args.host, args.port, opened, args.lesson, access, research, kept)
+    network = network_of(args, args.rosbridge) if args.live else None
+    server = make_server(args.host, args.port, opened, args.lesson, access, research, kept, network)
     port = server.get_port()
     url = address(args.host, port, access)
     try:

@@ -14,13 +14,12 @@ from algorithms.files.bags.message_writing import Fields
 from algorithms.simulator.buildings.building_types import BUILDINGS
 from algorithms.simulator.fleets.exploration import Exploration, SlamCorrection
 from algorithms.simulator.fleets.fleet_scenario import simulate_fleet
-from algorithms.simulator.path_planning import STEP
 from app.cli.argument_parser import Parser, whole_number
-from app.cli.live_arguments import RobotLinks, add_dds
+from app.cli.live_arguments import add_dds, network_of
 from app.cli.progress_bar import bar
 from app.live.bag_writing import BagRecorder
 from app.live.ros_link import Publication, RosLink, Topic
-from app.live.simulation import SPEED, fleet_text, map_of, messages_of
+from app.live.simulation import PACE, fleet_text, map_of, messages_of
 from app.system.clock import stamp
 
 USAGE = "(--ros2 | --bag OUT) [--robots N] [--building KIND] [--seed N] [--speed S] [--fleet FILE] …"
@@ -38,8 +37,6 @@ somebody listens to the first of them. With --bag all of it goes into a recordin
 can be made.
 
 It ends with 0 once all have driven; on topics the last maps stay there until Ctrl-C."""
-
-PACE = STEP / SPEED  # seconds from one scan to the next
 
 
 def add_arguments(parser: Parser, words: Sequence[str]) -> None:
@@ -82,7 +79,7 @@ def run(args: argparse.Namespace, parser: Parser) -> int:
             _drive(exploration, recorder.write, None)
         print(f"written to {args.bag}")
         return 0
-    links = RobotLinks(args)
+    links = network_of(args).links()
     try:
         topics = _Topics(links.link())
         print("waiting for somebody who listens", flush=True)

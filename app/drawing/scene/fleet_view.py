@@ -37,6 +37,12 @@ class _Drawn:
     floor: GridImage
     walls: GridImage
 
+    def renew(self, grid: GridMap, anchor: FloatArray) -> None:
+        """Another map of the same robot."""
+        self.grid = grid
+        self.floor.renew(partial(render.floor, grid.cells, self.palette), grid, anchor)
+        self.walls.renew(partial(render.walls, grid.cells, self.colour), grid, anchor)
+
     def remove(self) -> None:
         self.floor.remove()
         self.walls.remove()
@@ -68,7 +74,7 @@ class FleetView:
     def show(self, state: FleetState, layout: FleetLayout, edges: Sequence[Edge], palette: Palette) -> None:
         """Draw a fleet; what is drawn already is only moved."""
         maps = state.fleet.maps
-        for name in [name for name, each in self._drawn.items() if maps.get(name) is not each.grid]:
+        for name in [name for name in self._drawn if name not in maps]:
             self._drawn.pop(name).remove()
         for number, (name, grid) in enumerate(maps.items()):
             colour, before = robot_colour(number), self._drawn.get(name)
@@ -76,6 +82,8 @@ class FleetView:
                 if before is not None:
                     before.remove()
                 self._drawn[name] = self._draw(number, grid, colour, palette, layout.anchors[name])
+            elif before.grid is not grid:
+                before.renew(grid, layout.anchors[name])
             each, at = self._drawn[name], layout.at(name)
             each.frame.position = at.x, at.y, 0.0
             each.frame.wxyz = cos(at.theta / 2), 0.0, 0.0, sin(at.theta / 2)
@@ -157,8 +165,13 @@ def _lines(edges: Sequence[Edge], palette: Palette) -> list[Item]:
 def _names(state: FleetState, layout: FleetLayout) -> list[Item]:
     items = []
     for number, name in enumerate(state.robots):
-        if name not in state.hidden:
-            at = layout.at(name)
+        if name in state.hidden:
+            continue
+        colour, does = robot_colour(number), state.live.get(name)
+        if does is not None and does.pose is not None:  # it is where it drives
+            at = layout.poses[name] @ does.pose
+            items.append(mark("robot", at.xy, colour, a=at.theta, r=9, t=name, size=14))
+        else:
             how = {"size": 14, "align": "center", "dx": 0}
-            items.append(mark("none", at.xy, robot_colour(number), t=name, **how))
+            items.append(mark("none", layout.at(name).xy, colour, t=name, **how))
     return items

@@ -129,6 +129,21 @@ class GridImage:
             # an excerpt of the last one lies there until another takes its place
             self._handle.image = self._drawn(draw, grid).pixels
 
+    def renew(self, draw: Draw, grid: GridMap, anchor: FloatArray) -> None:
+        """Draw another grid in place of the last one, without a flicker."""
+        if self._handle is None:
+            self.show(draw, grid, anchor)
+            return
+        picture = self._drawn(draw, grid)
+        rows, cols = self._shape
+        self._middle = grid.origin.apply(np.array([cols, rows]) * grid.resolution / 2)
+        half = grid.origin.theta / 2
+        self._handle.image = picture.pixels
+        self._handle.render_width, self._handle.render_height = cols * grid.resolution, rows * grid.resolution
+        self._handle.position = self._position(anchor)
+        self._handle.wxyz = (cos(half), 0.0, 0.0, sin(half))
+        self._bare()
+
     def visible(self, yes: bool) -> None:
         if self._handle is not None:
             self._handle.visible = self._seen = yes

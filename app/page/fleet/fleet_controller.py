@@ -49,17 +49,17 @@ class FleetController:
         self._modes, self._history, self._notices = tab.modes, tab.history, tab.notices
         self._runs, self._inputs, self._quota = runs, inputs, quota
         self._deliver, self._place_robots = deliver, place_robots
-        self._display = FleetDisplay(tab)
-        self._run = FleetRunController(tab, self._display)
+        self.display = FleetDisplay(tab)
+        self._run = FleetRunController(tab, self.display)
         self._mode = tab.modes.add(
             Mode(
                 self._end,
-                redraw=self._display.show,
+                redraw=self.display.show,
                 resume=self._resume,
                 merge=self._merge,
                 stop=self._stop,
                 click=self._click,
-                extent=lambda: self._display.extent,
+                extent=lambda: self.display.extent,
             )
         )
         self._panel.connect(self._rename, self._anchor, self._remove, self._add_sighting)
@@ -81,7 +81,7 @@ class FleetController:
 
     def load(self, fleet: Fleet, name: str) -> None:
         """Show a fleet in place of what is on the page, as an action of the person."""
-        self._go(FleetState(fleet, name), f"load {name}")
+        self.show(FleetState(fleet, name), f"load {name}")
 
     def merge_fleet(self, fleet: Fleet, name: str) -> None:
         """Show a fleet, and merge it."""
@@ -98,12 +98,12 @@ class FleetController:
             fleet = Fleet({i.names.ref: i.ref, i.names.mov: i.mov})
             opened = FleetState(fleet, i.name).open(PairOrder(i.names.ref, i.names.mov, ()))
             self._modes.leave()
-            self._go(opened.closed(i.known, self._found_there(opened)), "make it a fleet")
+            self.show(opened.closed(i.known, self._found_there(opened)), "make it a fleet")
 
-    def _go(self, state: FleetState, label: str) -> None:
+    def show(self, state: FleetState, label: str) -> None:
         """Show that fleet in place of whatever there is, as a new step."""
         with self._locks.action, self._locks.drawing:
-            if not self._claim(state):
+            if not self.claim(state):
                 return
             self._runs.thread.stop()
             if self._inputs.show(MergeInputs(name=state.name)):
@@ -112,14 +112,14 @@ class FleetController:
 
     def _take(self, state: FleetState, label: str) -> None:
         """That is the fleet from now on; whoever calls is drawing."""
-        if not self._claim(state):
+        if not self.claim(state):
             return
         self._state.update(fleet=state)
-        self._display.show(look=True)
-        self._display.say_outcome()
+        self.display.show(look=True)
+        self.display.say_outcome()
         self._history.note(self._state.snapshot(), label)
 
-    def _claim(self, state: FleetState) -> bool:
+    def claim(self, state: FleetState) -> bool:
         """Whether there is room for its maps; where there is none, that is told."""
         try:
             self._quota.claim(self, sum(grid.cells.size for grid in state.fleet.maps.values()))
@@ -131,7 +131,7 @@ class FleetController:
     def _end(self) -> None:
         self._run.stop()
         with self._locks.drawing:
-            self._display.hide()
+            self.display.hide()
             self._show_panel()
 
     def _resume(self, snapshot: PageSnapshot, was_on: bool) -> bool:
@@ -141,8 +141,8 @@ class FleetController:
             return False
         self._modes.enter(self._mode)
         self._show_panel()
-        self._display.show(look=True)
-        self._display.say_outcome()
+        self.display.show(look=True)
+        self.display.say_outcome()
         if state.again:
             self._run.begin(state)
         return True
@@ -153,7 +153,7 @@ class FleetController:
         self._show_panel()
 
     def _show_panel(self) -> None:
-        self._display.show_panel(self.shown is not None)
+        self.display.show_panel(self.shown is not None)
 
     # --- what a person does with it ---------------------------------------------------------------------
 
@@ -211,12 +211,12 @@ class FleetController:
                 looked = state.toggled(state.robots[n])
                 self._state.update(fleet=looked)
                 self._history.amend_fleet(looked)
-                self._display.show()
+                self.display.show()
 
     def _click(self, place: FloatArray) -> None:
         """A click on a sighting's line opens its pair."""
         with self._locks.action:
-            state, edge = self.shown, self._display.edge_at(place)
+            state, edge = self.shown, self.display.edge_at(place)
             if state is not None and edge is not None:
                 self._open(next(each for each in state.orders if edge.number in each.sightings))
 
@@ -256,7 +256,7 @@ class FleetController:
             except MapMergeError as error:
                 self._notices.report(error)
                 return
-            self._go(changed, f"back from {name}")
+            self.show(changed, f"back from {name}")
             if changed.result is None and changed.found:
                 self._merge()
 
@@ -278,7 +278,7 @@ class FleetController:
         with self._locks.drawing:
             stopped = self._run.stop()
             if stopped:
-                self._display.say(STOPPED, "stopped", None)
+                self.display.say(STOPPED, "stopped", None)
         return stopped
 
     def _download(self) -> None:

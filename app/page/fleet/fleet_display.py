@@ -39,7 +39,7 @@ class FleetDisplay:
         self._view.show(state, layout, self._edges, self._state.palette)
         if look:
             self._messages.look_down(self.extent, follow=follow)
-        self._panels.run.merge.disabled = False
+        self._panels.run.merge.disabled = bool(state.live)  # robots that run are merged by themselves
         anchor, box = layout.anchors[state.fleet.anchor], layout.boxes[0]
         self._messages.hud(
             case=state.name,
@@ -48,7 +48,7 @@ class FleetDisplay:
             measure=True,
             readout="",
         )
-        self._panels.charts.tell(poses_html(state), turn=True)
+        self._panels.charts.tell(poses_html(state), turn=not state.live)
         self._page.show_legend()
         self._page.show_buttons()
         self._messages.flush()

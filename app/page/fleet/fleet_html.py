@@ -28,11 +28,21 @@ def robots_html(state: FleetState, chosen: str) -> str:
             f'<div class="mm-robot" data-mood="{MOODS[standing]}">'
             f'<button type="button" data-mm-robot="{number}" aria-pressed="{str(name == chosen).lower()}">'
             f'<i style="background:{css(robot_colour(number))}"></i><b>{escape(name)}{anchor}</b>'
-            f"<span>{escape(typeset(_told(state, name, standing)))}</span></button>"
+            f"<span>{escape(typeset(_told(state, name, standing)))}</span>{_how(state, name)}</button>"
             f'<button type="button" data-mm-eye="{number}" aria-pressed="{str(shown).lower()}" '
             f'title="{eye} the map of {escape(name)}">{"●" if shown else "○"}</button></div>'
         )
+    for name in state.live:
+        if name not in state.robots:  # it has sent no map yet
+            head = f"<i></i><b>{escape(name)}</b>{_how(state, name)}"
+            rows.append(f'<div class="mm-robot" data-mood="idle"><button type="button">{head}</button></div>')
     return f'<div class="mm-fleet">{"".join(rows)}</div>'
+
+
+def _how(state: FleetState, name: str) -> str:
+    """How a robot that runs does."""
+    does = state.live.get(name)
+    return "" if does is None else f'<em data-mood="{does.mood}">{escape(typeset(does.told))}</em>'
 
 
 def poses_html(state: FleetState) -> str:

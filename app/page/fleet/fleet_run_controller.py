@@ -58,7 +58,7 @@ class FleetRunController:
         def pairs(fleet: Fleet, orders: Sequence[PairOrder]) -> Iterator[PairFinding]:
             yield from run_pairs(executor, fleet, orders, stop)
             if stop.is_set():
-                raise StoppedError
+                raise StoppedError(STOPPED)
 
         yield from state.merged(pairs)
 

@@ -10,7 +10,7 @@ import viser
 from algorithms.methods.registry import METHODS
 from app.drawing.palette import LIGHT, QUIET, STOP
 from app.model.playback import PACES
-from app.model.view_modes import HEIGHTS, LESSON, MAP, MUSEUM, OPERATOR, RESEARCH, SWARM
+from app.model.view_modes import HEIGHTS, LESSON, LIVE_DEMO, MAP, MUSEUM, OPERATOR, RESEARCH, SWARM
 from app.page.panels.html_widgets import Action, on_choice, on_press, put
 
 NAMES = {method.title: name for name, method in METHODS.items()}
@@ -30,9 +30,10 @@ class RunPanel:
         self._speed.value = "Normal"
         self._view = gui.add_button_group("View", (MAP, HEIGHTS, SWARM), order=4)
         hint = (
-            "Lesson: the method step by step on these maps. Museum: where it goes wrong, and what cures it."
+            "Lesson: the method step by step on these maps. Museum: where it goes wrong, and what cures it. "
+            "Live demo: simulated robots explore, and their maps are merged meanwhile."
         )
-        self._learn = gui.add_button_group("Learn", (LESSON, MUSEUM), order=4.7, hint=hint)
+        self._learn = gui.add_button_group("Learn", (LESSON, MUSEUM, LIVE_DEMO), order=4.7, hint=hint)
         self._open: list[str] = []  # which of them are
         hint = (
             "Operator: maps, sighting, result, export. Research: every setting of the method, its stages, "
@@ -69,9 +70,10 @@ class RunPanel:
         self._dark.on_update(lambda _: dark(self._dark.value))
         self._mode.on_click(lambda _: research(self._mode.value == RESEARCH))
 
-    def connect_learn(self, lesson: Action, museum: Action) -> None:
-        """What is done where a person opens or closes the lesson or the museum."""
-        self._learn.on_click(lambda _: lesson() if self._learn.value == LESSON else museum())
+    def connect_learn(self, lesson: Action, museum: Action, demo: Action) -> None:
+        """What is done where a person opens or closes the lesson, the museum or the live demo."""
+        does = {LESSON: lesson, MUSEUM: museum, LIVE_DEMO: demo}
+        self._learn.on_click(lambda _: does[self._learn.value]())
 
     def research(self, yes: bool) -> None:
         """Show what only researchers set, or hide it."""
@@ -135,8 +137,10 @@ class RunPanel:
         return self._follow.value
 
     def open(self, what: str, yes: bool) -> None:
-        """The lesson or the museum was opened or closed."""
-        self._open = [name for name in (LESSON, MUSEUM) if (yes if name == what else name in self._open)]
+        """The lesson, the museum or the live demo was opened or closed."""
+        self._open = [
+            name for name in (LESSON, MUSEUM, LIVE_DEMO) if (yes if name == what else name in self._open)
+        ]
 
     @property
     def pressed(self) -> list[str]:

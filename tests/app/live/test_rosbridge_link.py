@@ -169,3 +169,18 @@ def test_a_damaged_message_names_its_topic(server):
     (found,) = awaited(maps.take)
     assert isinstance(found, InputFileError)
     assert "/map" in str(found)
+
+
+@pytest.mark.parametrize("kind", ["nav_msgs/OccupancyGrid", "nav_msgs/msg/OccupancyGrid"])
+def test_the_topics_of_either_ros_are_listed(server, kind):
+    robots, link = server
+    robots.topics = {"/r1/map": kind, "/odd\x1b": "std_msgs/String"}
+    found = {each.name: each.type for each in link.published()}
+    assert found["/r1/map"] == "nav_msgs/msg/OccupancyGrid"
+    assert not any("\x1b" in name for name in found)
+
+
+def test_a_server_that_tells_no_topics_is_told_with_what_is_missing(server):
+    _, link = server
+    with pytest.raises(SettingError, match="rosapi"):
+        link.published()

@@ -21,6 +21,7 @@ from algorithms.observations.observation import Observation
 from algorithms.observations.pair_problem import Known
 from algorithms.observations.priors import InitialPose, NearPlace, Prior, TurnPrior
 from app.model.fleet_state import ALONE, LEFT_OUT, PLACED, USED, WAITING, FleetState
+from app.model.live.robot_state import RobotState
 
 SOMEWHERE = Pose2(1.0, 2.0, 0.3)
 ANN_BOB = PairOrder("ann", "bob", (0,))
@@ -224,3 +225,15 @@ def test_a_map_is_hidden_and_shown_again_and_goes_with_its_robot(state):
     assert hidden.toggled("bob").hidden == set()
     assert hidden.renamed("bob", "eve").hidden == {"eve"}
     assert hidden.without_robot("bob").hidden == set()
+
+
+def test_a_picture_that_follows_robots_stands_still_once_a_person_changes_it(state):
+    running = replace(state, live={"ann": RobotState("live", 1.0, 0.2)})
+    assert running.toggled("ann").live
+    for changed in (
+        running.renamed("cid", "dan"),
+        running.anchored("bob"),
+        running.without_robot("cid"),
+        running.open(ANN_BOB),
+    ):
+        assert not changed.live

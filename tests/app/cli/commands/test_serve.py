@@ -13,8 +13,10 @@ from commandline import ROOT, as_in_a_terminal, usage_error
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
+from algorithms.common.errors import SettingError
 from app.cli.main import main
 from app.cli.open_browser import browser
+from app.live.watch.robot_network import RobotNetwork
 
 
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
@@ -153,3 +155,22 @@ def test_where_nothing_can_be_written_no_browser_is_opened_and_the_page_is_there
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "gone"))
     with browser("http://127.0.0.1:8080/?token=a-token-that-nobody-guesses", secret=True):
         assert list(tmp_path.iterdir()) == []
+
+
+def test_without_live_no_network_is_told_of_and_none_is_opened(capsys):
+    for words in (["--domain", "3"], ["--interface", "lo"], ["--rosbridge", "ws://there:9090"]):
+        assert usage_error("serve", "--no-browser", *words) == 2
+        assert "give --live, too" in capsys.readouterr().err
+
+
+def test_with_live_the_page_is_told_where_robots_are_looked_for(monkeypatch):
+    asked = []
+
+    def make_server(*given):
+        asked.append(given[-1])
+        raise SettingError("that will do")
+
+    monkeypatch.setattr("app.page.application.make_server", make_server)
+    assert main(["serve", "--no-browser"]) == 2
+    assert main(["serve", "--no-browser", "--live", "--domain", "3", "--interface", "lo"]) == 2
+    assert asked == [None, RobotNetwork(3, "lo")]

@@ -11,6 +11,7 @@ from algorithms.fleets.fleet_merge import merge_fleet
 from algorithms.fleets.pair_hypotheses import pair_orders
 from algorithms.observations.fleet import Fleet, FleetSighting
 from app.model.fleet_state import FleetState
+from app.model.live.robot_state import RobotState
 from app.page.fleet.fleet_html import pairs_html, poses_html, robots_html
 
 EVIL = "<script>alert(1)<b>"
@@ -53,3 +54,16 @@ def test_a_sighting_that_is_left_out_says_how_far_off_it_is(state, merged):
 
 def test_without_a_sighting_one_is_told_what_a_merge_does(state):
     assert "looks for where their walls agree" in pairs_html(state, [])
+
+
+def test_a_robot_that_runs_says_how_it_does_also_before_it_has_a_map(merged):
+    how = {
+        "ann": RobotState("stale", 0.0, 12.0),
+        EVIL: RobotState("live", 1.0, 0.2),
+        "new": RobotState("waiting"),
+    }
+    html = robots_html(replace(merged, live=how), "ann")
+    assert "stale for 12 s" in html
+    assert "live, 1.0 maps/s" in html
+    assert "<b>new</b><em" in html
+    assert "maps/s" not in robots_html(merged, "ann")

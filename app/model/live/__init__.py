@@ -1,0 +1,1 @@
+"""What the page holds of robots that run."""

@@ -1,0 +1,1 @@
+"""Robots that run, on the page: their maps grow, and are merged meanwhile."""
