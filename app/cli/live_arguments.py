@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import argparse
 import os
+from typing import TYPE_CHECKING
 
 from algorithms.common.errors import SettingError
 from app.cli.argument_parser import Parser
-from app.live.watch.robot_network import RobotNetwork
+
+if TYPE_CHECKING:
+    from app.live.watch.robot_network import RobotNetwork
 
 DOMAIN = "ROS_DOMAIN_ID"
 
@@ -22,6 +25,8 @@ def add_dds(parser: Parser) -> None:
 
 def network_of(args: argparse.Namespace, bridge: str = "") -> RobotNetwork:
     """What the flags of ``add_dds`` ask for; raises SettingError."""
+    from app.live.watch.robot_network import RobotNetwork
+
     return RobotNetwork(domain_of(args.domain), args.interface, bridge)
 
 

@@ -125,7 +125,7 @@ def test_the_first_step_goes_through_what_camera_and_laser_tell_in_four_parts(ta
     settle(lambda: "What is it?" in tab.text, "the words about the detector")
     tab.move("part", 1)
     settle(lambda: "The laser knows how far" in tab.text, "the words about the laser")
-    assert equations()[0] == "depth-step"
+    settle(lambda: equations()[:1] == ["depth-step"], "its equation")
     tab.move("part", 1)
     settle(lambda: "Why both?" in tab.text, "the reason for both")
     tab.press("Take the mean")
