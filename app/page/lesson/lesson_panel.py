@@ -19,7 +19,7 @@ BACK, NEXT, LEAVE = "◀ Back", "Next ▶", "Leave"
 CHECK, DONE = "Check", "✓"
 OPEN_SAMPLE = "Open {name}"
 ANSWER, HIDE, PUT_BACK = "Show the answer", "Hide the answer", "Put it back"
-NOTES = '<details class="mm-notes"><summary>For who teaches</summary>'
+NOTES = '<details class="mm-notes"><summary>For teachers</summary>'
 BUTTONS = (  # what they do lesson.js does by itself
     '<span class="mm-aids"><button type="button" data-mm-link title="A link to this step, and its QR code">'
     'Link</button><button type="button" data-mm-presenter aria-pressed="false" '

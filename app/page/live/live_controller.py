@@ -29,7 +29,7 @@ if TYPE_CHECKING:  # as in live_thread
 log = logging.getLogger(__name__)
 
 MOST_EVENTS = 5  # that are shown
-BEGINS = "The robots set out."
+BEGINS = "The robots set out. What is shown here stays until they send their maps."
 ROBOTS = "Simulated robots"
 SIGHTING = "sighting"  # kind of an event, as live_run has it
 LOUD_FOR = 8.0  # seconds for which it is told what was taken back, even if it stands again

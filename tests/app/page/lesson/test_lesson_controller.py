@@ -60,6 +60,15 @@ def make(tab, folder, monkeypatch) -> LessonController:
     return LessonController(tab, Mock(UndoController), runs, folder)
 
 
+def entered(tab, folder, monkeypatch, other_texts) -> LessonController:
+    """A lesson that is open, some of its texts in place of the usual ones."""
+    for name, text in {**TEXTS, **other_texts}.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    lesson = make(tab, folder, monkeypatch)
+    lesson.enter()
+    return lesson
+
+
 def step(tab) -> tuple[int, str]:
     """Number and title of the step that is shown."""
     return tab.panels.lesson.text.call_args.args[:2]
@@ -138,10 +147,7 @@ def test_without_texts_it_does_not_open_and_says_why(tab, tmp_path, monkeypatch)
 @pytest.fixture
 def comparing(tab, tmp_path, monkeypatch, result) -> LessonController:
     """A lesson at a step that compares merges, its own run over."""
-    for name, text in {**TEXTS, "02-second.md": COMPARES}.items():
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    lesson = make(tab, tmp_path, monkeypatch)
-    lesson.enter()
+    lesson = entered(tab, tmp_path, monkeypatch, {"02-second.md": COMPARES})
     lesson.go(1)
     own_run_ends(lesson, result)
     return lesson
@@ -299,11 +305,7 @@ ASKS = (
 @pytest.fixture
 def asking(tab, tmp_path, monkeypatch, result) -> LessonController:
     """A lesson whose first step asks for something, its own run over."""
-    for name, text in {**TEXTS, "01-first.md": ASKS}.items():
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    lesson = make(tab, tmp_path, monkeypatch)
-    lesson.enter()
-    return lesson
+    return entered(tab, tmp_path, monkeypatch, {"01-first.md": ASKS})
 
 
 def question(tab) -> tuple[str, bool, str]:
